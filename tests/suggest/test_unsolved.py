@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import ast
+from typing import Any
+
 import pytest
 
 from mutabot.model import Mutant, Role, Site, Span
-from mutabot.suggest.candidates import candidates
+from mutabot.suggest.checks import candidates
 from mutabot.suggest.measure import Measured
-from mutabot.suggest.project import Project
+from mutabot.suggest.place import Place
 from mutabot.suggest.readings import PROBE, Reading
-from mutabot.suggest.style import Place
 from mutabot.suggest.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
@@ -38,51 +40,71 @@ def test_a_difference_within_the_spread_kills_nothing_and_is_told(
     mutant: float, tolerance: float, said: str
 ) -> None:
     found = measured([0.1, 0.105, 0.102, 0.104, 0.101, 0.103], mutant, tolerance)
-    assert candidates(Project(None), found) == []  # type: ignore[arg-type]  # no project is needed for an end
-    assert why_unsolved(MUTANT, found, [], _Unproven()).reason.startswith(said)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(("mutant", "kills"), [(10.72, False), (10.73, True)])
-@pytest.mark.parametrize("seen", [{}, {"step box.x": 0.01}])
-def test_what_comes_in_steps_may_be_one_step_off(mutant: float, kills: bool, seen: dict[str, float]) -> None:
-    """As a time of a simulation: all runs end at the same tick, and then one ends at the next."""
-    found = measured([10.71] * 20, mutant, 0.001)
-    if seen:
-        found.originals = {PLACE: {key: {"box.x": 10.7, **seen} for key in found.originals[PLACE]}}
-        found.mutants = {PLACE: {MUTANT.id: {(0, PLACE.node): {"box.x": mutant - 0.01, **seen}}}}
-    assert bool(candidates(Project(None), found)) is kills  # type: ignore[arg-type]
+    assert candidates(PROJECT, found) == ([], {})
+    assert why_unsolved(MUTANT, found, [], _Unproven(), {}).reason.startswith(said)  # type: ignore[arg-type]
 
 
 def test_a_difference_beyond_the_band_is_a_check() -> None:
     found = measured([0.1, 0.105, 0.102, 0.104, 0.101, 0.103], 0.5, 0.001)
-    (check,) = candidates(Project(None), found)  # type: ignore[arg-type]
+    ((check,), _) = candidates(PROJECT, found)
     assert check.trials == {(MUTANT.id, 0)}
-    assert check.statement.startswith("assert box.x == pytest.approx(0.102")
+    assert check.statement == "assert box.x == pytest.approx(0.1, abs=0.1)"
 
 
-@pytest.mark.parametrize(("label", "other"), [("red", "blue"), (1, 2), (True, False)])
-def test_what_differs_by_design_is_held_against_what_decides_it(label: object, other: object) -> None:
-    reads = [{"colour": one, "box.x": 1.0 if one == label else 5.0} for one in [label, other] * 6]
-    found = Measured(
+def of(reads: list[dict[str, Any]], mutant: dict[str, Any], *texts: str) -> Measured:
+    return Measured(
         originals={PLACE: {(round, PLACE.node): read for round, read in enumerate(reads)}},
-        mutants={PLACE: {MUTANT.id: {(0, PLACE.node): {"colour": label, "box.x": 5.0}}}},
-        readings={PLACE: [Reading("box.x", PROBE, 0.001), Reading("colour", PROBE, 0.001)]},
+        mutants={PLACE: {MUTANT.id: {(0, PLACE.node): mutant}}},
+        readings={PLACE: [Reading(text, PROBE, 0.001) for text in texts]},
     )
-    (check,) = candidates(Project(None), found)  # type: ignore[arg-type]
-    assert check.expected.label == "colour"
-    assert check.lines[-1] == "assert box.x == pytest.approx(expected, abs=0.001)"
 
 
-def test_what_no_label_decides_may_be_as_far_from_something_else() -> None:
+def test_what_a_test_was_given_is_what_it_is_held_against() -> None:
     places = [0.1234567 * number % 1 for number in range(12)]
-    reads = [{"target.x": place, "box.x": place + 0.2} for place in places]
-    found = Measured(
-        originals={PLACE: {(round, PLACE.node): read for round, read in enumerate(reads)}},
-        mutants={PLACE: {MUTANT.id: {(0, PLACE.node): {"target.x": places[0], "box.x": places[0]}}}},
-        readings={PLACE: [Reading("box.x", PROBE, 0.001), Reading("target.x", PROBE, 0.001)]},
+    found = of(
+        [{"target.x": place, "box.x": place} for place in places],
+        {"target.x": places[0], "box.x": places[0] + 0.2},
+        "box.x",
+        "target.x",
     )
-    statements = {check.statement for check in candidates(Project(None), found)}  # type: ignore[arg-type]
-    assert "assert box.x - target.x == pytest.approx(0.2, abs=0.001)" in statements
+    statements = {check.statement for check in candidates(PROJECT, found)[0]}
+    assert statements == {"assert box.x == pytest.approx(target.x, abs=0.1)"}
+
+
+def test_a_clock_is_no_check_unless_the_tests_set_a_deadline() -> None:
+    found = of([{"robot.time": 10.0}] * 3, {"robot.time": 20.0}, "robot.time")
+    checks, refused = candidates(PROJECT, found)
+    assert checks == []
+    assert refused == {MUTANT.id: "only its time differs (robot.time), and the tests set no deadline"}
+    deadline = _Project("assert robot.time < 30")
+    assert len(candidates(deadline, found)[0]) == 1  # type: ignore[arg-type]
+
+
+def test_an_exact_value_is_no_check() -> None:
+    found = of([{"box.x": 10.7134}] * 3, {"box.x": 10.7154}, "box.x")
+    checks, refused = candidates(PROJECT, found)
+    assert checks == []
+    assert refused[MUTANT.id].startswith("only an exact value would notice it: assert box.x == ")
+
+
+def test_the_tolerance_is_that_of_the_suite_where_it_notices_as_much() -> None:
+    found = of([{"box.x": 0.3}] * 3, {"box.x": 0.9}, "box.x")
+    stated = _Project("assert cup.x == pytest.approx(0.5, abs=0.03)")
+    ((check,), _) = candidates(stated, found)  # type: ignore[arg-type]
+    assert check.statement == "assert box.x == pytest.approx(0.3, abs=0.03)"
+
+
+class _Project:
+    """A project of which only the text of the test counts."""
+
+    def __init__(self, text: str = "") -> None:
+        self._text = text
+
+    def module(self, file: str) -> ast.Module:
+        return ast.parse(self._text)
+
+
+PROJECT: Any = _Project()
 
 
 class _Unproven:

@@ -1,178 +1,35 @@
-"""A check that could be added: what it looks at, what it expects, whom it notices.
-
-How far a reading may be from what the original reads comes from what it read in n runs, in one of three ways,
-by what the runs look like; which one it was is told with the check.
-
-* ``NORMAL``: the two-sided tolerance interval of a normal distribution: it holds a share ``CONTENT`` of all
-  runs, with confidence ``CONFIDENCE``, as far as the spread is normal. Factor by Howe, "Two-sided tolerance
-  limits for normal populations", JASA 64 (1969); chi-squared quantiles by Wilson and Hilferty, PNAS 17
-  (1931). Whether the spread may be normal says the test of Shapiro and Francia with Royston's
-  significance, Statistics and Computing 3 (1993).
-* ``FREE``: the range of the runs, widened by itself on both sides, or more if a normal spread would ask for
-  more. That the range alone holds a share of all runs is known whatever the distribution: Wilks, Ann. Math.
-  Stat. 12 (1941).
-* ``SAME``: every run read the same.
-"""
+"""Checks that could be added: what each looks at, what it expects, whom it notices."""
 
 from __future__ import annotations
 
-import math
+import ast
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from statistics import NormalDist, fmean
-from typing import Any, TypeGuard
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from mutabot.analysis.thresholds.ladders import lower_limit
-from mutabot.frozen import frozen
-from mutabot.suggest.measure import Read
-from mutabot.suggest.readings import WAY, Reading
-from mutabot.suggest.style import Addition, Place, equal, within
+from mutabot.model.values.steps import step_of
 
-#: of all runs of the original, how many the band holds, and how sure that is
-CONTENT, CONFIDENCE = 0.99999, 0.95
-NORMAL, FREE, SAME = "normal", "distribution-free", "always the same"
-#: significance under which a spread is not taken to be normal, and the runs that need to be there to ask
-_SIGNIFICANT, _LEAST = 0.05, 8
-_STANDARD = NormalDist()
+from .bands import Band, band_of, decimal, digits_of, is_number, readable
+from .measure import Measured, Read
+from .place import Addition, Place, equal, within
+from .project import Project
+from .readings import HAND, PROBE, Reading
 
-
-@frozen
-class Band:
-    """What a reading must stay within: the middle and the tolerance to each side.
-
-    Attributes:
-        tolerance: in the unit of the reading.
-        spread: the greatest distance of two runs of the original that are to read alike.
-        runs: how many runs of the original it comes from.
-        kind: ``NORMAL``, ``FREE`` or ``SAME``.
-        factor: multiples of the standard deviation, for a normal band.
-        alarm: share of the runs of the original that may fall outside, at most.
-    """
-
-    tolerance: float
-    spread: float
-    runs: int
-    kind: str
-    factor: float | None
-    alarm: float
-
-
-def band_of(groups: Sequence[Sequence[float]], floor: float) -> tuple[list[float], Band]:
-    """The middles of these groups of readings, and one band around each of them.
-
-    Groups differ in their middles alone: their spread is taken together. ``floor`` is the least tolerance.
-    """
-    count = sum(len(group) for group in groups)
-    smallest = min(len(group) for group in groups)
-    spread = max(max(group) - min(group) for group in groups)
-    middles = [fmean(group) for group in groups]
-    rest = [value - middle for group, middle in zip(groups, middles, strict=True) for value in group]
-    if spread <= 1e-9 * max(1.0, *(abs(value) for group in groups for value in group)):
-        return middles, Band(floor, spread, count, SAME, None, unseen(count))
-    freedom = max(1, count - len(groups))
-    deviation = math.sqrt(sum(value * value for value in rest) / freedom)
-    factor = tolerance_factor(smallest, freedom)
-    if may_be_normal(rest):
-        return middles, Band(max(floor, factor * deviation), spread, count, NORMAL, factor, 1.0 - CONTENT)
-    middles = [(min(group) + max(group)) / 2 for group in groups]
-    tolerance = max(floor, 1.5 * spread, factor * deviation)
-    return middles, Band(tolerance, spread, count, FREE, None, outside_range(smallest))
-
-
-def tolerance_factor(count: int, freedom: int) -> float:
-    """Standard deviations to each side of a mean of ``count`` that hold ``CONTENT`` with ``CONFIDENCE``."""
-    z = _STANDARD.inv_cdf(0.5 + CONTENT / 2)
-    return z * math.sqrt(freedom * (1 + 1 / count) / chi_squared(1 - CONFIDENCE, freedom))
-
-
-def chi_squared(probability: float, freedom: int) -> float:
-    """The quantile of chi-squared; within 1 % from five degrees of freedom on."""
-    part = 2 / (9 * freedom)
-    return freedom * max(1e-3, 1 - part + _STANDARD.inv_cdf(probability) * math.sqrt(part)) ** 3
-
-
-def may_be_normal(values: Sequence[float]) -> bool:
-    """Whether these look like draws of one normal distribution, or at least not like anything else."""
-    count = len(values)
-    if count < _LEAST:
-        return False
-    scores = [_STANDARD.inv_cdf((number - 0.375) / (count + 0.25)) for number in range(1, count + 1)]
-    ordered = sorted(values)
-    mean = fmean(ordered)
-    total = sum((value - mean) ** 2 for value in ordered) * sum(score * score for score in scores)
-    if total <= 0:
-        return False
-    likeness = sum(score * value for score, value in zip(scores, ordered, strict=True)) ** 2 / total
-    u = math.log(count)
-    v = math.log(u)
-    middle, scale = -1.2725 + 1.0521 * (v - u), 1.0308 - 0.26758 * (v + 2 / u)
-    z = (math.log(max(1e-300, 1 - likeness)) - middle) / scale
-    return 1 - _STANDARD.cdf(z) >= _SIGNIFICANT
-
-
-def outside_range(count: int) -> float:
-    """The share of all runs that may lie outside the range of ``count``, at most, with ``CONFIDENCE``."""
-    return 1 - lower_limit(count - 1, count, CONFIDENCE)
-
-
-def unseen(count: int) -> float:
-    """The share of runs in which something may happen that did not in ``count``, with ``CONFIDENCE``."""
-    return 1 - (1 - CONFIDENCE) ** (1 / count) if count else 1.0
-
-
-def rounded(middle: float, tolerance: float) -> tuple[str, str]:
-    """Both as texts: the tolerance rounded up to two digits, the middle a hundredth of it exact."""
-    if tolerance <= 0:
-        return repr(middle), "0.0"
-    digits = 1 - math.floor(math.log10(tolerance))
-    step = 10.0**-digits
-    whole = math.ceil(tolerance / step - 1e-9) * step
-    return decimal(round(middle, digits + 1)), decimal(round(whole, digits))
-
-
-def decimal(value: float) -> str:
-    """A number as a text of a program."""
-    text = repr(float(value))
-    return "0.0" if text == "-0.0" else text
-
-
-#: longest line that is written where it can be parted
-_WIDTH = 90
+#: digits of a value above which it is no more than what the original happened to read
+_DIGITS = 3
+#: steps of a reading that are no difference, where it comes in steps: one up or down
+_STEPS = 1.5
+_PARTNERS = 8
 _NAME = re.compile(r"[^\W\d]\w*")
-
-
-@frozen
-class Expected:
-    """What a reading is held against.
-
-    Attributes:
-        values: what is expected: by the label's value, or by None where nothing else decides.
-        label: expression by which it is looked up; None if there is one value.
-        minus: expression that is taken off before.
-        band: how far it may be off; None if it must be equal.
-        runs: how many runs of the original agree.
-    """
-
-    values: Mapping[Any, Any]
-    runs: int
-    label: str | None = None
-    minus: str | None = None
-    band: Band | None = None
-
-    def margin(self, text: str, read: Read) -> float:
-        """How far a run is from it, in tolerances: above 1 is outside. 0 where it cannot be told."""
-        found = read.get(text)
-        key = read.get(self.label) if self.label is not None else None
-        if text not in read or (self.label is not None and key not in self.values):
-            return 0.0
-        expected = self.values[key]
-        if self.band is None:
-            return 0.0 if found == expected and type(found) is type(expected) else 2.0
-        other = read.get(self.minus) if self.minus is not None else 0.0
-        if not (is_number(found) and is_number(other)):
-            return 0.0
-        return float(abs(found - other - expected)) / self.band.tolerance
+_LAST = re.compile(r"(\w+)\W*$")
+_CLOCK = re.compile(
+    r"(?:^|_)(?:time|clock|elapsed|duration|seconds|secs|now|timestamp|ticks?|cycle)(?:_|$)", re.I
+)
+_PLACE = re.compile(r"(?:^|_)(?:[xyz]|pos|position|place|height|distance|depth|gap|width)(?:_|$)", re.I)
+_ANGLE = re.compile(
+    r"(?:^|_)(?:angle|theta|yaw|pitch|roll|tilt|heading|rot\w*|r[xyz]|j\d+|q\d*)(?:_|$)", re.I
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,87 +39,248 @@ class Check:
     Attributes:
         place: the test.
         reading: what it reads.
-        expected: what it expects.
-        margins: mutant id to round to how far it is outside, in tolerances; only what it would notice.
-        needs: imports of what it uses beside its reading.
+        value: what that must be: a plain value, or the other reading that it must equal.
+        band: how the original spreads; None if both must be equal.
+        tolerance: greatest distance; None if both must be equal.
+        noticed: mutant id to the rounds in which it is outside.
+        runs: how many runs of the original agree.
     """
 
     place: Place
     reading: Reading
-    expected: Expected
-    margins: Mapping[str, Mapping[int, float]] = field(default_factory=dict)
-    needs: tuple[str, ...] = ()
+    value: Any
+    runs: int
+    band: Band | None = None
+    tolerance: float | None = None
+    noticed: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
     @property
     def trials(self) -> frozenset[tuple[str, int]]:
         """The mutants and rounds that it would notice."""
-        return frozenset((mutant, round) for mutant, rounds in self.margins.items() for round in rounds)
+        return frozenset((mutant, round) for mutant, rounds in self.noticed.items() for round in rounds)
 
     @property
-    def margin(self) -> float:
-        """How far outside the least of them is."""
-        return min((margin for rounds in self.margins.values() for margin in rounds.values()), default=0.0)
-
-    @property
-    def looked_at(self) -> str:
-        """The expression that it holds against what it expects."""
-        minus = self.expected.minus
-        return self.reading.expression + (f" - {minus}" if minus is not None else "")
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """It in the style of its test: the assertion is the last of them."""
-        style, band, label = self.place.style, self.expected.band, self.expected.label
-        texts = {key: self._text(value) for key, value in self.expected.values.items()}
-        head: tuple[str, ...] = ()
-        value = "expected"
-        if label is None:
-            value = texts[None]
-        else:
-            head = _looked_up([f"{literal(key)}: {text}" for key, text in texts.items()], label)
-        if band is None:
-            return *head, equal(style, self.looked_at, value)
-        return *head, within(style, self.looked_at, value, decimal(band.tolerance))
+    def worth(self) -> tuple[int, ...]:
+        """What a person would rather write: the suite's reader, a relation, a place, few digits."""
+        is_relation = isinstance(self.value, Reading)
+        number = self.value if is_number(self.value) else 0.0
+        return (
+            -self.reading.way,
+            is_relation,
+            -_rank(self.reading),
+            -digits_of(number),
+            -len(self.statement),
+        )
 
     @property
     def statement(self) -> str:
-        """The assertion."""
-        return self.lines[-1]
-
-    def _text(self, value: Any) -> str:
-        if self.reading.way == WAY and self.expected.band is None:
-            return str(value)  # a list, as it was noted
-        return decimal(value) if self.expected.band is not None else literal(value)
+        """The assertion, in the style of its test."""
+        style, text = self.place.style, self.reading.text
+        if self.tolerance is None:
+            value = self.value.text if isinstance(self.value, Reading) else literal(self.value)
+            return equal(style, text, value)
+        value = self.value.text if isinstance(self.value, Reading) else decimal(self.value)
+        return within(style, text, value, decimal(self.tolerance))
 
     def addition(self) -> Addition:
         """It as something that is added to a test."""
-        names = set(_NAME.findall(" ".join(self.lines)))
+        names = set(_NAME.findall(self.statement))
+        needs = (*self.reading.needs, *(self.value.needs if isinstance(self.value, Reading) else ()))
         approx = ["import pytest"] if "pytest.approx" in self.statement else []
-        return Addition(
-            self.place,
-            self.lines,
-            tuple(name for name in self.place.names if name in names),
-            (*self.reading.needs, *self.needs, *approx),
-            self.reading.watch,
-        )
-
-
-def _looked_up(pairs: list[str], label: str) -> tuple[str, ...]:
-    """What is expected by a label, in one line or in one per value."""
-    line = f"expected = {{{', '.join(pairs)}}}[{label}]"
-    if len(line) <= _WIDTH:
-        return (line,)
-    return "expected = {", *(f"    {pair}," for pair in pairs), f"}}[{label}]"
+        used = tuple(name for name in self.place.names if name in names)
+        return Addition(self.place, (self.statement,), used, (*needs, *approx))
 
 
 def literal(value: Any) -> str:
     """A value as a text of a program."""
     text = repr(value)
-    if isinstance(value, str) and '"' not in text and "\\" not in text:
-        return f'"{value}"'
-    return text
+    return f'"{value}"' if isinstance(value, str) and '"' not in text and "\\" not in text else text
 
 
-def is_number(value: Any) -> TypeGuard[float]:
-    """Whether a value is one that can be near another."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+def candidates(project: Project, measured: Measured) -> tuple[list[Check], dict[str, str]]:
+    """All checks that would notice a survivor and that a person would merge.
+
+    Beside them, by mutant, what would notice it and is no such check.
+    """
+    found: list[Check] = []
+    refused: dict[str, str] = {}
+    for place, originals in measured.originals.items():
+        mutants, runs = measured.mutants.get(place, {}), list(originals.values())
+        if not mutants or not runs:
+            continue
+        readings = [known(measured, place, text) for text in runs[0] if all(text in read for read in runs)]
+        given = [one for one in readings if _is_given(one.text, originals, mutants)]
+        suite = _tolerances(project, place)
+        for reading in readings:
+            for check in _of(place, reading, given, runs, mutants, suite):
+                why = _why_not(project, check)
+                if why is None:
+                    found.append(check)
+                else:
+                    refused.update(dict.fromkeys(check.noticed, why))
+    return found, refused
+
+
+def known(measured: Measured, place: Place, text: str) -> Reading:
+    """What is known of a part; one that comes in steps may be a step off where it never was yet."""
+    of = [
+        one
+        for one in measured.readings[place]
+        if text == one.text or text.startswith((f"{one.text}.", f"{one.text}["))
+    ]
+    if of:
+        found = replace(max(of, key=lambda one: len(one.text)), text=text)
+    else:
+        objects = [size for target, size in measured.objects if f".{target.rpartition('.')[2]}" in text]
+        coarse = max((one.tolerance for one in measured.readings[place]), default=1e-6)
+        root = re.match(r"\w+", text)
+        way, tolerance = (PROBE, objects[0]) if objects else (HAND, coarse)
+        found = Reading(text, way, tolerance, (), (root[0],) if root else ())
+    runs = measured.originals.get(place, {}).values()
+    values = {read[text] for read in runs if is_number(read.get(text))}
+    step = step_of(values) if len(values) > 1 else None
+    return found if step is None else replace(found, tolerance=max(found.tolerance, _STEPS * step))
+
+
+def _is_given(
+    text: str,
+    originals: Mapping[tuple[int, str], Read],
+    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
+) -> bool:
+    """Whether a reading belongs to the round and the test, and is nothing that a program did."""
+    return all(
+        read.get(text) == originals.get(key, {}).get(text)
+        for reads in mutants.values()
+        for key, read in reads.items()
+    )
+
+
+def _of(
+    place: Place,
+    reading: Reading,
+    given: Sequence[Reading],
+    runs: Sequence[Read],
+    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
+    suite: Mapping[str, float],
+) -> Iterator[Check]:
+    """The checks of a reading: that it equals what the test was given, or a value."""
+    values = [read[reading.text] for read in runs]
+    partners = [one for one in given if one.text != reading.text and _last(one) == _last(reading)]
+    for other in [*partners[:_PARTNERS], None]:
+        others = [read[other.text] if other is not None else 0.0 for read in runs]
+        if not all(is_number(value) for value in (*values, *others)):
+            yield from _equal(place, reading, other, values, others, mutants)
+            continue
+        apart = [value - beside for value, beside in zip(values, others, strict=True)]
+        tolerance = max(reading.tolerance, other.tolerance if other is not None else 0.0)
+        band = band_of(apart, tolerance)
+        away = _away(reading, other, band.middle, mutants)
+        outside = [size for by_round in away.values() for size in by_round.values() if size > band.tolerance]
+        if not outside:
+            continue
+        value, wide = readable(band, min(outside))
+        own = suite.get(_last(reading), 0.0)
+        wide = own if band.tolerance <= own < min(outside) else wide
+        if other is not None and abs(band.middle) > wide - band.tolerance:
+            continue  # it is always as far from it, but not there
+        noticed = _noticed(_away(reading, other, 0.0 if other is not None else value, mutants), wide)
+        if noticed:
+            yield Check(place, reading, value if other is None else other, len(runs), band, wide, noticed)
+
+
+def _away(
+    reading: Reading,
+    other: Reading | None,
+    middle: float,
+    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
+) -> dict[str, dict[int, float]]:
+    """By mutant and round, how far a reading is from what is expected."""
+    found: dict[str, dict[int, float]] = {}
+    for mutant, reads in mutants.items():
+        for (round, _), read in reads.items():
+            value, beside = read.get(reading.text), read.get(other.text) if other is not None else 0.0
+            if is_number(value) and is_number(beside):
+                sizes = found.setdefault(mutant, {})
+                sizes[round] = max(sizes.get(round, 0.0), abs(value - beside - middle))
+    return found
+
+
+def _noticed(away: Mapping[str, Mapping[int, float]], tolerance: float) -> dict[str, tuple[int, ...]]:
+    found = {
+        mutant: tuple(round for round, size in sizes.items() if size > tolerance)
+        for mutant, sizes in away.items()
+    }
+    return {mutant: rounds for mutant, rounds in found.items() if rounds}
+
+
+def _equal(
+    place: Place,
+    reading: Reading,
+    other: Reading | None,
+    values: Sequence[Any],
+    others: Sequence[Any],
+    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
+) -> Iterator[Check]:
+    if other is None and len({repr(value) for value in values}) > 1:
+        return
+    if other is not None and list(values) != list(others):
+        return
+    noticed: dict[str, tuple[int, ...]] = {}
+    for mutant, reads in mutants.items():
+        rounds = tuple(
+            round
+            for (round, _), read in reads.items()
+            if reading.text in read
+            and read[reading.text] != (read.get(other.text) if other is not None else values[0])
+        )
+        if rounds:
+            noticed[mutant] = rounds
+    if noticed:
+        yield Check(place, reading, values[0] if other is None else other, len(values), noticed=noticed)
+
+
+def _why_not(project: Project, check: Check) -> str | None:
+    """Why a person would not merge it; None if one may."""
+    text, name = check.reading.text, _last(check.reading)
+    if _CLOCK.search(name) and name not in _compared(project, check.place):
+        return f"only its time differs ({text}), and the tests set no deadline"
+    if is_number(check.value) and digits_of(float(check.value)) > _DIGITS:
+        return f"only an exact value would notice it: {check.statement}"
+    return None
+
+
+def _rank(reading: Reading) -> int:
+    name = _last(reading)
+    return 0 if _PLACE.search(name) else 1 if _ANGLE.search(name) else 2
+
+
+def _last(reading: Reading) -> str:
+    found = _LAST.search(reading.text)
+    return found[1] if found else reading.text
+
+
+def _compared(project: Project, place: Place) -> set[str]:
+    """The names that the tests compare already."""
+    module = project.module(place.file)
+    compared = (
+        [node for node in ast.walk(module) if isinstance(node, ast.Compare)] if module is not None else []
+    )
+    return {name for node in compared for name in _NAME.findall(ast.unparse(node))}
+
+
+def _tolerances(project: Project, place: Place) -> dict[str, float]:
+    """The largest tolerance that the tests state already, by the last name of what they look at."""
+    module = project.module(place.file)
+    found: dict[str, float] = {}
+    for node in ast.walk(module) if module is not None else ():
+        looked, stated = None, None
+        match node:
+            case ast.Compare(left=left, comparators=[ast.Call(keywords=keywords)]):
+                looked, stated = left, next((one.value for one in keywords if one.arg == "abs"), None)
+            case ast.Call(args=[left, *_], keywords=keywords):
+                looked, stated = left, next((one.value for one in keywords if one.arg == "delta"), None)
+        if looked is not None and isinstance(stated, ast.Constant) and is_number(stated.value):
+            last = _LAST.search(ast.unparse(looked))
+            if last:
+                found[last[1]] = max(found.get(last[1], 0.0), float(stated.value))
+    return found

@@ -2,46 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 import libcst as cst
 from libcst.codemod import CodemodContext
 from libcst.codemod.visitors import AddImportsVisitor
 
-from mutabot.suggest.project import Project
-from mutabot.suggest.readings import fixture, helper, watcher
-from mutabot.suggest.style import OTHER, UNITTEST, Addition, Place
+from .place import OTHER, Addition, Place
+from .project import Project
 
 _AT_END = "from mutabot.inside.readings.noted import at_end as _mutabot_at_end"
 
 
-def edited(
-    project: Project, additions: Iterable[Addition], ends: Mapping[str, Sequence[str]] | None = None
-) -> dict[str, str]:
-    """The new texts of the files with these additions, by file; ``ends``: lines for the ends of files.
+def edited(project: Project, additions: Iterable[Addition]) -> dict[str, str]:
+    """The new texts of the files with these additions, by file.
 
     What is added to tests that another tool makes runs beside mutabot alone.
     """
     by_file: dict[str, list[Addition]] = {}
     for one in additions:
         by_file.setdefault(one.place.file, []).append(one)
-    return {
-        file: _edited(project.text(file), found, (ends or {}).get(file, ()))
-        for file, found in by_file.items()
-    }
+    return {file: _edited(project.text(file), found) for file, found in by_file.items()}
 
 
-def _edited(text: str, additions: Sequence[Addition], end: Sequence[str]) -> str:
+def _edited(text: str, additions: Sequence[Addition]) -> str:
     imports = [line for one in additions for line in one.imports]
-    lines: list[str] = []
-    for style, watch in dict.fromkeys((one.place.style, one.watch) for one in additions):
-        if watch is not None:
-            is_case = style == UNITTEST
-            imports.append("from unittest import mock" if is_case else "import pytest")
-            lines += ["", "", *(helper(watch) if is_case else fixture(watch, for_all=style == OTHER))]
     written = [one for one in additions if one.place.style != OTHER]
     made = dict.fromkeys(one.place for one in additions if one.place.style == OTHER)
-    lines += [_AT_END] if made else []
+    lines = [_AT_END] if made else []
     for number, place in enumerate(made):
         lines += _around(place, [one for one in additions if one.place == place], number)
     context = CodemodContext()
@@ -52,17 +40,16 @@ def _edited(text: str, additions: Sequence[Addition], end: Sequence[str]) -> str
     module = module.with_changes(body=_with_ends(module.body, written))
     changed = AddImportsVisitor(context).transform_module(module)
     code, newline = changed.code, changed.default_newline
-    if lines or end:
+    if lines:
         code += "" if code.endswith(newline) else newline
-        code += newline.join([*lines, *end, ""])
+        code += newline.join([*lines, ""])
     return code
 
 
 def _around(place: Place, additions: Sequence[Addition], number: int) -> list[str]:
     """What follows a test of which the file has no function that could be added to."""
     (test,) = place.path
-    watched = [one.watch.name for one in additions if one.watch is not None]
-    uses = dict.fromkeys([*(use for one in additions for use in one.uses), *watched])
+    uses = dict.fromkeys(use for one in additions for use in one.uses)
     return [
         "",
         f"def _mutabot_end_{number}(value_of):",
@@ -91,31 +78,9 @@ def _with_ends(
 
 
 def _with_end(function: cst.FunctionDef, additions: Sequence[Addition]) -> cst.FunctionDef:
-    names = list(dict.fromkeys(one.watch.name for one in additions if one.watch is not None))
-    first: list[str] = []
-    if additions[0].place.style == UNITTEST:
-        first = [f"{name} = {watcher(name)}(self)" for name in names]
-    else:
-        function = function.with_changes(params=_asking(function.params, names))
     body = [*function.body.body]
     last = body[-1]
     returns = isinstance(last, cst.SimpleStatementLine) and isinstance(last.body[-1], cst.Return)
     end = len(body) - 1 if returns else len(body)
-    body[end:end] = _parsed(line for one in additions for line in one.lines)
-    start = 0 if function.get_docstring() is None else 1
-    body[start:start] = _parsed(first)
+    body[end:end] = cst.parse_module("".join(f"{line}\n" for one in additions for line in one.lines)).body
     return function.with_changes(body=function.body.with_changes(body=body))
-
-
-def _parsed(lines: Iterable[str]) -> Sequence[cst.BaseSmallStatement | cst.BaseStatement]:
-    return cst.parse_module("\n".join([*lines, ""])).body
-
-
-def _asking(given: cst.Parameters, names: Sequence[str]) -> cst.Parameters:
-    """What lets a test function ask for fixtures that it did not ask for, if it can."""
-    known = [*given.posonly_params, *given.params]
-    is_plain = not (isinstance(given.star_arg, cst.Param) or given.star_kwarg or given.kwonly_params)
-    if not is_plain or any(one.default is not None for one in known):
-        return given
-    new = [name for name in names if name not in {one.name.value for one in known}]
-    return given.with_changes(params=[*given.params, *(cst.Param(cst.Name(name)) for name in new)])

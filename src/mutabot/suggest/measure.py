@@ -16,13 +16,11 @@ from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.model import Mutant, Probe
-from mutabot.suggest.edits import edited
-from mutabot.suggest.project import Project
-from mutabot.suggest.readings import ORACLE, PROBE, Reading, of_objects, readings_at
-from mutabot.suggest.style import Addition, Place
 
-from .project import copy_of
-from .readings import Command, commands_of
+from .edits import edited
+from .place import Addition, Place
+from .project import Project, copy_of
+from .readings import ORACLE, Reading, of_objects, readings_at
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
 _NOTED = "mutabot.inside.readings.noted"
@@ -41,14 +39,12 @@ class Measured:
         mutants: the same per place and mutant id.
         readings: per place, what is known of its readings.
         objects: readings of objects, each with its tolerance.
-        commands: after which it was looked.
     """
 
     originals: dict[Place, dict[tuple[int, str], Read]] = field(default_factory=dict)
     mutants: dict[Place, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
     readings: dict[Place, list[Reading]] = field(default_factory=dict)
     objects: list[tuple[str, float]] = field(default_factory=list)
-    commands: list[Command] = field(default_factory=list)
 
 
 def measure(
@@ -67,14 +63,12 @@ def measure(
 
     Raises what a baseline raises.
     """
-    measured = Measured(objects=of_objects(project), commands=commands_of(project))
+    measured = Measured(objects=of_objects(project))
     additions = []
     for place in dict.fromkeys(places.values()):
         measured.readings[place] = readings_at(project, place)
         additions.append(_noting(place, measured.readings[place], measured.objects))
-    watching = {file: _watching(measured, file) for file in {one.file for one in places.values()}}
-    texts = edited(project, additions, watching)
-    with copy_of(request, texts) as copied:
+    with copy_of(request, edited(project, additions)) as copied:
         probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
         noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
         with open_executor(noting, progress) as opened:
@@ -127,17 +121,6 @@ def _take(
         }
         if place is not None and read and end.outcome == "passed":
             found.setdefault(place, {})[round, end.test] = read
-
-
-def _watching(measured: Measured, file: str) -> tuple[str, ...]:
-    """The lines that look after every command of the tests of a file."""
-    known = next(found for place, found in measured.readings.items() if place.file == file)
-    looks = ", ".join(
-        f"({one.text!r}, lambda: {one.text})" for one in known if one.way == PROBE and not one.uses
-    )
-    classes = [target for target, _ in measured.objects]
-    line = f"_mutabot_watch({measured.commands!r}, [{looks}], {classes!r})"
-    return f"from {_NOTED} import watch as _mutabot_watch", line
 
 
 def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[str, float]]) -> Addition:

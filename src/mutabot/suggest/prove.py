@@ -14,12 +14,11 @@ from mutabot.campaign.workers.task import Task, death
 from mutabot.errors import MutabotError
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
-from mutabot.suggest.checks import Check
-from mutabot.suggest.edits import edited
-from mutabot.suggest.project import Project
-from mutabot.suggest.style import Place
 
-from .project import copy_of
+from .checks import Check
+from .edits import edited
+from .place import Place
+from .project import Project, copy_of
 
 
 @dataclass(slots=True)

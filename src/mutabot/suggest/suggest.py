@@ -5,12 +5,8 @@ Which survivors an observation can kill, which none can, and why no check kills 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
-from math import comb
-from typing import TypeVar
 
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions, Unsolved
@@ -19,13 +15,15 @@ from mutabot.errors import NothingToDoError
 from mutabot.frozen import frozen
 from mutabot.model import Mutant
 
-from .candidates import candidates, part_of_way, tolerance_of
-from .checks import Check, decimal, is_number, unseen
+from .bands import decimal, is_number, unseen
+from .checks import Check, candidates, known
 from .measure import Measured, measure
+from .place import OTHER, Place, place_of
 from .project import Project, diff_of
 from .prove import Proof, texts_with
-from .readings import WAY, fixture
-from .style import OTHER, Place, place_of
+
+#: how often checks are chosen anew because one of them failed its proof
+_ATTEMPTS = 5
 
 
 @frozen
@@ -63,64 +61,44 @@ def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
     return Survivors(tuple(to_kill), tuple(never), tuple(tests))
 
 
-@frozen
-class _Nearest:
-    """What differs most on a mutant: the expression, by how much, and what is no difference in it."""
-
-    text: str
-    apart: float
-    spread: float
-    tolerance: float
-
-    @property
-    def rank(self) -> float:
-        """How far it is, in what the original does by itself."""
-        return self.apart / max(self.spread, self.tolerance)
-
-    @property
-    def words(self) -> str:
-        """``box.x differs by 0.003, the original itself spreads 0.005``."""
-        part = part_of_way(self.text)
-        where = self.text if part is None else f"on the way, the {part[0]} of {part[1]}"
-        own = f"the original itself spreads {_short(self.spread)}"
-        if self.tolerance >= self.spread:
-            own = f"its tolerance is {_short(self.tolerance)}"
-        return f"{where} differs by {_short(self.apart)}, {own}"
-
-
-def why_unsolved(mutant: Mutant, measured: Measured, found: Sequence[Check], proof: Proof) -> Unsolved:
+def why_unsolved(
+    mutant: Mutant, measured: Measured, found: Sequence[Check], proof: Proof, refused: Mapping[str, str]
+) -> Unsolved:
     """The reason, with what differs most and how far the original itself spreads."""
-    failed = [one for one in found if one in proof.failed and mutant.id in one.margins]
+    failed = [one for one in found if one in proof.failed and mutant.id in one.noticed]
     if failed:
-        return Unsolved(mutant.id, f"what would notice it failed its proof: {failed[0].statement}")
-    nearest = max(_differences(mutant, measured), key=lambda one: one.rank, default=None)
-    if nearest is None:
-        return Unsolved(mutant.id, "nothing differs that its tests can read at their ends or after a command")
-    return Unsolved(mutant.id, nearest.words)
+        return Unsolved(mutant.id, f"a check that would notice it failed its proof: {failed[0].statement}")
+    if mutant.id in refused:
+        return Unsolved(mutant.id, refused[mutant.id])
+    nearest = max(_differences(mutant, measured), default=None)
+    return Unsolved(
+        mutant.id, nearest[1] if nearest else "nothing differs that its tests can read at their ends"
+    )
 
 
-def _differences(mutant: Mutant, measured: Measured) -> list[_Nearest]:
+def _differences(mutant: Mutant, measured: Measured) -> list[tuple[float, str]]:
+    """How far readings are from the original's, in what the original does by itself, each in words."""
     found = []
     for place, by_mutant in measured.mutants.items():
         originals = measured.originals.get(place, {})
         for key, read in by_mutant.get(mutant.id, {}).items():
-            same = originals.get(key, {})
             for text, value in read.items():
-                before = same.get(text)
-                if is_number(value) and is_number(before) and abs(value - before) > 0:
-                    values = [one[text] for one in originals.values() if is_number(one.get(text))]
-                    spread = max(values) - min(values)
-                    tolerance = tolerance_of(measured, place, text)
-                    found.append(_Nearest(text, abs(value - before), spread, tolerance))
+                before = originals.get(key, {}).get(text)
+                if not is_number(value) or not is_number(before) or value == before:
+                    continue
+                values = [one[text] for one in originals.values() if is_number(one.get(text))]
+                spread, tolerance = max(values) - min(values), known(measured, place, text).tolerance
+                own = f"the original itself spreads {_short(spread)}"
+                if tolerance >= spread:
+                    own = f"its tolerance is {_short(tolerance)}"
+                apart = abs(value - before)
+                words = f"{text} differs by {_short(apart)}, {own}"
+                found.append((apart / max(spread, tolerance), words))
     return found
 
 
 def _short(value: float) -> str:
     return decimal(float(f"{value:.3g}"))
-
-
-#: how often the smallest set is looked for anew because a check of it failed its proof
-_ATTEMPTS = 5
 
 
 @frozen
@@ -177,14 +155,14 @@ def suggest(
         shown = next(iter(without), "no test")
         raise NothingToDoError(
             f"no check can be added to the tests of these survivors, such as {shown}: they are "
-            "neither functions of pytest, nor methods of unittest, nor made of scenarios"
+            "neither functions of pytest, nor methods of unittest, nor made by another tool"
         )
     calibrated = request.rounds + seeds
     measured = measure(
         replace(request, rounds=calibrated), project, places,
         [(one.mutant, rounds) for one, rounds in survivors.to_kill], quiet,
     )  # fmt: skip
-    found = candidates(project, measured)
+    found, refused = candidates(project, measured)
     proof = Proof(request, project, quiet)
     fresh = range(calibrated, calibrated + seeds)
     chosen_checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
@@ -192,7 +170,7 @@ def suggest(
     suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
     killed = {mutant for one in suggestions for mutant in one.kills}
     left = [one.mutant for one, _ in survivors.to_kill if one.mutant.id not in killed]
-    unsolved = [*(why_unsolved(one, measured, found, proof) for one in left), *survivors.never]
+    unsolved = [*(why_unsolved(one, measured, found, proof, refused) for one in left), *survivors.never]
     dropped = tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items())
     whole = Suggestions(suggestions, diff_of(request.root, texts), tuple(unsolved), dropped)
     return _told(whole, chosen, request, seeds)
@@ -221,118 +199,53 @@ def _places(project: Project, tests: Sequence[str]) -> tuple[dict[str, Place], l
 
 
 def _proven(proof: Proof, found: Sequence[Check], measured: Measured, rounds: Sequence[int]) -> list[Check]:
-    """The smallest set of checks that all stand their proof; largest kills first."""
+    """Checks that all stand their proof and together kill what any would; those that kill most first."""
     mutants = {place: list(found) for place, found in measured.mutants.items()}
-    chosen: list[Check] = []
     for _ in range(_ATTEMPTS):
-        left = [one for one in found if one not in proof.failed]
-        chosen = smallest_cover(left, lambda one: _noticed(one, proof), _worth)
+        chosen = chosen_of([one for one in found if one not in proof.failed], proof.kills)
         new = [one for one in chosen if one not in proof.kills]
         if not new:
             break
-        passing = proof.on_original(chosen, rounds)
-        proof.on_survivors(passing, mutants)
+        proof.on_survivors(proof.on_original(chosen, rounds), mutants)
     chosen = [one for one in chosen if one in proof.kills and one not in proof.failed]
-    return sorted(chosen, key=lambda one: -len(_noticed(one, proof)))
+    return sorted(chosen, key=lambda one: -len(_kills(one, proof.kills)))
 
 
-def _noticed(check: Check, proof: Proof) -> frozenset[tuple[str, int]]:
+def chosen_of(checks: Sequence[Check], kills: Mapping[Check, Mapping[str, Sequence[int]]]) -> list[Check]:
+    """For all that any check kills, the one that a person would rather write; none that others replace."""
+    left = frozenset().union(*(_kills(one, kills) for one in checks))
+    chosen: list[Check] = []
+    for one in sorted(checks, key=lambda one: (one.worth, len(_kills(one, kills))), reverse=True):
+        if _kills(one, kills) & left:
+            chosen.append(one)
+            left -= _kills(one, kills)
+    for one in list(chosen):
+        others = [other for other in chosen if other is not one]
+        if _kills(one, kills) <= frozenset().union(*(_kills(other, kills) for other in others)):
+            chosen = others
+    return chosen
+
+
+def _kills(check: Check, kills: Mapping[Check, Mapping[str, Sequence[int]]]) -> frozenset[tuple[str, int]]:
     """What a check kills, as far as it was run; else what it would by what was measured."""
-    kills: Mapping[str, Sequence[int]] | None = proof.kills.get(check)
-    if kills is None:
+    if check not in kills:
         return check.trials
-    return frozenset((mutant, round) for mutant, rounds in kills.items() for round in rounds)
-
-
-def _worth(check: Check) -> float:
-    """Of checks that notice the same: the way in which the tests read already, plain, far from the band."""
-    expected = check.expected
-    beside = 4.0 * (expected.label is not None) + 5.0 * (expected.minus is not None)
-    effort = 10.0 * check.reading.way + beside
-    return min(math.log10(max(check.margin, 1.0)), 3.0) - effort - 0.01 * len(check.statement)
+    return frozenset((mutant, round) for mutant, rounds in kills[check].items() for round in rounds)
 
 
 def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) -> Suggestion:
-    expected, band = check.expected, check.expected.band
+    added = check.addition()
+    is_other = check.place.style == OTHER
     return Suggestion(
         test=check.place.node,
         style=check.place.style,
-        moment="at any moment" if check.reading.way == WAY else "end of the test",
-        looks_at=check.looked_at,
+        looks_at=check.reading.text,
         statement=check.statement,
-        by_hand=_by_hand(check),
-        tolerance=band.tolerance if band is not None else None,
-        band=band.kind if band is not None else "always the same",
-        factor=band.factor if band is not None else None,
-        spread=band.spread if band is not None else None,
-        runs=expected.runs,
-        alarm=band.alarm if band is not None else unseen(expected.runs),
+        by_hand="\n".join([*dict.fromkeys(added.imports), *added.lines]) if is_other else "",
+        tolerance=check.tolerance,
+        spread=check.band.spread if check.band is not None else None,
+        runs=check.runs,
         fresh=seeds,
         unseen=unseen(seeds),
         kills=kills,
     )
-
-
-def _by_hand(check: Check) -> str:
-    """All that is to be added to a test that another tool makes; empty for one in which the diff has it."""
-    added = check.addition()
-    if added.place.style != OTHER:
-        return ""
-    watch = fixture(added.watch, for_all=True) if added.watch is not None else []
-    return "\n".join([*dict.fromkeys(added.imports), *watch, *added.lines])
-
-
-C = TypeVar("C")
-#: sets of checks that are looked through one by one; above it, the best is taken again and again
-_SETS = 50_000
-
-
-def smallest_cover(
-    checks: Sequence[C], noticed: Callable[[C], frozenset[Hashable]], worth: Callable[[C], float]
-) -> list[C]:
-    """As few checks as possible that notice what all notice; of equal sets the one worth most.
-
-    The fewest where that many sets can be looked through, else those that a greedy choice finds.
-    """
-    useful = _undominated([one for one in checks if noticed(one)], noticed, worth)
-    whole: frozenset[Hashable] = frozenset().union(*map(noticed, useful)) if useful else frozenset()
-    greedy = _greedy(useful, noticed, worth, whole)
-    for size in range(1, len(greedy) + 1):
-        if comb(len(useful), size) > _SETS:
-            break
-        fitting = [
-            some for some in combinations(useful, size) if frozenset().union(*map(noticed, some)) == whole
-        ]
-        if fitting:
-            return list(max(fitting, key=lambda some: sum(map(worth, some))))
-    return greedy
-
-
-def _undominated(
-    checks: Sequence[C], noticed: Callable[[C], frozenset[Hashable]], worth: Callable[[C], float]
-) -> list[C]:
-    """Without those that another one can stand for: it notices more, or the same and is worth more."""
-    ordered = sorted(checks, key=lambda one: (-len(noticed(one)), -worth(one)))
-    kept: list[C] = []
-    for one in ordered:
-        if not any(noticed(one) <= noticed(other) for other in kept):
-            kept.append(one)
-    return kept
-
-
-def _greedy(
-    checks: Sequence[C],
-    noticed: Callable[[C], frozenset[Hashable]],
-    worth: Callable[[C], float],
-    whole: frozenset[Hashable],
-) -> list[C]:
-    left, found = set(whole), []
-    while left:
-        best = max(checks, key=lambda one: (len(noticed(one) & left), worth(one)))
-        found.append(best)
-        left -= noticed(best)
-    for one in list(found):
-        others = [other for other in found if other is not one]
-        if frozenset().union(*map(noticed, others)) == whole:
-            found = others
-    return found

@@ -38,7 +38,7 @@ def _suggestion_parts(found: Suggestions) -> Iterator[RenderableType]:
             yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 3), expand=False)
     never = [one for one in found.unsolved if one.never]
     yield from _left("No check for", [one for one in found.unsolved if not one.never], found)
-    yield from _left("No observation in these tests can kill", never, found)
+    yield from _left("No check in these tests can kill", never, found)
     if found.dropped:
         yield heading(f"Dropped: {plural(len(found.dropped), 'check')} that failed the proof")
         for dropped in found.dropped[:_DROPPED]:
@@ -50,33 +50,16 @@ def _suggestion_parts(found: Suggestions) -> Iterator[RenderableType]:
 def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
     """A check: the assertion, how sure it is, and what it kills."""
     yield one.statement
-    yield f"{one.moment}; {_band(one)}"
-    yield f"false alarms: {_alarms(one)}"
+    seen = f"{plural(one.runs, 'run')} of the original"
+    yield f"{seen} spread {one.spread:.3g}" if one.spread else f"equal in {seen}"
+    yield (
+        f"false alarms: none in {plural(one.fresh, 'new seed')} "
+        f"(so at most {100 * one.unseen:.2g} % of runs, 95 % confidence)"
+    )
     yield f"kills {_kills(one, found)}"
     if one.by_hand:
-        yield "another tool makes this test, so this is to be added by hand where it ends:"
+        yield "another tool makes this test; add these lines by hand where it ends:"
         yield from (f"  {line}" for line in one.by_hand.splitlines())
-
-
-def _band(one: Suggestion) -> str:
-    if one.tolerance is None or not one.spread:
-        return f"equal in {plural(one.runs, 'run')} of the original"
-    factor = f", {one.factor:.1f} standard deviations" if one.factor is not None else ""
-    return (
-        f"within {one.tolerance:g} ({one.band}{factor}); {plural(one.runs, 'run')} of the original "
-        f"spread {one.spread:.3g}"
-    )
-
-
-def _alarms(one: Suggestion) -> str:
-    seen = f"none in {one.fresh} fresh seeds, which alone shows at most {_share_text(one.unseen)}"
-    if one.factor is not None:
-        return f"at most {_share_text(one.alarm)} of runs if the spread is normal; {seen} (95 % confidence)"
-    return f"{seen}; the {one.runs} runs before show at most {_share_text(one.alarm)} (95 % confidence)"
-
-
-def _share_text(share: float) -> str:
-    return f"{100 * share:.2g} %"
 
 
 def _kills(one: Suggestion, found: Suggestions) -> str:
@@ -115,7 +98,7 @@ def _would_catch(result: MutantResult, found: Suggestions | None) -> Iterator[st
     mutant = result.mutant
     one = _check_for(result, found)
     if one is not None and found is not None:
-        yield f"at the end of {one.test}:" if one.moment.startswith("end") else f"in {one.test}:"
+        yield f"at the end of {one.test}:"
         yield from lines_of(one, found)
         if not one.by_hand:
             yield "`mutabot suggest` prints it as a diff."
@@ -124,9 +107,12 @@ def _would_catch(result: MutantResult, found: Suggestions | None) -> Iterator[st
     if mutant.id in reasons:
         yield f"none was found: {reasons[mutant.id]}"
     elif result.indistinguishable:
-        yield "nothing differs that was compared: it needs another probe or another test, or is no fault"
+        yield (
+            "No measured difference. Add a probe or a test that would show one, or accept it as an "
+            "equivalent mutant."
+        )
     else:
-        yield f"`mutabot suggest --only {mutant.number}` looks for one, and proves it"
+        yield f"Run `mutabot suggest --only {mutant.number}` to search for a check and verify it"
 
 
 def _check_for(result: MutantResult, found: Suggestions | None) -> Suggestion | None:

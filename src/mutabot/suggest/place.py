@@ -10,7 +10,8 @@ import ast
 from collections.abc import Sequence
 
 from mutabot.frozen import frozen
-from mutabot.suggest.project import Project
+
+from .project import Project
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -40,21 +41,6 @@ class Place:
 
 
 @frozen
-class Watch:
-    """What looks after every command on the way of a test.
-
-    Attributes:
-        name: of the list in which it is kept.
-        look: expression that is looked at; ``args[0]`` in it is the object that was commanded.
-        commands: each an expression of its owner and its name there.
-    """
-
-    name: str
-    look: str
-    commands: tuple[tuple[str, str], ...]
-
-
-@frozen
 class Addition:
     """What is added to the end of a test.
 
@@ -63,14 +49,12 @@ class Addition:
         lines: statements.
         uses: names of the place that the statements use.
         imports: what they need.
-        watch: what they need to be there on the way of the test, or None.
     """
 
     place: Place
     lines: tuple[str, ...]
     uses: tuple[str, ...] = ()
     imports: tuple[str, ...] = ()
-    watch: Watch | None = None
 
 
 def place_of(project: Project, test: str) -> Place | None:
