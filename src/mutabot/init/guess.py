@@ -19,6 +19,7 @@ from .words import (
     KINDS,
     MODES,
     OUTPUT,
+    READERS,
     REPLIES,
     SUBJECTS,
     TURNS,
@@ -35,13 +36,23 @@ Table = dict[str, Any]
 
 _AXIS = re.compile(r"(?P<delta>d|delta_?|offset_?)?(?P<axis>[xyz])\d?")
 _TURN = re.compile(r"(?:d|delta_?)?(?:theta|rot|rotation|angle|euler|r|w)_?(?P<axis>[xyz])")
+_RATE = re.compile(r"v_?(?P<axis>[xyz])")
 _NAMED_TURNS = {"yaw": "z", "pitch": "y", "roll": "x", "heading": "z"}
 _JOINT = re.compile(r"(?:j|joint_?|q|axis_?)(?P<number>[1-9]|1[0-2])")
+_A_NUMBER = r"(-?\d+(?:\.\d+)?)"
+#: how docstrings write a range
+_RANGES = (
+    re.compile(rf"between\s+{_A_NUMBER}\s*(?:\([^)]*\))?\s+and\s+(?:the\s+default\s+)?{_A_NUMBER}"),
+    re.compile(rf"[\[(]{_A_NUMBER}\s*(?:\.\.\.?|,)\s*{_A_NUMBER}[\])]"),
+    re.compile(rf"{_A_NUMBER}\s*(?:~|to)\s*{_A_NUMBER}"),
+)
 #: more different numbers than these are no settings, but a scale
 _MOST_VALUES = 5
 _MOST_JOINTS = 12
 #: longer texts, and more of them, are no labels
 _LONGEST_LABEL, _MOST_LABELS = 30, 6
+#: arguments that say how to do it
+_HOW = frozenset({"wait", "blocking", "sync", "relative", "asynchronous", "is_radian", "timeout"})
 _ACTIONS = frozenset({"action", "actions", "act", "a", "u", "ctrl"})
 
 
@@ -76,7 +87,7 @@ class Setting:
         annotation: type as written, or empty.
         values: values that were seen, and what the program compares them with.
         names: the names of all arguments.
-        relative: what an argument ``relative`` said; None if there is none or it said both.
+        relative: what an argument ``relative`` said; empty if there is none.
     """
 
     words: tuple[str, ...] = ()
@@ -85,7 +96,7 @@ class Setting:
     annotation: str = ""
     values: Sequence[Any] = ()
     names: frozenset[str] = frozenset()
-    relative: bool | None = None
+    relative: frozenset[bool] = frozenset()
 
     @property
     def is_of_gripper(self) -> bool:
@@ -100,24 +111,24 @@ def guess_argument(name: str, setting: Setting) -> Guess:
     if noun == "none" or any(isinstance(value, str) for value in setting.values):
         return _chosen(setting)
     is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")
-    if setting.is_of_gripper and is_open:
+    if setting.is_of_gripper and is_open and (len(words) == 1 or not _are_truth(setting)):
         return _opening(noun, unit, name, setting)
     if _are_truth(setting):
-        is_output = noun == "switch" or (noun == "generic" and OUTPUT & {*setting.words, *setting.owner})
+        is_output = (noun == "switch" and len(words) == 1) or (
+            noun == "generic" and OUTPUT & {*setting.words, *setting.owner}
+        )
         return Guess({"kind": "output", "values": [False, True]}) if is_output else Guess()
     if OUTPUT & {*setting.words, *setting.owner} and noun in ("generic", "switch"):
         return _output(setting)
     stem = "_".join(words)
     motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
+    limits = _documented_range(_about(name, setting.doc)) if noun == "generic" else None
+    if limits is not None and abs(limits[0]) in (0.0, 1.0) and limits[1] == 1.0:
+        return Guess({"kind": "output", "range": limits})
     if motion is not None:
         return _moved(*motion, unit, name, setting)
-    subject = noun_of(setting.words)
-    if (
-        noun not in KINDS
-        and noun in ("generic", "place", "")
-        and subject in KINDS
-        and len(setting.names) <= 1
-    ):
+    subject, is_only = noun_of(setting.words), len(setting.names - _HOW) <= 1
+    if noun in ("generic", "place", "") and subject in KINDS and is_only:
         noun = subject
     if noun in KINDS:
         kind, _, dimension = KINDS[noun]
@@ -147,6 +158,8 @@ def _by_name(noun: str, stem: str) -> tuple[str, str | None, str | None] | None:
     """Kind, axis and mode where the name alone shows a motion."""
     if match := _AXIS.fullmatch(stem):
         return "translation", match["axis"], "by" if match["delta"] else None
+    if match := _RATE.fullmatch(stem):
+        return "speed", match["axis"], None
     if match := _TURN.fullmatch(stem):
         return "rotation", match["axis"], None
     if match := _JOINT.fullmatch(stem):
@@ -173,16 +186,20 @@ def _moved(
     if kind not in ("translation", "rotation"):
         return measured(table, kind, unit, name, setting)
     guess = measured(table, "angle" if kind == "rotation" else "length", unit, name, setting)
+    if guess.table["kind"] != kind:
+        return guess
     mode = mode or _mode(setting)
     if mode is None:
         guess.questions.insert(0, 'a target (mode = "to") or a change (mode = "by")?')
     guess.table["mode"] = mode or "to"
+    if len(setting.relative) > 1:
+        guess.table["mode"] = {"argument": "relative", "true": "by", "false": "to"}
     return guess
 
 
 def _mode(setting: Setting) -> str | None:
-    if setting.relative is not None:
-        return "by" if setting.relative else "to"
+    if setting.relative:
+        return "by" if True in setting.relative else "to"
     told = {MODES[word] for word in setting.words if word in MODES}
     if len(told) == 1 or "by" in setting.words:
         return "by" if "by" in setting.words else told.pop()
@@ -195,9 +212,17 @@ def measured(table: Table, dimension: str, unit: str | None, name: str, setting:
     fitting = UNITS[dimension]
     if unit in fitting:
         return Guess({**table, "unit": unit})
-    said = units_in(_about(name, setting.doc), dimension) or units_in(setting.doc, dimension)
-    if len(said) == 1 or len(fitting) == 1:
-        return Guess({**table, "unit": said[0] if said else fitting[0]})
+    about = _about(name, setting.doc)
+    said = units_in(about, dimension)
+    limits = (
+        _documented_range(about) if not said and dimension in ("speed", "acceleration", "angle") else None
+    )
+    if limits is not None and limits[1] in (1.0, 100.0):
+        unit = "fraction" if limits[1] == 1.0 else "percent"
+        return Guess({"kind": "ratio", "unit": unit, "range": limits})
+    said = said or units_in(setting.doc, dimension)
+    if len(said) == 1:
+        return Guess({**table, "unit": said[0]})
     shown = _unit_by_size(dimension, setting.values) if not said else None
     if shown is not None:
         return Guess({**table, "unit": shown}, note="unit told by the values")
@@ -217,6 +242,12 @@ def _about(name: str, doc: str) -> str:
     return "\n".join(found)
 
 
+def _documented_range(text: str) -> list[float] | None:
+    """The least and greatest value that the docstring of an argument gives, if it gives one range."""
+    found = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
+    return list(found.pop()) if len(found) == 1 else None
+
+
 def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
     """The unit that numbers of this size have: no arm reaches 10 m, and 1.57 are no degrees."""
     numbers = [
@@ -225,7 +256,7 @@ def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
     largest = max(numbers, default=0.0)
     is_whole = all(float(number).is_integer() for number in numbers)
     if dimension == "length":
-        return "m" if 0 < largest < 2 and not is_whole else None if largest < 100 else "mm"
+        return "m" if 0 < largest < 2 and not is_whole else "mm" if largest >= 1000 else None
     if dimension == "angle":
         return "deg" if largest > 6.5 else "rad" if largest > 0 and not is_whole else None
     if dimension == "time":
@@ -246,7 +277,12 @@ def _opening(noun: str, unit: str | None, name: str, setting: Setting) -> Guess:
     )
     if len(values) >= 2 and not is_scale and all(value in (0, 1) for value in values):
         return Guess({"kind": "opening", "values": values})
-    said = [unit] if unit else units_in(_about(name, setting.doc), "length")
+    about = _about(name, setting.doc)
+    said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about)
+    if limits in ([0.0, 1.0], [0.0, 100.0]) and not said:
+        return Guess(
+            {"kind": "opening", "unit": "fraction" if limits[1] == 1.0 else "percent", "range": limits}
+        )
     table: Table = {"kind": "opening", **({"unit": said[0]} if said else {}), "range": ["…", "…"]}
     asked = "what is fully closed, what is fully open?"
     return Guess(table, [asked if said else f"{asked} in which unit (fraction, percent, mm, m)?"])
@@ -270,12 +306,15 @@ def _chosen(setting: Setting) -> Guess:
 def guess_reading(name: str, setting: Setting) -> Guess:
     """What a result, or the part of it with this name, means."""
     words, unit = _without_unit(words_of(name))
+    while len(words) > 1 and words[0] in READERS:
+        words = words[1:]
     noun, stem = noun_of(words), "_".join(words)
     about = {*words, *setting.words}
-    is_reply = about & HOUSEKEEPING and (words[:1] == ("is",) or REPLIES & set(setting.owner))
+    is_predicate = bool({"is", "has", "can"} & about)
+    is_reply = about & HOUSEKEEPING and (is_predicate or REPLIES & set(setting.owner))
     if noun == "none" or INPUTS & set(setting.owner) or is_reply:
         return Guess()
-    if _are_truth(setting) or words[:1] in (("is",), ("has",), ("can",)):
+    if _are_truth(setting) or (is_predicate and not setting.values):
         return Guess({"kind": "flag"})
     if noun == "label" or setting.annotation == "str" or setting.annotation.startswith("Literal"):
         return _label(setting)
@@ -321,7 +360,11 @@ def guess_elements(
     if noun in ("none", "acceleration", "force", "torque", "time") or verb == "speed" or noun == "speed":
         return _speeds(length, setting) if "speed" in (verb, noun) else {}
     for about, told in ((words, noun), (setting.words, verb)):
-        joints = told == "joints" or {"movej", "servoj", "getj", "j"} & set(about)
+        joints = (
+            told == "joints"
+            or (told == "angle" and length > 3)
+            or {"movej", "servoj", "getj", "j"} & set(about)
+        )
         if joints and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
             axis = "j1" if length == 1 else f"j1..j{length}"
             return {f"[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
@@ -329,7 +372,7 @@ def guess_elements(
             return {
                 "[0:3]": Guess({"kind": "euler", "order": "…", "unit": "rad"}, ["which order, which unit?"])
             }
-        if told == "place" and length in (2, 3, 6, 7):
+        if told == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
             return _pose(name, length, setting, written)
     return {}
 

@@ -12,7 +12,7 @@ from mutabot.border.watch import Call, Part
 from .commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
 from .guess import Guess, Setting, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
-from .words import COMMANDS, GRIPPER, HOUSEKEEPING, READERS, REPLIES, TALK, words_of
+from .words import COMMANDS, GRIPPER, HOUSEKEEPING, READERS, REPLIES, SETUP, TALK, words_of
 
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
 _PAIRS = (("open", "close"), ("grip", "release"), ("grasp", "release"), ("attach", "detach"), ("on", "off"))
@@ -62,7 +62,7 @@ class Proposal:
     @property
     def is_operation(self) -> bool:
         """Whether it can be proposed as it is."""
-        if self.call.problem or (self.call.is_property and self.arguments):
+        if self.call.problem or (self.call.is_property and self.arguments) or _is_setup(self.call):
             return False
         if self.call.told_by and self.message == self.call.told_by and self.reads_by_name:
             return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
@@ -96,7 +96,8 @@ def _proposal(call: Call, groups: Sequence[Sequence[Any]]) -> Proposal:
                 if values.always(part) or part.path == name:
                     proposal.arguments.update(_argument(name, part, call))
     by_name = proposal.message is None or proposal.reads_by_name
-    if by_name and not proposal.arguments and tells_commands(call):
+    if by_name and tells_commands(call) and (call.told_by != "self" or not proposal.arguments):
+        proposal.arguments = {}
         proposal.message, proposal.reads_by_name = call.told_by, is_read(call)
         proposal.patterns = commands_of(call, groups)
     elif proposal.message is not None:
@@ -114,6 +115,10 @@ def _is_housekeeping(call: Call) -> bool:
     """Whether it asks a reply, or a connection, how it is."""
     words = set(words_of(call.name))
     return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & set(words_of(call.owner))))
+
+
+def _is_setup(call: Call) -> bool:
+    return bool(SETUP & set(words_of(call.name)))
 
 
 def _is_command(call: Call) -> bool:
@@ -239,5 +244,5 @@ def _setting(call: Call, part: Part, annotation: str) -> Setting:
         annotation=annotation if "[" in annotation else annotation.rpartition(".")[2],
         values=part.values,
         names=frozenset(call.arguments),
-        relative=said.pop() if len(said) == 1 else None,
+        relative=frozenset(said),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-_WORD = re.compile(r"[A-Z]+(?![a-z])\d*|[A-Z]?[a-z]+\d*|\d+")
+_WORD = re.compile(r"(?<![A-Za-z])[A-Za-z]{1,2}\d+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
 def words_of(name: str) -> tuple[str, ...]:
@@ -54,20 +54,22 @@ COMMANDS = _words(
     "home park move movej movel movep movec go goto pick place grasp grip release open close wait "
     "sleep stop lift lower raise drop rotate turn translate attach detach push start feed insert "
     "press screw weld dock undock servo servoj servol speedj speedl step write jog drive set send "
-    "command reset enable disable ptp lin calibrate takeoff land fly up down left right forward "
+    "command enable disable ptp lin calibrate takeoff land fly up down left right forward "
     "forwards back backward backwards curve flip clockwise counterclockwise on off toggle blink "
     "emergency arm disarm pulse pause resume aspirate dispense"
 )
 READERS = _words(
     "read get getl getj query ask measure is has recv receive where locate detect scan actual current"
 )
+#: what is made ready before the robot does anything, and the clock of a simulator
+SETUP = _words("create connect disconnect load make init initialize configure register simulation safety")
 TALK = _words("log print say show info warn warning debug error display")
 #: predicates of replies and of connections, which no sensor reads
 HOUSEKEEPING = _words("error ok success connected alive valid failed exception")
 REPLIES = _words("response reply result error exception future pdu packet message status")
 #: what a person moves, and not the robot
-INPUTS = _words("joystick gamepad stick xbox keyboard mouse button")
-GRIPPER = _words("gripper grip hand finger fingers claw jaw vacuum suction grasp grasping hande robotiq")
+INPUTS = _words("joystick gamepad stick xbox keyboard mouse")
+GRIPPER = _words("gripper grip hand finger fingers claw jaw vacuum suction suck grasp grasping hande robotiq")
 OUTPUT = _words("output outputs digital signal valve relay lamp coil io do out led gpio solenoid")
 
 #: what a value is, by the last noun in its name
@@ -93,12 +95,13 @@ NOUNS = _by_word(
         "turned": "orientation rotvec rpy euler orn",
         "time": "seconds secs sec duration time delay dwell pause milliseconds t wait sleep",
         "opening": "opening openness gripper",
-        "switch": "on off enabled signal level active closed open state grip",
+        "switch": "on off enable enabled signal level active closed open state grip",
         "label": "color colour label kind type category",
         "generic": "value val command cmd setpoint x data",
         "action": "action actions act ctrl",
-        "none": "code status err errno id index idx port channel timeout name mode number num count blocking "
-        "radius gain gains limit limits size rgb lookahead key flag flags",
+        "none": "boot stamp timestamp mask rate axis code status err errno id index idx port channel "
+        "timeout name mode number num count blocking radius gain gains limit limits size rgb "
+        "lookahead key flag flags",
     }
 )
 #: which kind of quantity such a value is, written and read, and in which units

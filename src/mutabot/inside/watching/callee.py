@@ -20,8 +20,9 @@ from mutabot.model import ANY
 from mutabot.model.class_name import class_name
 from mutabot.model.values.signature import described_in, spell_signature, takes_anything
 
-#: what pybind11 writes for a default that is no literal, and in front of each overload
-_OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*1\. ", re.MULTILINE)
+#: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
+_OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)
+_UNNAMED, _NAMES = re.compile(r"\barg(\d+)\b"), re.compile(r"Parameter ``(\w+)``")
 
 
 @dataclass(frozen=True)
@@ -65,11 +66,26 @@ class Callee:
         return signature.replace(parameters=parameters), False
 
     def _documented(self) -> inspect.Signature | None:
+        """The signature in a docstring; of several overloads, that with most arguments."""
         text = _OBJECT.sub("...", getattr(_function(self.raw), "__doc__", None) or "")
-        overload = _OVERLOAD.search(text)
         name = self.target.rpartition(":")[2].rpartition(".")[2]
-        found = described_in(text[overload.end() :] if overload else text, name)
-        return None if found is None or takes_anything(found) else found
+        found = []
+        for part in _OVERLOAD.split(text):
+            names = dict(enumerate(_NAMES.findall(part)))
+            named = _UNNAMED.sub(lambda match, names=names: names.get(int(match[1]), match[0]), part)
+            signature = described_in(named, name)
+            if signature is not None and not takes_anything(signature):
+                found.append(signature)
+        return max(found, key=lambda one: len(one.parameters), default=None)
+
+
+def meant_by(kind: type, name: str) -> Callee | None:
+    """The method ``name`` of a class that a mock or a fake stands for, even if a patch hides the class."""
+    owner = next((one for one in kind.__mro__ if name in vars(one)), None)
+    if owner is None or "<" in owner.__qualname__:
+        return None
+    raw = vars(owner)[name]
+    return Callee(f"{class_name(owner)}.{name}", raw, owner, _file_of(raw), stands_in=True)
 
 
 def method_of(value: Any, name: str) -> Callee | None:
@@ -107,8 +123,9 @@ def function_of(found: Any, spelt: str = "") -> Callee | None:
     if not isinstance(found, FunctionType | BuiltinFunctionType) and not hasattr(found, "__wrapped__"):
         return None
     holder = found.__self__ if isinstance(found, BuiltinFunctionType) else None
-    if not isinstance(holder, ModuleType | None) and type(holder).__name__ != "PyCapsule":
-        return None  # a method of a type written in C; pybind11 makes functions of capsules
+    is_bound = not isinstance(holder, ModuleType | None)
+    if is_bound and not type(holder).__name__.startswith(("PyCapsule", "pybind11")):
+        return None  # a method of a type written in C; those of pybind11 are bound to its own records
     names = [f"{found.__module__}:{getattr(found, '__qualname__', '')}", spelt]
     made = (_nameable(name, found, None) for name in names if name)
     return next((callee for callee in made if callee is not None), None)
@@ -147,9 +164,12 @@ def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:
         return None
     if found is not raw:
         return None
+    return Callee(target, raw, owner, _file_of(raw))
+
+
+def _file_of(raw: Any) -> str:
     code = getattr(inspect.unwrap(_function(raw)), "__code__", None)
-    file = os.path.realpath(code.co_filename) if code is not None else ""
-    return Callee(target, raw, owner, file)
+    return os.path.realpath(code.co_filename) if code is not None else ""
 
 
 def _function(raw: Any) -> Any:

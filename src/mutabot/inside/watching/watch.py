@@ -28,7 +28,7 @@ from mutabot.inside.text import loading, scripts
 from mutabot.inside.text.stand_ins import is_mock
 from mutabot.model.class_name import class_name
 
-from .callee import Callee, any_method, described, function_of, method_of
+from .callee import Callee, any_method, described, function_of, meant_by, method_of
 from .names import NamesSeen
 from .values import look, plain
 
@@ -269,19 +269,16 @@ class Watch:
         mock = sys.modules.get("unittest.mock")
         if mock is not None and is_mock(mock, value):
             kind = vars(value).get("_spec_class") or self._patched(value._extract_mock_name(), name)
-            meant = method_of(kind, name) if kind is not None else None
-            return replace(meant, stands_in=True) if meant is not None else any_method(name)
+            return (meant_by(kind, name) if kind is not None else None) or any_method(name)
         if mock is not None and is_mock(mock, found) and isinstance(value, type | ModuleType):
-            where = value.__name__ if isinstance(value, ModuleType) else None
-            target = f"{where}:{name}" if where else f"{class_name(value)}.{name}"  # type: ignore[arg-type]
-            return Callee(target, None, None, "", stands_in=True)
+            where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
+            is_class = name[:1].isupper()
+            return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
         if callee is None or callee.owner is None or callee.file not in self._tests:
             return callee
-        for kind in callee.owner.__mro__[1:]:
-            meant = method_of(kind, name)
-            if meant is not None and meant.file not in self._tests:
-                return replace(meant, stands_in=True)
-        return any_method(name, callee)
+        meant = (meant_by(kind, name) for kind in callee.owner.__mro__[1:-1])
+        robots = next((one for one in meant if one is not None and one.file not in self._tests), None)
+        return robots or any_method(name, callee)
 
     def _patched(self, spelt: str, name: str) -> type | None:
         """The class that a mock of this name stands for: the only one of that name with such a method."""
