@@ -256,7 +256,8 @@ def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
     largest = max(numbers, default=0.0)
     is_whole = all(float(number).is_integer() for number in numbers)
     if dimension == "length":
-        return "m" if 0 < largest < 2 and not is_whole else "mm" if largest >= 1000 else None
+        least = 100 if any(isinstance(one, list) for one in values) else 1000  # a list is the pose of an arm
+        return "m" if 0 < largest < 2 and not is_whole else "mm" if largest >= least else None
     if dimension == "angle":
         return "deg" if largest > 6.5 else "rad" if largest > 0 and not is_whole else None
     if dimension == "time":
@@ -306,15 +307,15 @@ def _chosen(setting: Setting) -> Guess:
 def guess_reading(name: str, setting: Setting) -> Guess:
     """What a result, or the part of it with this name, means."""
     words, unit = _without_unit(words_of(name))
+    about = {*words, *setting.words}
     while len(words) > 1 and words[0] in READERS:
         words = words[1:]
     noun, stem = noun_of(words), "_".join(words)
-    about = {*words, *setting.words}
     is_predicate = bool({"is", "has", "can"} & about)
     is_reply = about & HOUSEKEEPING and (is_predicate or REPLIES & set(setting.owner))
     if noun == "none" or INPUTS & set(setting.owner) or is_reply:
         return Guess()
-    if _are_truth(setting) or (is_predicate and not setting.values):
+    if _are_truth(setting) or (is_predicate and all(value in (0, 1) for value in setting.values)):
         return Guess({"kind": "flag"})
     if noun == "label" or setting.annotation == "str" or setting.annotation.startswith("Literal"):
         return _label(setting)

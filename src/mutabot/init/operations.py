@@ -95,6 +95,7 @@ def _proposal(call: Call, groups: Sequence[Sequence[Any]]) -> Proposal:
             for part in values.parts.values():
                 if values.always(part) or part.path == name:
                     proposal.arguments.update(_argument(name, part, call))
+    _share_units(proposal.arguments)
     by_name = proposal.message is None or proposal.reads_by_name
     if by_name and tells_commands(call) and (call.told_by != "self" or not proposal.arguments):
         proposal.arguments = {}
@@ -109,6 +110,16 @@ def _proposal(call: Call, groups: Sequence[Sequence[Any]]) -> Proposal:
             # what a command answers says whether it was carried out; no sensor reads it
             proposal.result = {}
     return proposal
+
+
+def _share_units(guesses: dict[str, Guess]) -> None:
+    """Lengths, and angles, of one call have one unit: what tells that of one tells that of all."""
+    for kind in ("translation", "rotation"):
+        some = [guess for guess in guesses.values() if guess.table["kind"] == kind]
+        units = {guess.table["unit"] for guess in some if guess.is_sure}
+        for guess in some if len(units) == 1 else ():
+            if guess.questions and guess.questions[0].startswith("the unit"):
+                guess.table["unit"], guess.questions = next(iter(units)), guess.questions[1:]
 
 
 def _is_housekeeping(call: Call) -> bool:

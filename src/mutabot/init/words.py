@@ -62,7 +62,7 @@ READERS = _words(
     "read get getl getj query ask measure is has recv receive where locate detect scan actual current"
 )
 #: what is made ready before the robot does anything, and the clock of a simulator
-SETUP = _words("create connect disconnect load make init initialize configure register simulation safety")
+SETUP = _words("create connect disconnect load make init initialize configure simulation reset safety")
 TALK = _words("log print say show info warn warning debug error display")
 #: predicates of replies and of connections, which no sensor reads
 HOUSEKEEPING = _words("error ok success connected alive valid failed exception")
