@@ -6,15 +6,16 @@ Units and axes are those of REP 103. Where no convention is known of a type, the
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from mutabot.border.watch import Part, Use, Values
 from mutabot.model.named import Form
 
 from .guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
 from .layout import Unreached
-from .words import GRIPPER, VERBS, words_of
+from .words import GRIPPER, READERS, VERBS, words_of
 
 Meant = dict[str, Guess]
 
@@ -177,20 +178,18 @@ def _described(use: Use) -> Iterator[Described]:
 
 
 _HEADER = "std_msgs/Header"
-_POINTS = frozenset({"geometry_msgs/Point", "geometry_msgs/Point32"})
+_POINTS = frozenset({"geometry_msgs/Point", "geometry_msgs/Point32", "geometry_msgs/Pose2D"})
 _TRANSLATION = ("geometry_msgs/Transform", "translation")
-#: holders of speeds
-_SPEEDS = "geometry_msgs/Twist"
+_TWIST = "geometry_msgs/Twist"
+_GRIPPER = ("control_msgs/GripperCommand", "position")
+_RANGE = ("sensor_msgs/Range", "range")
+_JOINTS = {("sensor_msgs/JointState", "position"), ("trajectory_msgs/JointTrajectoryPoint", "positions")}
 #: types whose fields are as conventions say, or unknown; their names alone tell nothing
 _STANDARD = re.compile(r"(?:geometry|sensor|nav|diagnostic|actionlib|action|visualization|shape)_msgs/.*")
-_JOINTS = {
-    ("sensor_msgs/JointState", "position"),
-    ("trajectory_msgs/JointTrajectoryPoint", "positions"),
-}
 _MOST_JOINTS = 12
 _BYTES = ("uint8[", "char[", "byte[", "octet[", "sequence<uint8", "sequence<octet")
+_MOMENTS = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
 _BY = frozenset({"by", "relative", "rel", "offset", "shift", "jog", "delta", "step", "increment"})
-_GETTERS = frozenset({"get", "read", "query", "is", "has", "where", "locate", "detect", "measure", "lookup"})
 
 
 @dataclass(frozen=True)
@@ -225,20 +224,69 @@ class Place:
     @property
     def tells_nothing(self) -> bool:
         """Whether it is the answer to a command, which says how that went."""
-        return self.form is Form.CALL and not self.is_written and not _GETTERS & set(self.words)
+        return self.form is Form.CALL and not self.is_written and not READERS & set(self.words)
 
 
 def meaning(part: Part, place: Place) -> Meant:
     """What a part means, by path; an empty guess for a path of which nothing tells, nothing for the whole."""
     if place.tells_nothing:
         return {}
-    for rule in _RULES:
-        found = rule(part, place)
-        if found is not None:
-            return found
-    if part.within and _STANDARD.fullmatch(part.within[-1][0]):
+    field_ = part.within[-1] if part.within else ("", "")
+    if part.type == "geometry_msgs/Quaternion":
+        return {part.path: Guess({"kind": "quaternion"})}
+    if field_[0] == _HEADER:
+        is_set = field_[1] in ("frame_id", "stamp") and any(part.values)
+        return {part.path: Guess({"kind": field_[1]})} if is_set else {}
+    if field_ in _JOINTS and part.length:
+        return _joints(part, part.length, place)
+    guess = _by_type(part, field_, place)
+    if guess is not None:
+        return {part.path: guess}
+    if _STANDARD.fullmatch(field_[0]):
         return {}
     return by_name(part, place.words, is_written=place.is_written)
+
+
+def _by_type(part: Part, field_: tuple[str, str], place: Place) -> Guess | None:
+    """What a number means by the types that hold it; None if no convention tells."""
+    holder, name = field_
+    around = part.within[-2] if len(part.within) > 1 else ("", "")
+    if holder in _POINTS or (holder == "geometry_msgs/Vector3" and around == _TRANSLATION):
+        return _motion("rotation" if name == "theta" else "translation", name, place)
+    if around[0] == _TWIST:  # a speed, unless the name says that a relative move is sent in it
+        turns = around[1] == "angular"
+        if place.is_written and place.is_by:
+            return _motion("rotation" if turns else "translation", name, place)
+        return Guess(_framed({"kind": "speed", "axis": name, "unit": "rad/s" if turns else "m/s"}, place))
+    if field_ == _GRIPPER and place.is_written:
+        table: Table = {"kind": "opening", "unit": "m", "range": ["…", "…"]}
+        return Guess(table, ["how far is it fully closed, and fully open?"])
+    return Guess({"kind": "distance", "unit": "m"}) if field_ in (_GRIPPER, _RANGE) else None
+
+
+def _motion(kind: str, name: str, place: Place) -> Guess:
+    """Where something is, or is to be."""
+    turns = kind == "rotation"
+    axis, unit = "z" if name == "theta" else name, "rad" if turns else "m"
+    read = "orientation" if turns else "position"
+    table = _framed({"kind": kind if place.is_written else read, "axis": axis, "unit": unit}, place)
+    return Guess({**table, "mode": "by" if place.is_by else "to"} if place.is_written else table)
+
+
+def _framed(table: Table, place: Place) -> Table:
+    return {**table, "frame": place.frame} if place.frame else table
+
+
+def _joints(part: Part, count: int, place: Place) -> Meant:
+    axis = "j1" if count == 1 else f"j1..j{count}"
+    path = f"{part.path}[0]" if count == 1 else f"{part.path}[0:{count}]"
+    written = {"kind": "rotation", "axis": axis, "unit": "rad", "mode": "to"}
+    table = written if place.is_written else {"kind": "angle", "axis": axis, "unit": "rad"}
+    return {path: Guess(table)} if count <= _MOST_JOINTS else {}
+
+
+def _is_header(part: Part, name: str) -> bool:
+    return bool(part.within) and part.within[-1] == (_HEADER, name)
 
 
 def is_nothing(part: Part, place: Place) -> bool:
@@ -247,101 +295,11 @@ def is_nothing(part: Part, place: Place) -> bool:
         return True
     if any(isinstance(value, str) for value in part.values):
         return not place.is_written and bool(part.within) and part.within[-1] != ("std_msgs/String", "data")
-    if part.type in ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration"):
-        return True
-    return part.type.startswith(_BYTES) or (not part.values and not part.length)
-
-
-def _header(part: Part, place: Place) -> Meant | None:
-    if not part.within or part.within[-1][0] != _HEADER:
-        return None
-    name = part.within[-1][1]
-    is_set = name in ("frame_id", "stamp") and any(part.values)
-    return {part.path: Guess({"kind": name})} if is_set else {}
-
-
-def _is_header(part: Part, name: str) -> bool:
-    return bool(part.within) and part.within[-1] == (_HEADER, name)
-
-
-def _quaternion(part: Part, place: Place) -> Meant | None:
-    return {part.path: Guess({"kind": "quaternion"})} if part.type == "geometry_msgs/Quaternion" else None
-
-
-def _coordinate(part: Part, place: Place) -> Meant | None:
-    """A coordinate of a point, of a transform's translation, or of a plane's pose."""
-    holder, name = part.within[-1] if part.within else ("", "")
-    if holder == "geometry_msgs/Pose2D":
-        return {part.path: _placed("rotation" if name == "theta" else "translation", name, place)}
-    is_translation = holder == "geometry_msgs/Vector3" and part.within[-2:-1] == (_TRANSLATION,)
-    if holder in _POINTS or is_translation:
-        return {part.path: _placed("translation", name, place)}
-    return None
-
-
-def _placed(kind: str, name: str, place: Place) -> Guess:
-    """Where something is, or is to be."""
-    unit, axis = ("rad", "z") if kind == "rotation" else ("m", name)
-    if not place.is_written:
-        read = "orientation" if kind == "rotation" else "position"
-        return Guess(_framed({"kind": read, "axis": axis, "unit": unit}, place))
-    table = _framed({"kind": kind, "axis": axis, "unit": unit}, place)
-    return Guess({**table, "mode": "by" if place.is_by else "to"})
-
-
-def _speed(part: Part, place: Place) -> Meant | None:
-    """A part of a ``Twist``: a speed, unless the name says that a relative move is sent in it."""
-    if len(part.within) < 2 or part.within[-2][0] != _SPEEDS:
-        return None
-    turns, axis = part.within[-2][1] == "angular", part.within[-1][1]
-    if place.is_written and place.is_by:
-        kind, unit = ("rotation", "rad") if turns else ("translation", "m")
-        table = _framed({"kind": kind, "axis": axis, "unit": unit}, place)
-        return {part.path: Guess({**table, "mode": "by"})}
-    unit = "rad/s" if turns else "m/s"
-    return {part.path: Guess(_framed({"kind": "speed", "axis": axis, "unit": unit}, place))}
-
-
-def _framed(table: Table, place: Place) -> Table:
-    return {**table, "frame": place.frame} if place.frame else table
-
-
-def _joints(part: Part, place: Place) -> Meant | None:
-    if not part.within or part.within[-1] not in _JOINTS or not part.length:
-        return None
-    if part.length > _MOST_JOINTS:
-        return {}
-    axis = "j1" if part.length == 1 else f"j1..j{part.length}"
-    path = f"{part.path}[0]" if part.length == 1 else f"{part.path}[0:{part.length}]"
-    if place.is_written:
-        return {path: Guess({"kind": "rotation", "axis": axis, "unit": "rad", "mode": "to"})}
-    return {path: Guess({"kind": "angle", "axis": axis, "unit": "rad"})}
-
-
-def _finger(part: Part, place: Place) -> Meant | None:
-    if not part.within or part.within[-1] != ("control_msgs/GripperCommand", "position"):
-        return None
-    if not place.is_written:
-        return {part.path: Guess({"kind": "distance", "unit": "m"})}
-    table: Table = {"kind": "opening", "unit": "m", "range": ["…", "…"]}
-    return {part.path: Guess(table, ["how far is it fully closed, and fully open?"])}
-
-
-def _range(part: Part, place: Place) -> Meant | None:
-    is_range = bool(part.within) and part.within[-1] == ("sensor_msgs/Range", "range")
-    return (
-        {part.path: Guess({"kind": "distance", "unit": "m"})} if is_range and not place.is_written else None
-    )
-
-
-_RULES: tuple[Callable[[Part, Place], Meant | None], ...] = (
-    _header, _quaternion, _coordinate, _speed, _joints, _finger, _range,
-)  # fmt: skip
+    return part.type in _MOMENTS or part.type.startswith(_BYTES) or not (part.values or part.length)
 
 
 #: names of fields that say nothing: the name of the topic or service does
 _EMPTY = frozenset({"", "data", "value"})
-_POSE_LENGTH = 6
 #: values that are settings, and no scale
 _LEAST_VALUES, _MOST_VALUES = 2, 5
 #: no joint turns further, rad
@@ -349,57 +307,43 @@ _FULL_TURN = 6.5
 
 
 def by_name(part: Part, words: Sequence[str], *, is_written: bool) -> Meant:
-    """What a part means, by path; an empty guess for a path of which nothing tells."""
-    own = part.within[-1][1] if part.within else ""
-    values = [value for value in part.values if value is not None]
-    if not values or part.length == 0:
+    """What a part means by the names of its field and topic, by path."""
+    own, values = part.within[-1][1] if part.within else "", part.values
+    setting = Setting(tuple(words), values=values)
+    if not values:
         return {}
     if part.length is not None:
-        return _elements(part, own, words, is_written=is_written)
+        is_joints = any(re.fullmatch(r"joints?|(?:move|servo)j", word) for word in words)
+        is_rate = re.search(r"vel|speed|acc|effort|torque", own) is not None
+        name = "joints" if is_joints and not is_rate else own
+        found = guess_elements(name, part.length, setting, written=is_written)
+        return {f"{part.path}{step}": _by_convention(guess, values) for step, guess in found.items()}
     if all(isinstance(value, bool) for value in values):
-        kind = "flag" if not is_written else "opening" if _is_of_gripper(words) else "output"
-        return {part.path: Guess({"kind": kind, **({"values": [False, True]} if is_written else {})})}
+        kind = "opening" if any(one in word for word in words for one in GRIPPER) else "output"
+        table: Table = {"kind": kind, "values": [False, True]} if is_written else {"kind": "flag"}
+        return {part.path: Guess(table)}
+    few = _LEAST_VALUES <= len(values) <= _MOST_VALUES
     if all(isinstance(value, str) for value in values):
-        is_label = not part.path and not is_written and _LEAST_VALUES <= len(values) <= _MOST_VALUES
-        return {"": Guess({"kind": "label", "values": values})} if is_label else {}
-    guess = _number(part, own, words, is_written=is_written)
-    return {part.path: guess} if guess.table else {}
-
-
-def _is_of_gripper(words: Sequence[str]) -> bool:
-    return any(one in word for word in words for one in GRIPPER)
-
-
-def _number(part: Part, own: str, words: Sequence[str], *, is_written: bool) -> Guess:
-    is_empty = own in _EMPTY
-    if is_empty and is_written and any(VERBS.get(word) == "duration" for word in words):
-        return Guess({"kind": "duration", "unit": "s"})
-    name = "_".join(words[-1:]) if is_empty else own
-    setting = Setting(tuple(words), values=part.values)
+        return (
+            {"": Guess({"kind": "label", "values": values})}
+            if few and not part.path and not is_written
+            else {}
+        )
+    if own in _EMPTY and is_written and any(VERBS.get(word) == "duration" for word in words):
+        return {part.path: Guess({"kind": "duration", "unit": "s"})}
+    name = "_".join(words[-1:]) if own in _EMPTY else own
     guess = guess_argument(name, setting) if is_written else guess_reading(name, setting)
-    if guess.table and guess.table.get("kind") not in ("label", "flag"):
-        return _by_convention(guess, part.values)
-    is_whole = bool(part.within) and all(isinstance(value, int) for value in part.values)
-    if is_empty and is_whole and _LEAST_VALUES <= len(part.values) <= _MOST_VALUES:
-        return Guess({"kind": "output" if is_written else "label", "values": list(part.values)})
-    return Guess()
+    if guess.table and guess.table["kind"] not in ("label", "flag"):
+        return {part.path: _by_convention(guess, values)}
+    if own in _EMPTY and few and part.within and all(isinstance(value, int) for value in values):
+        return {part.path: Guess({"kind": "output" if is_written else "label", "values": list(values)})}
+    return {}
 
 
-def _elements(part: Part, own: str, words: Sequence[str], *, is_written: bool) -> Meant:
-    assert part.length is not None
-    is_joints = any(re.fullmatch(r"joints?|(?:move|servo)j", word) for word in words)
-    is_rate = re.search(r"vel|speed|acc|effort|torque", own) is not None
-    setting = Setting(tuple(words), values=part.values)
-    found = guess_elements(
-        "joints" if is_joints and not is_rate else own, part.length, setting, written=is_written
-    )
-    numbers = [number for values in part.values for number in values]
-    return {f"{part.path}{step}": _by_convention(guess, numbers) for step, guess in found.items()}
-
-
-def _by_convention(guess: Guess, values: Sequence[object]) -> Guess:
+def _by_convention(guess: Guess, values: Sequence[Any]) -> Guess:
     """Angles of ROS are in radians, if nothing says otherwise and they are no larger than a turn."""
-    largest = max((abs(value) for value in values if isinstance(value, int | float)), default=0.0)
-    if guess.table.get("unit") == "rad" and guess.questions and largest <= _FULL_TURN:
+    numbers = [one for value in values for one in (value if isinstance(value, list) else [value])]
+    is_small = all(abs(one) <= _FULL_TURN for one in numbers if isinstance(one, int | float))
+    if guess.table.get("unit") == "rad" and is_small:
         guess.questions = [one for one in guess.questions if not one.startswith("the unit")]
     return guess

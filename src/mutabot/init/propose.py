@@ -52,6 +52,12 @@ class Known:
         targets = [*(one.target for one in self.vocabulary.operations), *([clock.tick] if clock else [])]
         return call.target in targets
 
+    def knows_arguments(self, call: Call) -> bool:
+        """Whether it says what arguments of such a call mean."""
+        return self.describes(call) and any(
+            one.arguments for one in self.vocabulary.operations if one.target.endswith(f".{call.name}")
+        )
+
     def reads(self, call: Call) -> bool:
         """Whether it has this callable as a reading."""
         return any(one.target == call.target and not one.command for one in self.vocabulary.operations)
@@ -149,9 +155,13 @@ class _Look:
         return vocabulary_text(self.found, self.others, self.program, self.unreached, self.named)
 
     def _new(self, calls: Sequence[Call]) -> list[Call]:
-        """Calls to be described here: those of shipped vocabularies only where nodes tell more."""
+        """Calls to be described here: those of shipped vocabularies only where the program tells more."""
         return [
-            call for call in calls if _says_more(call) or not any(one.describes(call) for one in self.known)
+            call
+            for call in calls
+            if not any(one.describes(call) for one in self.known)
+            or _nodes_tell(call)
+            or (_has_limits(call) and not any(one.knows_arguments(call) for one in self.known))
         ]
 
     def _add_readings(self, rest: Sequence[Proposal]) -> None:
@@ -211,12 +221,13 @@ def without_doubles(calls: Sequence[Call]) -> list[Call]:
     return [call for call in calls if not (call.target.startswith(ANY) and call.name in owned)]
 
 
-def _says_more(call: Call) -> bool:
-    """Whether the program tells more of a callable than a shipped vocabulary can."""
-    limited = any(part.limits for values in call.arguments.values() for part in values.parts.values())
-    return (call.name == "step" and limited) or (
-        tells_commands(call) and any(guess.table for _, guess in commands_of(call))
-    )
+def _nodes_tell(call: Call) -> bool:
+    return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
+
+
+def _has_limits(call: Call) -> bool:
+    """Whether it takes an action of which the environment tells least and greatest values."""
+    return any(part.limits for values in call.arguments.values() for part in values.parts.values())
 
 
 def _by_side(calls: Sequence[Call]) -> tuple[list[Call], list[Call]]:
