@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mutabot.border.watch import Part, Seen, Use, Values
-from mutabot.init.messages import Place, entries, meaning, unused
+from mutabot.init.messages import Place, entries, meaning
 from mutabot.init.observe import merged
 from mutabot.init.text import entry_text, vocabulary_text
 from mutabot.inside.watching.values import look, type_of
@@ -230,17 +230,6 @@ def test_an_entry_that_no_vocabulary_takes_is_a_comment() -> None:
     entry.is_taken = False
     text = vocabulary_text([], [], ["mission.py"], named=[entry])
     assert all(line.startswith("#") for line in text.splitlines() if line)
-
-
-def test_what_is_set_up_and_never_used_is_told() -> None:
-    found = uses(
-        [
-            raw("subscribe", "/heard"), raw("receive", "/heard", is_called_back=True),
-            raw("subscribe", "/never"), raw("subscribe", "/tf"), raw("subscribe", "/of_tests", of_tests=True),
-            raw("client", "/go"), raw("goal", "/go"), raw("advertise", "/go/cancel"),
-        ]
-    )  # fmt: skip
-    assert [(one.line, one.callee) for one in unused(found)] == [(7, "receive /never")]
 
 
 class Time:

@@ -360,17 +360,17 @@ def vendor(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "src/work/__init__.py": "",
         "src/work/cell.py": CELL,
         "tests/unit/test_cell.py": test,
+        "pytest.ini": "[pytest]\npythonpath = src\n",
     }
     folder = write(tmp_path_factory.mktemp("vendor"), files)
     propose(folder)
     return folder
 
 
-def test_a_program_below_src_is_found_and_made_importable(vendor: Path) -> None:
+def test_a_program_below_src_is_found(vendor: Path) -> None:
     configuration = load_configuration(vendor)
     assert configuration.program == ("src/work/cell.py",)
     assert configuration.tests == ("tests",)
-    assert configuration.pytest_args == ("-o", "pythonpath=. src")
 
 
 @pytest.mark.parametrize(
@@ -764,3 +764,74 @@ def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: P
     assert [one.name for one in operations["*:*.rotate"].arguments] == ["yaw_deg"]
     assert "seen on mocks or fakes, proposed as what they stand for: robot:Lamp.set_output" in lines
     assert "seen on mocks or fakes, proposed for any object that has them: move_by, rotate" in lines
+
+
+@pytest.mark.parametrize(
+    ("name", "called", "doc", "expected"),
+    [
+        ("speed", "forward", ":param float speed: between 0 (stopped) and 1 (full speed)", [0.0, 1.0]),
+        ("xSpeed", "arcadeDrive", ":param xSpeed: along the X axis [-1.0..1.0]", [-1.0, 1.0]),
+        ("speed", "send_angles", "speed : (int) 1 ~ 100", [1.0, 100.0]),
+    ],
+)
+def test_a_range_in_a_docstring_makes_a_speed_a_ratio(
+    name: str, called: str, doc: str, expected: list[float]
+) -> None:
+    table = guess_argument(name, Setting(words_of(called), doc=doc)).table
+    unit = "percent" if expected[1] > 1 else "fraction"
+    assert table == {"kind": "ratio", "unit": unit, "range": expected}
+
+
+def test_the_unit_is_that_of_the_arguments_own_line() -> None:
+    doc = ":param x: cartesian position x, (unit: mm)\n:param speed: move speed (mm/s, rad/s)\n"
+    setting = Setting(words_of("set_position"), doc=doc)
+    assert guess_argument("x", setting).table["unit"] == "mm"
+    assert guess_argument("speed", setting).questions == ["the unit: mm/s, rad/s?"]
+
+
+def test_where_relative_says_the_mode_it_decides(tmp_path: Path) -> None:
+    files = {
+        "robot.py": "class Arm:\n    def set_position(self, x, relative=False):\n        '''In mm.'''\n",
+        "mission.py": "def run(arm):\n    arm.set_position(300)\n    arm.set_position(-50, relative=True)\n",
+        "test_mission.py": "import mission, robot\ndef test_it(): mission.run(robot.Arm())\n",
+    }
+    propose(write(tmp_path, files))
+    assert (
+        'mode = { argument = "relative", true = "by", false = "to" }' in (tmp_path / "robot.toml").read_text()
+    )
+    assert operations(tmp_path)
+
+
+def test_replies_connections_and_what_is_created_are_no_operations(tmp_path: Path) -> None:
+    files = {
+        "robot.py": """
+            class Response:
+                def isError(self): return False
+
+            class Arm:
+                def is_connected(self): return True
+                def get_gripper_position(self): return 12.5
+                def get_position(self):
+                    '''In mm.'''
+                    return [0.5, 0.25, 0.125]
+                def move_to(self, x, y, z):
+                    '''In mm.'''
+                    return Response()
+
+            def create_arm(position): return Arm()
+        """,
+        "mission.py": """
+            import robot
+
+            def run():
+                arm = robot.create_arm([0.5, 0.5, 0.5])
+                if arm.is_connected():
+                    assert not arm.move_to(0.5, 0.25, 0.125).isError()
+                return arm.get_position(), arm.get_gripper_position()
+        """,
+        "test_mission.py": "import mission\ndef test_it(): mission.run()\n",
+    }
+    propose(write(tmp_path, files))
+    found = operations(tmp_path)
+    assert set(found) == {"robot:Arm.move_to", "robot:Arm.get_position"}
+    assert found["robot:Arm.move_to"].current == "robot:Arm.get_position"

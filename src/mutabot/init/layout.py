@@ -37,7 +37,6 @@ class Layout:
         program: files with the robot program.
         tests: files on the tests' side: tests, their helpers, conftest.
         arguments: pytest arguments that name the tests.
-        homes: folders that imports of the project's own modules start from.
         guessed: whether the program was guessed.
     """
 
@@ -45,7 +44,6 @@ class Layout:
     program: list[Path]
     tests: list[Path]
     arguments: list[str]
-    homes: list[Path]
     guessed: bool
 
     def relative(self, path: Path) -> str:
@@ -62,15 +60,14 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
     chosen = _named(root, given)
     tests = [path for path in files if _is_test_side(path.relative_to(root)) and path not in chosen]
     code = [path for path in files if path not in tests and path.name not in _NO_PROGRAMS]
-    homes = _homes(root, files, tests)
-    program = chosen or _guess_program(code, homes) or [path for path in tests if path.name != "conftest.py"]
+    program = chosen or _guess_program(code) or [path for path in tests if path.name != "conftest.py"]
     if not program:
         raise UsageError(
             f"{root}: there is no Python file here; name the files of the program: mutabot init FILE…"
         )
     others = [path for path in tests if path not in program]
     arguments = _arguments(root, tests)
-    return Layout(root, program, others, arguments, homes, guessed=not chosen)
+    return Layout(root, program, others, arguments, guessed=not chosen)
 
 
 def imported_modules(path: Path) -> set[str]:
@@ -125,15 +122,7 @@ def _named(root: Path, given: Sequence[Path]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def _homes(root: Path, files: Sequence[Path], tests: Sequence[Path]) -> list[Path]:
-    """Folders whose files are imported by their bare names: those that are no packages themselves."""
-    homes = [root, *([root / "src"] if (root / "src").is_dir() else [])]
-    homes += [path.parent for path in files if not (path.parent / "__init__.py").exists()]
-    outside = {path.parent for path in tests}
-    return [home for home in dict.fromkeys(homes) if home not in outside or home == root]
-
-
-def _guess_program(code: Sequence[Path], homes: Sequence[Path]) -> list[Path]:
+def _guess_program(code: Sequence[Path]) -> list[Path]:
     """Files that use others and are used by none of the program's side; by their names where that helps."""
     ends = {path: path.stem for path in code}
     imports = {path: {part for name in imported_modules(path) for part in name.split(".")} for path in code}
@@ -178,11 +167,6 @@ def compared_with(layout: Layout) -> list[list[Any]]:
             if isinstance(node, ast.Compare):
                 constants = [value for one in node.comparators for value in _constants(one)]
                 groups.setdefault(ast.unparse(node.left), []).extend(constants)
-            elif isinstance(node, ast.Match):
-                patterns = [one.pattern for one in node.cases]
-                values = [v for p in patterns for one in ast.walk(p) if isinstance(one, ast.MatchValue)
-                          for v in _constants(one.value)]  # fmt: skip
-                groups.setdefault(ast.unparse(node.subject), []).extend(values)
     return [list(dict.fromkeys(group)) for group in groups.values() if group]
 
 

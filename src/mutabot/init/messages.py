@@ -14,7 +14,6 @@ from mutabot.border.watch import Part, Use, Values
 from mutabot.model.named import Form
 
 from .guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
-from .layout import Unreached
 from .words import GRIPPER, READERS, VERBS, words_of
 
 Meant = dict[str, Guess]
@@ -43,19 +42,6 @@ _ENDINGS = {
 #: what the tests alone read is worth a word if they wait for it: it is what they judge by. What goes wrong in
 #: a callback of theirs, the client library may keep to itself
 _READINGS = frozenset({Form.RECEIVE, Form.TRANSFORM})
-
-
-#: what is set up before anything passes, and what passes then
-_BEFORE = {
-    Form.ADVERTISE: (Form.PUBLISH,),
-    Form.SUBSCRIBE: (Form.RECEIVE,),
-    Form.CLIENT: (Form.CALL, Form.GOAL),
-    Form.TIMER: (Form.TICK,),
-    Form.RATE: (Form.SLEEP,),
-}
-#: what the middleware sets up for itself, and for an action
-_OWN = frozenset({"/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/statistics"})
-_OF_ACTIONS = ("/goal", "/cancel", "/status", "/feedback", "/result")
 
 
 #: what the middleware itself does with names
@@ -135,22 +121,6 @@ def entries(found: Sequence[Use]) -> list[Entry]:
         known = {(part.table, part.path) for part in entry.parts}
         entry.parts += [part for part in _described(use) if (part.table, part.path) not in known]
     return [entry for entry in made.values() if not entry.of_tests or entry.has_meaning]
-
-
-def unused(found: Sequence[Use]) -> list[Unreached]:
-    """What the program sets up, and the tests let nothing pass there."""
-    passed = {(use.form, use.name) for use in found if not use.of_tests}
-    actions = {use.name for use in found if use.form in (Form.GOAL, Form.CLIENT)}
-    left = []
-    for use in found:
-        then = _BEFORE.get(use.form, ())
-        is_action = any(use.name == f"{name}{end}" for name in actions for end in _OF_ACTIONS)
-        if not then or use.of_tests or use.name in _OWN or is_action:
-            continue
-        if not any((form, use.name) in passed for form in then):
-            file, _, line = next(iter(use.sites)).rpartition(":")
-            left.append(Unreached(file, int(line), f"{then[0]} {use.name}"))
-    return left
 
 
 def _type(use: Use) -> str:

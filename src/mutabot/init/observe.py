@@ -25,7 +25,6 @@ from .layout import Layout
 LIMIT = 180.0
 #: what anonymous nodes of ROS 1 have behind their names: another number in each run
 _ANONYMOUS = re.compile(r"_\d+_\d{10,}(?=/|$)")
-_MISSING = re.compile(r"No module named '([\w.]+)'")
 
 
 @dataclass
@@ -35,36 +34,24 @@ class Observed:
     Attributes:
         seen: what all processes saw together.
         trouble: why the run tells less than it could; empty if it went well.
-        extra: pytest arguments that it needed.
     """
 
     seen: Seen = field(default_factory=Seen)
     trouble: str = ""
-    extra: list[str] = field(default_factory=list)
 
 
 def observe(layout: Layout, limit: float = LIMIT) -> Observed:
-    """Run the tests once and watch the program; once more with the import paths that were missing."""
-    found = _run(layout, [], limit)
-    seen = found.seen
-    if seen.outcomes or not any(_is_own(layout, text) for text in [*seen.problems, found.trouble]):
-        return found
-    paths = " ".join(_relative(layout.root, home) for home in layout.homes)
-    again = _run(layout, ["-o", f"pythonpath={paths}"], limit)
-    return again if again.seen.outcomes else found
-
-
-def _run(layout: Layout, extra: list[str], limit: float) -> Observed:
+    """Run the tests once and watch the program."""
     with TemporaryDirectory(ignore_cleanup_errors=True) as name:  # nodes may still write to their logs
         folder = Path(name)
         order, output, log = folder / "watch.json", folder / "seen.json", folder / "log.txt"
         order.write_text(json.dumps(_order(layout, output)), encoding="utf-8")
         own = ["-p", "mutabot.inside.watching.plugin", "--assert=plain"]
-        words = [*command([*layout.arguments, *extra], folder), *own]
+        words = [*command(layout.arguments, folder), *own]
         overdue = _wait(words, layout.root, order, log, limit)
         said = log.read_text(encoding="utf-8", errors="replace")
         seen = _read(output)
-        found = Observed(seen, extra=extra)
+        found = Observed(seen)
         if overdue:
             found.trouble = f"the tests took longer than {limit:.0f} s: only what was seen by then is known"
         elif not seen.outcomes:
@@ -140,20 +127,6 @@ def _merge(some: Values, others: Values) -> None:
         if known is not part:
             known.count += part.count
             known.values += [value for value in part.values if value not in known.values]
-
-
-def _is_own(layout: Layout, text: str) -> bool:
-    """Whether a module that is missing is one of the project's."""
-    return any(
-        (home / top).is_dir() or (home / f"{top}.py").is_file()
-        for missing in _MISSING.findall(text)
-        for top in [missing.partition(".")[0]]
-        for home in layout.homes
-    )
-
-
-def _relative(root: Path, path: Path) -> str:
-    return path.relative_to(root).as_posix()
 
 
 def _said(log: str) -> str:

@@ -16,7 +16,7 @@ from mutabot.vocabulary.load import shipped
 
 from .commands import commands_of, tells_commands
 from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached
-from .messages import Entry, entries, unused
+from .messages import Entry, entries
 from .observe import LIMIT, Observed, observe
 from .operations import Proposal, proposals
 from .text import questions_in, value_text, vocabulary_text
@@ -122,7 +122,6 @@ class _Look:
             self.found = [one for one in self.others if one.is_plain]
             self.others = [one for one in self.others if not one.is_plain]
         self.unreached: list[Unreached] = [
-            *unused(self.observed.seen.uses),
             *unreached(self.layout, self._reached()),
         ]
 
@@ -271,7 +270,7 @@ def _loads(text: str) -> bool:
 
 def _configuration(found: _Look) -> str:
     listed = {"program": found.program, "oracle": found.oracle, "tests": found.layout.arguments or ["tests"],
-              "pytest_args": found.observed.extra, "vocabulary": found.vocabulary}  # fmt: skip
+              "vocabulary": found.vocabulary}  # fmt: skip
     notes = {
         "program": "  # makes the robot's calls",
         "oracle": "  # reads from the robot for the tests' checks",
