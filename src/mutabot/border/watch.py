@@ -160,6 +160,7 @@ class Seen:
         reached: file, line and name of everything that was called; the name is empty for a plain one.
         outcomes: number of tests by outcome.
         problems: what failed, in pytest's words.
+        trouble: why the run tells less than it could; empty if it went well.
     """
 
     calls: list[Call] = field(default_factory=list)
@@ -167,3 +168,4 @@ class Seen:
     reached: list[tuple[str, int, str]] = field(default_factory=list)
     outcomes: dict[str, int] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
+    trouble: str = ""

@@ -10,17 +10,12 @@ from mutabot.border.watch import Call, Command, Part
 
 from .guess import Guess, Setting, guess_argument, guess_reading
 from .layout import with_compared
-from .words import words_of
+from .words import OPPOSITES, words_of
 
 #: names of arguments that hold a text command
 MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order"})
 _NUMBER = re.compile(r"(?<![\w{])[-+]?\d+(?:\.\d+)?(?!\w)")
 _FIELD = re.compile(r"\{(\w+):g\}")
-_OPPOSITES = (
-    ("lift", "drop"), ("raise", "lower"), ("up", "down"), ("pick", "release"), ("grip", "release"),
-    ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("left", "right"),
-    ("start", "stop"),
-)  # fmt: skip
 _FIELDS = {"lift": "height", "drop": "height", "turn": "angle", "rotate": "angle", "wait": "seconds"}
 _READS = re.compile(r"(?:^|_)(?:read|get)", re.IGNORECASE)
 #: arguments that say how to write rather than what
@@ -61,7 +56,7 @@ def _notation(text: str) -> str:
 
 
 def _opposite(notation: str, known: Sequence[str]) -> str | None:
-    for pair in _OPPOSITES:
+    for pair in OPPOSITES:
         for one, other in (pair, pair[::-1]):
             swapped = re.sub(rf"\b{one}\b", other, notation)
             if swapped != notation and swapped in known:

@@ -9,7 +9,7 @@ import re
 import signal
 import subprocess
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -27,20 +27,7 @@ LIMIT = 180.0
 _ANONYMOUS = re.compile(r"_\d+_\d{10,}(?=/|$)")
 
 
-@dataclass
-class Observed:
-    """What the run showed.
-
-    Attributes:
-        seen: what all processes saw together.
-        trouble: why the run tells less than it could; empty if it went well.
-    """
-
-    seen: Seen = field(default_factory=Seen)
-    trouble: str = ""
-
-
-def observe(layout: Layout, limit: float = LIMIT) -> Observed:
+def observe(layout: Layout, limit: float = LIMIT) -> Seen:
     """Run the tests once and watch the program."""
     with TemporaryDirectory(ignore_cleanup_errors=True) as name:  # nodes may still write to their logs
         folder = Path(name)
@@ -51,12 +38,11 @@ def observe(layout: Layout, limit: float = LIMIT) -> Observed:
         overdue = _wait(words, layout.root, order, log, limit)
         said = log.read_text(encoding="utf-8", errors="replace")
         seen = _read(output)
-        found = Observed(seen)
         if overdue:
-            found.trouble = f"the tests took longer than {limit:.0f} s: only what was seen by then is known"
+            seen.trouble = f"the tests took longer than {limit:.0f} s: only what was seen by then is known"
         elif not seen.outcomes:
-            found.trouble = "; ".join(seen.problems[:3]) or _said(said)
-        return found
+            seen.trouble = "; ".join(seen.problems[:3]) or _said(said)
+        return seen
 
 
 def _order(layout: Layout, output: Path) -> dict[str, Any]:

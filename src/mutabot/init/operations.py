@@ -12,10 +12,9 @@ from mutabot.border.watch import Call, Part
 from .commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
 from .guess import Guess, Setting, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
-from .words import COMMANDS, GRIPPER, HOUSEKEEPING, READERS, REPLIES, SETUP, TALK, words_of
+from .words import COMMANDS, GRIPPER, HOUSEKEEPING, OPPOSITES, READERS, REPLIES, SETUP, TALK, words_of
 
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
-_PAIRS = (("open", "close"), ("grip", "release"), ("grasp", "release"), ("attach", "detach"), ("on", "off"))
 #: which reading tells where something is that a motion of this kind moves
 _READ = {"translation": ("position",), "rotation": ("orientation", "angle")}
 
@@ -233,7 +232,7 @@ def _axes(guess: Guess) -> list[str]:
 
 def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
     head, mark, name = re.fullmatch(r"(?:(.*)([.:]))?(.*)", proposal.target).groups()  # type: ignore[union-attr]
-    for pair in _PAIRS:
+    for pair in OPPOSITES:
         for one, other in (pair, pair[::-1]):
             candidate = found.get(f"{head}{mark}{re.sub(rf'(?<![a-z]){one}(?![a-z])', other, name)}")
             if candidate is None or candidate is proposal:

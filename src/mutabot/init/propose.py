@@ -17,7 +17,7 @@ from mutabot.vocabulary.load import shipped
 from .commands import commands_of, tells_commands
 from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached
 from .messages import Entry, entries
-from .observe import LIMIT, Observed, observe
+from .observe import LIMIT, observe
 from .operations import Proposal, proposals
 from .text import questions_in, value_text, vocabulary_text
 
@@ -93,7 +93,7 @@ class _Look:
 
     Attributes:
         layout: where what lies.
-        observed: the watched run of the tests.
+        seen: the watched run of the tests.
         known: shipped vocabularies that fit it.
         named: proposed operations that have a name on a middleware.
         found: proposed operations that no shipped vocabulary has.
@@ -105,11 +105,11 @@ class _Look:
     def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
         self.layout = look(root, given)
         tell("running the tests once, to see what the program calls")
-        self.observed: Observed = observe(self.layout, limit)
+        self.seen = observe(self.layout, limit)
         self.program = [self.layout.relative(path) for path in self.layout.program]
-        self.calls = without_doubles([call for call in self.observed.seen.calls if call.sites])
+        self.calls = without_doubles([call for call in self.seen.calls if call.sites])
         self.known: list[Known] = known_vocabularies(self.layout, self.calls)
-        self.named: list[Entry] = entries(self.observed.seen.uses)
+        self.named: list[Entry] = entries(self.seen.uses)
         groups = compared_with(self.layout)
         mine, rest = _by_side([call for call in self.calls if not call.leads_to_names])
         self.found, self.others = proposals(self._new([call for call in mine if not call.own]), groups)
@@ -171,7 +171,7 @@ class _Look:
         targets = {proposal.target for proposal in self.found if proposal.is_reading}
         files = [
             where.rpartition(":")[0]
-            for call in self.observed.seen.calls
+            for call in self.seen.calls
             if call.target in targets or any(one.reads(call) for one in self.known)
             for where in call.sites
         ]
@@ -179,10 +179,8 @@ class _Look:
         self.oracle = [file for file in dict.fromkeys(files) if file not in self.program]
 
     def _reached(self) -> list[tuple[str, int, str]]:
-        places = [
-            (where.rpartition(":"), call.name) for call in self.observed.seen.calls for where in call.sites
-        ]
-        return [*((file, int(line), name) for (file, _, line), name in places), *self.observed.seen.reached]
+        places = [(where.rpartition(":"), call.name) for call in self.seen.calls for where in call.sites]
+        return [*((file, int(line), name) for (file, _, line), name in places), *self.seen.reached]
 
 
 def propose(
@@ -280,15 +278,15 @@ def _configuration(found: _Look) -> str:
 
 
 def _told(found: _Look, questions: int) -> list[str]:
-    observed, seen = found.observed, found.observed.seen
+    seen = found.seen
     how = " (guessed; to choose other files: mutabot init FILE…)" if found.layout.guessed else ""
     counts = ", ".join(f"{count} {outcome}" for outcome, count in seen.outcomes.items())
     lines = [f"program: {', '.join(found.program)}{how}"]
-    if observed.trouble:
-        lines.append(f"the tests could not be watched: {observed.trouble}")
+    if seen.trouble:
+        lines.append(f"the tests could not be watched: {seen.trouble}")
     if counts:
         lines.append(f"tests: {counts}; {_counted(found)}")
-    lines += [f"  {problem}" for problem in seen.problems[:3] if not observed.trouble]
+    lines += [f"  {problem}" for problem in seen.problems[:3] if not seen.trouble]
     hint = ""
     if (found.layout.root / "pyproject.toml").exists():
         hint = "; its lines may as well stand in pyproject.toml, under [tool.mutabot]"
@@ -312,7 +310,7 @@ def _number(count: int, noun: str) -> str:
 
 
 def _counted(found: _Look) -> str:
-    mine, rest = _by_side([call for call in found.observed.seen.calls if call.sites])
+    mine, rest = _by_side([call for call in found.seen.calls if call.sites])
     times = _number(sum(call.count for call in mine), "time")
     names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}
     more = f", the tests {len(rest)} more" if rest else ""

@@ -72,6 +72,13 @@ INPUTS = _words("joystick gamepad stick xbox keyboard mouse")
 GRIPPER = _words("gripper grip hand finger fingers claw jaw vacuum suction suck grasp grasping hande robotiq")
 OUTPUT = _words("output outputs digital signal valve relay lamp coil io do out led gpio solenoid")
 
+#: words that undo each other
+OPPOSITES = (
+    ("lift", "drop"), ("raise", "lower"), ("up", "down"), ("pick", "release"), ("grip", "release"),
+    ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("left", "right"),
+    ("start", "stop"), ("attach", "detach"),
+)  # fmt: skip
+
 #: what a value is, by the last noun in its name
 NOUNS = _by_word(
     {

@@ -36,9 +36,10 @@ def _suggestion_parts(found: Suggestions) -> Iterator[RenderableType]:
         yield heading(f"{number}  {one.test}")
         for line in lines_of(one, found):
             yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 3), expand=False)
+    left = [one for one in found.unsolved if not one.never]
     never = [one for one in found.unsolved if one.never]
-    yield from _left("No check for", [one for one in found.unsolved if not one.never], found)
-    yield from _left("No check in these tests can kill", never, found)
+    yield from _left(f"No check found for {plural(len(left), 'survivor')}", left, found)
+    yield from _left(f"{plural(len(never), 'survivor')} that no check in these tests can kill", never, found)
     if found.dropped:
         yield heading(f"Dropped: {plural(len(found.dropped), 'check')} that failed the proof")
         for dropped in found.dropped[:_DROPPED]:
@@ -79,7 +80,7 @@ def _kills(one: Suggestion, found: Suggestions) -> str:
 def _left(title: str, unsolved: Sequence[Unsolved], found: Suggestions) -> Iterator[RenderableType]:
     if not unsolved:
         return
-    yield heading(f"{title} {plural(len(unsolved), 'survivor')}")
+    yield heading(title)
     for one in unsolved:
         text = f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
         yield Padding(Text(plain(text), overflow="fold"), (0, 0, 0, 2), expand=False)
