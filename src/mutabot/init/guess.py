@@ -7,7 +7,7 @@ a distance along z. A guess with questions becomes a comment in the draft.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -31,11 +31,18 @@ from .words import (
     words_of,
 )
 
-#: a quantity as a vocabulary writes it
+#: a quantity as a vocabulary writes it; kind, axis and mode of a motion
 Table = dict[str, Any]
+Motion = tuple[str, str | None, str | None]
 
 _AXIS = re.compile(r"(?P<delta>d|delta_?|offset_?)?(?P<axis>[xyz])\d?")
 _TURN = re.compile(r"(?:d|delta_?)?(?:theta|rot|rotation|angle|euler|r|w)_?(?P<axis>[xyz])")
+#: kind, axis and mode of what is only named
+_NAMED: Mapping[str, Motion] = {
+    "angle": ("rotation", None, None),
+    "height": ("translation", "z", None),
+    "length": ("translation", None, "by"),
+}
 _RATE = re.compile(r"v_?(?P<axis>[xyz])")
 _NAMED_TURNS = {"yaw": "z", "pitch": "y", "roll": "x", "heading": "z"}
 _JOINT = re.compile(r"(?:j|joint_?|q|axis_?)(?P<number>[1-9]|1[0-2])")
@@ -46,6 +53,10 @@ _RANGES = (
     re.compile(rf"[\[(]{_A_NUMBER}\s*(?:\.\.\.?|,)\s*{_A_NUMBER}[\])]"),
     re.compile(rf"{_A_NUMBER}\s*(?:~|to)\s*{_A_NUMBER}"),
 )
+#: what libraries may scale to a share of its most
+_SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
+#: how the line of another argument begins
+_NEXT = re.compile(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)")
 #: more different numbers than these are no settings, but a scale
 _MOST_VALUES = 5
 _MOST_JOINTS = 12
@@ -112,7 +123,7 @@ def guess_argument(name: str, setting: Setting) -> Guess:
         return _chosen(setting)
     is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")
     if setting.is_of_gripper and is_open and (len(words) == 1 or not _are_truth(setting)):
-        return _opening(noun, unit, name, setting)
+        return _opening(unit, name, setting)
     if _are_truth(setting):
         is_output = (noun == "switch" and len(words) == 1) or (
             noun == "generic" and OUTPUT & {*setting.words, *setting.owner}
@@ -136,25 +147,24 @@ def guess_argument(name: str, setting: Setting) -> Guess:
     return Guess()
 
 
-def _by_verb(noun: str, stem: str, setting: Setting) -> tuple[str, str | None, str | None] | None:
+def _by_verb(noun: str, stem: str, setting: Setting) -> Motion | None:
     """Kind, axis and mode where the callable's verb decides, whatever its only number is called."""
     verb, subject = first(VERBS, setting.words), noun_of(setting.words)
     is_axis = _AXIS.fullmatch(stem) is not None
     is_vector = len({"x", "y", "z", "dx", "dy", "dz"} & setting.names) > 1
     if (noun in ("generic", "") or is_axis) and subject in SUBJECTS and verb is None and not is_vector:
         return KINDS[subject][0], stem if is_axis and stem != "x" else None, None
-    if verb in (None, "duration") or is_vector or noun not in ("generic", "length", "angle", "") or (
-        noun == "" and not is_axis
-    ):  # fmt: skip
+    is_amount = noun in ("generic", "length", "angle") or is_axis
+    if verb in (None, "duration") or is_vector or not is_amount:
         return None
     if verb == "rotation":
         return "rotation", "z" if TURNS & set(setting.words) else None, None
     axis = first(DIRECTIONS, setting.words)
-    is_named = axis is not None or noun in ("length", "generic")
-    return ("translation", axis, None) if is_named and not (is_axis and axis is None) else None
+    is_told = axis is not None or (noun in ("length", "generic") and not is_axis)
+    return ("translation", axis, None) if is_told else None
 
 
-def _by_name(noun: str, stem: str) -> tuple[str, str | None, str | None] | None:
+def _by_name(noun: str, stem: str) -> Motion | None:
     """Kind, axis and mode where the name alone shows a motion."""
     if match := _AXIS.fullmatch(stem):
         return "translation", match["axis"], "by" if match["delta"] else None
@@ -167,15 +177,7 @@ def _by_name(noun: str, stem: str) -> tuple[str, str | None, str | None] | None:
     turned = stem if stem in _NAMED_TURNS else stem.removeprefix("d")
     if turned in _NAMED_TURNS:
         return "rotation", _NAMED_TURNS[turned], None if turned == stem else "by"
-    if noun == "angle":
-        return "rotation", None, None
-    return (
-        ("translation", "z", None)
-        if noun == "height"
-        else ("translation", None, "by")
-        if noun == "length"
-        else None
-    )
+    return _NAMED.get(noun)
 
 
 def _moved(
@@ -214,9 +216,7 @@ def measured(table: Table, dimension: str, unit: str | None, name: str, setting:
         return Guess({**table, "unit": unit})
     about = _about(name, setting.doc)
     said = units_in(about, dimension)
-    limits = (
-        _documented_range(about) if not said and dimension in ("speed", "acceleration", "angle") else None
-    )
+    limits = _documented_range(about) if not said and dimension in _SCALED else None
     if limits is not None and limits[1] in (1.0, 100.0):
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "ratio", "unit": unit, "range": limits})
@@ -234,11 +234,8 @@ def _about(name: str, doc: str) -> str:
     lines, found = doc.splitlines(), []
     for index, line in enumerate(lines):
         if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line):
-            follows = lines[index + 1] if index + 1 < len(lines) else ""
-            found += [
-                line,
-                "" if re.match(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)", follows) else follows,
-            ]
+            found.append(line)
+            found += [one for one in lines[index + 1 : index + 2] if not _NEXT.match(one)]
     return "\n".join(found)
 
 
@@ -250,9 +247,8 @@ def _documented_range(text: str) -> list[float] | None:
 
 def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
     """The unit that numbers of this size have: no arm reaches 10 m, and 1.57 are no degrees."""
-    numbers = [
-        abs(one) for one in _flat(values) if isinstance(one, int | float) and not isinstance(one, bool)
-    ]
+    flat = [one for value in values for one in (value if isinstance(value, list) else [value])]
+    numbers = [abs(one) for one in flat if isinstance(one, int | float) and not isinstance(one, bool)]
     largest = max(numbers, default=0.0)
     is_whole = all(float(number).is_integer() for number in numbers)
     if dimension == "length":
@@ -265,25 +261,17 @@ def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
     return None
 
 
-def _flat(values: Sequence[Any]) -> list[Any]:
-    return [one for value in values for one in (value if isinstance(value, list) else [value])]
-
-
-def _opening(noun: str, unit: str | None, name: str, setting: Setting) -> Guess:
+def _opening(unit: str | None, name: str, setting: Setting) -> Guess:
     if _are_truth(setting):
         return Guess({"kind": "opening", "values": [False, True]})
     values = _distinct(setting.values)
-    is_scale = len(values) > _MOST_VALUES or any(
-        value < 0 for value in values if isinstance(value, int | float)
-    )
-    if len(values) >= 2 and not is_scale and all(value in (0, 1) for value in values):
+    if len(values) == 2 and set(values) == {0, 1}:
         return Guess({"kind": "opening", "values": values})
     about = _about(name, setting.doc)
     said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about)
     if limits in ([0.0, 1.0], [0.0, 100.0]) and not said:
-        return Guess(
-            {"kind": "opening", "unit": "fraction" if limits[1] == 1.0 else "percent", "range": limits}
-        )
+        unit = "fraction" if limits[1] == 1.0 else "percent"
+        return Guess({"kind": "opening", "unit": unit, "range": limits})
     table: Table = {"kind": "opening", **({"unit": said[0]} if said else {}), "range": ["…", "…"]}
     asked = "what is fully closed, what is fully open?"
     return Guess(table, [asked if said else f"{asked} in which unit (fraction, percent, mm, m)?"])
@@ -298,9 +286,13 @@ def _output(setting: Setting) -> Guess:
     return Guess({"kind": "output", "values": ["…", "…"]}, ["which values can it have?"])
 
 
+def _literals(annotation: str) -> list[str]:
+    literal = re.fullmatch(r"Literal\[(.*)\]", annotation)
+    return re.findall(r"'([^']*)'", literal[1]) if literal else []
+
+
 def _chosen(setting: Setting) -> Guess:
-    literal = re.fullmatch(r"Literal\[(.*)\]", setting.annotation)
-    values = re.findall(r"'([^']*)'", literal[1]) if literal else []
+    values = _literals(setting.annotation)
     return Guess({"kind": "output", "values": values}) if len(values) >= 2 else Guess()
 
 
@@ -324,9 +316,10 @@ def guess_reading(name: str, setting: Setting) -> Guess:
     motion = _by_name("", stem)
     if motion is not None:
         kind, axis, _ = motion
-        is_joint = axis is not None and axis.startswith("j")
-        read = "position" if kind == "translation" else "angle" if is_joint else "orientation"
-        dimension = "length" if kind == "translation" else "angle"
+        turned = "angle" if axis is not None and axis.startswith("j") else "orientation"
+        read, dimension = {"translation": ("position", "length"), "rotation": (turned, "angle")}.get(
+            kind, (kind, kind)
+        )
         return measured({"kind": read, **({"axis": axis} if axis else {})}, dimension, unit, name, setting)
     noun = noun if noun in KINDS else noun_of(setting.words) if noun in ("", "generic") else noun
     if noun in KINDS and KINDS[noun][1]:
@@ -336,8 +329,7 @@ def guess_reading(name: str, setting: Setting) -> Guess:
 
 
 def _label(setting: Setting) -> Guess:
-    literal = re.fullmatch(r"Literal\[(.*)\]", setting.annotation)
-    values = re.findall(r"'([^']*)'", literal[1]) if literal else _distinct(setting.values)
+    values = _literals(setting.annotation) or _distinct(setting.values)
     texts = [value for value in values if isinstance(value, str)]
     if len(values) > _MOST_LABELS or any(len(text) > _LONGEST_LABEL for text in texts):
         return Guess()

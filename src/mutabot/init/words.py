@@ -111,27 +111,16 @@ NOUNS = _by_word(
         "lookahead key flag flags",
     }
 )
+#: what a setter may be about, whatever its argument is called
+SUBJECTS = _words("speed acceleration jerk force torque mass temperature pressure voltage frequency ratio")
 #: which kind of quantity such a value is, written and read, and in which units
 KINDS: Mapping[str, tuple[str, str, str]] = {
-    "speed": ("speed", "speed", "speed"),
-    "acceleration": ("acceleration", "acceleration", "acceleration"),
-    "jerk": ("jerk", "jerk", "jerk"),
-    "force": ("force", "force", "force"),
-    "torque": ("torque", "torque", "torque"),
-    "mass": ("mass", "mass", "mass"),
-    "temperature": ("temperature", "temperature", "temperature"),
-    "pressure": ("pressure", "pressure", "pressure"),
-    "voltage": ("voltage", "voltage", "voltage"),
-    "frequency": ("frequency", "frequency", "frequency"),
-    "ratio": ("ratio", "ratio", "ratio"),
+    **{kind: (kind, kind, kind) for kind in SUBJECTS},
     "height": ("translation", "distance", "length"),
     "length": ("translation", "distance", "length"),
     "angle": ("rotation", "angle", "angle"),
     "time": ("duration", "", "time"),
 }
-#: what a setter may be about, whatever its argument is called
-SUBJECTS = frozenset(KINDS) - {"height", "length", "angle", "time"}
-
 _LENGTHS = {
     "mm": r"mm|(?i:millimet(?:er|re)s?)",
     "cm": r"cm|(?i:centimet(?:er|re)s?)",
