@@ -113,3 +113,17 @@ def test_a_class_in_a_function_has_no_name_to_stand_for() -> None:
         def go(self) -> None: ...
 
     assert meant_by(Local, "go") is None
+
+
+def test_a_real_call_tells_more_than_the_mock_before_it(robot: Any) -> None:
+    watch = Watch({"mission.py": "mission.py"}, {})
+    place = watch._place("mission.py", 1)
+    with mock.patch.object(robot, "lift"):
+        watch.method(robot, "lift", place)(0.25)
+    lift.__module__, before = robot.__name__, lift.__module__
+    try:
+        watch.method(robot, "lift", place)(0.5)
+    finally:
+        lift.__module__ = before
+    (call,) = watch.data().calls
+    assert (call.sites, list(call.arguments)) == ({"mission.py:1": 2}, ["height"])

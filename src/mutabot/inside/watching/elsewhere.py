@@ -70,10 +70,7 @@ def join(folder: str) -> None:
     leave = os._exit
 
     def write() -> None:
-        name = os.path.join(folder, f"{os.getpid()}{_SEEN}")
-        with open(f"{name}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
-            json.dump(to_data(watch.data()), file, default=str)
-        os.replace(f"{name}.new", name)
+        write_seen(os.path.join(folder, f"{os.getpid()}{_SEEN}"), to_data(watch.data()))
 
     def leave_at_once(status: int) -> None:
         write()
@@ -86,6 +83,13 @@ def join(folder: str) -> None:
     os._exit = leave_at_once  # type: ignore[assignment]
     if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
         signal.signal(signal.SIGTERM, end)  # else nothing would be written
+
+
+def write_seen(path: str, data: dict[str, Any]) -> None:
+    """Write what was seen, all of it or nothing."""
+    with open(f"{path}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
+        json.dump(data, file, default=str)
+    os.replace(f"{path}.new", path)
 
 
 def seen_elsewhere(folder: str) -> list[dict[str, Any]]:

@@ -19,7 +19,7 @@ from mutabot.border.watch import WATCH_VARIABLE
 from mutabot.errors import MutabotError
 from mutabot.inside.targets.middleware import prepare
 
-from .elsewhere import seen_elsewhere, watch_elsewhere
+from .elsewhere import seen_elsewhere, watch_elsewhere, write_seen
 from .watch import Watch
 
 #: least seconds between two writings of what was found so far
@@ -62,9 +62,7 @@ class _Plugin:
         for other in seen_elsewhere(self._folder):
             for key in ("calls", "uses", "reached"):
                 found[key] += other[key]
-        with open(f"{self._output}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
-            json.dump(found, file, default=str)
-        os.replace(f"{self._output}.new", self._output)
+        write_seen(self._output, found)
         self._written = time.monotonic()
 
 

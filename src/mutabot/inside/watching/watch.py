@@ -177,6 +177,7 @@ class Watch:
         self._numbers: dict[tuple[str, int], int] = {}
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._known: dict[tuple[Any, str], Callee | None] = {}
+        self._patches: dict[tuple[str, str], type | None] = {}
         self._reached: dict[tuple[int, str], None] = {}
         self._names: NamesSeen | None = None
         self._files: dict[str, tuple[str, bool] | None] = {}
@@ -283,13 +284,16 @@ class Watch:
     def _patched(self, spelt: str, name: str) -> type | None:
         """The class that a mock of this name stands for: the only one of that name with such a method."""
         root = re.split(r"\W", spelt)[0]
+        if (root, name) in self._patches:
+            return self._patches[root, name]
         kinds = {
             id(kind): kind
             for module in list(sys.modules.values())
             for kind in [getattr(module, "__dict__", {}).get(root)]
             if isinstance(kind, type) and kind.__name__ == root and callable(getattr(kind, name, None))
         }
-        return next(iter(kinds.values())) if len(kinds) == 1 else None
+        self._patches[root, name] = next(iter(kinds.values())) if len(kinds) == 1 else None
+        return self._patches[root, name]
 
     def _of(self, callee: Callee | None, place: int) -> _Seen | None:
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
@@ -297,11 +301,12 @@ class Watch:
             return None
         key = (callee.target, self._is_of_tests(place))
         known = self._seen.get(key)
-        if known is None:
+        if known is None or (known.callee.raw is None and callee.raw is not None):
             top = callee.target.partition(":")[0].partition(".")[0]
             if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
                 return None
             call = described(callee, of_tests=key[1], own=callee.file in self._program)
+            call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
             is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
             known = self._seen[key] = _Seen(callee, call, is_coroutine)
         return known
