@@ -136,14 +136,17 @@ def guess_argument(name: str, setting: Setting) -> Guess:
     limits = _documented_range(_about(name, setting.doc)) if noun == "generic" else None
     if limits is not None and abs(limits[0]) in (0.0, 1.0) and limits[1] == 1.0:
         return Guess({"kind": "output", "range": limits})
+    along = words[-1] if len(words) > 1 and words[-1] in ("x", "y", "z") else None
+    if along is not None and noun == "place":
+        motion = ("translation", along, None)
     if motion is not None:
-        return _moved(*motion, unit, name, setting)
+        return _moved(motion[0], motion[1] or along, motion[2], unit, name, setting)
     subject, is_only = noun_of(setting.words), len(setting.names - _HOW) <= 1
     if noun in ("generic", "place", "") and subject in KINDS and is_only:
         noun = subject
     if noun in KINDS:
         kind, _, dimension = KINDS[noun]
-        return measured({"kind": kind}, dimension, unit, name, setting)
+        return measured({"kind": kind, **({"axis": along} if along else {})}, dimension, unit, name, setting)
     return Guess()
 
 
@@ -155,13 +158,14 @@ def _by_verb(noun: str, stem: str, setting: Setting) -> Motion | None:
     if (noun in ("generic", "") or is_axis) and subject in SUBJECTS and verb is None and not is_vector:
         return KINDS[subject][0], stem if is_axis and stem != "x" else None, None
     is_amount = noun in ("generic", "length", "angle") or is_axis
+    axis = first(DIRECTIONS, setting.words)
+    verb = verb or ("translation" if axis else None)
     if verb in (None, "duration") or is_vector or not is_amount:
         return None
     if verb == "rotation":
         return "rotation", "z" if TURNS & set(setting.words) else None, None
-    axis = first(DIRECTIONS, setting.words)
     is_told = axis is not None or (noun in ("length", "generic") and not is_axis)
-    return ("translation", axis, None) if is_told else None
+    return ("translation", axis, "by" if noun == "length" else None) if is_told else None
 
 
 def _by_name(noun: str, stem: str) -> Motion | None:

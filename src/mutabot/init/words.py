@@ -104,7 +104,7 @@ NOUNS = _by_word(
         "opening": "opening openness gripper",
         "switch": "on off enable enabled signal level active closed open state grip",
         "label": "color colour label kind type category",
-        "generic": "value val command cmd setpoint x data",
+        "generic": "value val command cmd setpoint data",
         "action": "action actions act ctrl",
         "none": "boot stamp timestamp mask rate axis code status err errno id index idx port channel "
         "timeout name mode number num count blocking radius gain gains limit limits size rgb "
