@@ -56,7 +56,7 @@ def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
             reason = f"nothing differs{extent} (indistinguishable)"
             never.append(Unsolved(one.mutant.id, reason, never=True))
         else:
-            reason = "no test reaches it: it needs a test that does, not a check"
+            reason = "no test reaches it; add a test that does"
             never.append(Unsolved(one.mutant.id, reason, never=True))
     return Survivors(tuple(to_kill), tuple(never), tuple(tests))
 
@@ -72,7 +72,7 @@ def why_unsolved(
         return Unsolved(mutant.id, refused[mutant.id])
     nearest = max(_differences(mutant, measured), default=None)
     return Unsolved(
-        mutant.id, nearest[1] if nearest else "nothing differs that its tests can read at their ends"
+        mutant.id, nearest[1] if nearest else "nothing differs in what its tests can read at their ends"
     )
 
 
@@ -141,11 +141,10 @@ def suggest(
     survivors = survivors_of(chosen)
     if not request.vocabulary.probes:
         progress.note(
-            "the vocabulary names no probe: only what the oracle reads and what tests have at hand "
-            "can be looked at; a [[probe]] shows more"
+            "the vocabulary has no [[probe]]: checks can use only the oracle's readings and the tests' values"
         )
     elif not survivors.to_kill:
-        progress.note("nothing that was compared differs in any survivor: a further [[probe]] may show more")
+        progress.note("nothing differs in any survivor; another [[probe]] may show a difference")
     if not survivors.to_kill:
         return _told(Suggestions(unsolved=survivors.never), chosen, request, seeds)
     quiet = Quiet(progress)
