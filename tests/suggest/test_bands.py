@@ -45,6 +45,11 @@ def test_a_check_has_no_more_digits_than_it_needs(
     assert readable(band_of(values, 0.001), nearest) == pytest.approx(expected)
 
 
+def test_the_value_is_as_exact_as_a_stated_tolerance_needs() -> None:
+    assert readable(band_of([0.347, 0.347], 0.001), 0.6, 0.03) == pytest.approx((0.35, 0.03))
+    assert readable(band_of([0.347, 0.347], 0.001), 0.02, 0.03)[1] < 0.02
+
+
 @pytest.mark.parametrize("floor", [0.00123, 0.5, 1.0, 37.0])
 @pytest.mark.parametrize("middle", [-0.000012345, 0.0, 1.23456789, 12345.6789])
 def test_what_is_written_holds_all_that_the_band_holds(middle: float, floor: float) -> None:

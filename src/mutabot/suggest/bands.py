@@ -42,14 +42,15 @@ def unseen(count: int) -> float:
     return 1 - (1 - CONFIDENCE) ** (1 / count) if count else 1.0
 
 
-def readable(band: Band, nearest: float) -> tuple[float, float]:
+def readable(band: Band, nearest: float, stated: float = 0.0) -> tuple[float, float]:
     """Value and tolerance as a person would write them.
 
-    The tolerance is the largest of 1, 2, 5, 10 … that is at most half of ``nearest``, the least distance of a
-    survivor from the middle; never under the band's. The value has no more digits than that needs.
+    The tolerance is the one that the tests state already, if it lies between the band's and ``nearest``, the
+    least distance of a survivor from the middle; else the largest of 1, 2, 5, 10 … that is at most half of
+    ``nearest``, never under the band's. The value has no more digits than that needs.
     """
-    tolerance = _round_up(band.tolerance)
-    while _next(tolerance) <= nearest / 2:
+    tolerance = stated if band.tolerance <= stated < nearest else _round_up(band.tolerance)
+    while tolerance != stated and _next(tolerance) <= nearest / 2:
         tolerance = _next(tolerance)
     digits = -math.floor(math.log10(tolerance) + 1e-9)
     value = round(band.middle, digits)

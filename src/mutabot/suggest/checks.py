@@ -178,9 +178,7 @@ def _of(
         outside = [size for by_round in away.values() for size in by_round.values() if size > band.tolerance]
         if not outside:
             continue
-        value, wide = readable(band, min(outside))
-        own = suite.get(_last(reading), 0.0)
-        wide = own if band.tolerance <= own < min(outside) else wide
+        value, wide = readable(band, min(outside), suite.get(_last(reading), 0.0))
         if other is not None and abs(band.middle) > wide - band.tolerance:
             continue  # it is always as far from it, but not there
         noticed = _noticed(_away(reading, other, 0.0 if other is not None else value, mutants), wide)
