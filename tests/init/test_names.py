@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mutabot.runtime.watching.values import look, type_of
 
-from mutabot.border.watch import Part, Seen, Use, Values
 from mutabot.init.messages import Place, entries, meaning
 from mutabot.init.observe import merged
 from mutabot.init.text import entry_text, vocabulary_text
-from mutabot.inside.watching.values import look, type_of
-from mutabot.model.named import Form
+from mutabot.model.job import Part, Seen, Use, Values
+from mutabot.model.operation import Form
 from mutabot.vocabulary import load
 
 HEADER = "std_msgs/Header"

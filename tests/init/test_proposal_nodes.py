@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.watch import Call
 from mutabot.campaign.check import check
 from mutabot.init import propose
-from mutabot.inside.watching.callee import any_method
-from mutabot.inside.watching.watch import _command, _Seen
 from mutabot.model import Kind
+from mutabot.model.job import Call
+from mutabot.runtime.watching.callee import any_method
+from mutabot.runtime.watching.watch import _command, _Seen
 from mutabot.vocabulary import load
 from tests.campaign.project import Quiet, request_for
 

@@ -15,9 +15,9 @@ from mutabot.errors import UsageError, unknown_name_text
 from .options import ENGINES, Running
 
 if TYPE_CHECKING:
-    from mutabot.analysis.results import Results
     from mutabot.campaign.request import ExecutorChoice, Request
     from mutabot.model import Moment
+    from mutabot.results.results import Results
     from mutabot.settings.configuration import Configuration
 
 

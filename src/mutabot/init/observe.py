@@ -14,10 +14,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from mutabot.border.codec import from_data
-from mutabot.border.watch import WATCH_VARIABLE, Call, Seen, Use, Values
-from mutabot.campaign.workers.processes import command, kill_group
+from mutabot.execution.processes import command, kill_group
 from mutabot.extensions import libraries, told_to_processes
+from mutabot.model.codec import from_data
+from mutabot.model.job import WATCH_VARIABLE, Call, Seen, Use, Values
 
 from .layout import Layout
 
@@ -33,7 +33,7 @@ def observe(layout: Layout, limit: float = LIMIT) -> Seen:
         folder = Path(name)
         order, output, log = folder / "watch.json", folder / "seen.json", folder / "log.txt"
         order.write_text(json.dumps(_order(layout, output)), encoding="utf-8")
-        own = ["-p", "mutabot.inside.watching.plugin", "--assert=plain"]
+        own = ["-p", "mutabot.runtime.watching.plugin", "--assert=plain"]
         words = [*command(layout.arguments, folder), *own]
         overdue = _wait(words, layout.root, order, log, limit)
         said = log.read_text(encoding="utf-8", errors="replace")

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from mutabot.border.watch import Call
 from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY, Vocabulary
+from mutabot.model.job import Call
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from mutabot.border.watch import Part
 from mutabot.model import ANY
+from mutabot.model.job import Part
 
 from .guess import Guess
 from .layout import Unreached

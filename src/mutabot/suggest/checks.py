@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model.values.steps import step_of
+from mutabot.model.quantity import step_of
 
 from .bands import Band, band_of, decimal, digits_of, is_number, readable
 from .measure import Measured, Read

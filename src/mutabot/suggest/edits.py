@@ -11,7 +11,7 @@ from libcst.codemod.visitors import AddImportsVisitor
 from .place import OTHER, Addition, Place
 from .project import Project
 
-_AT_END = "from mutabot.inside.readings.noted import at_end as _mutabot_at_end"
+_AT_END = "from mutabot.runtime.observation.noted import at_end as _mutabot_at_end"
 
 
 def edited(project: Project, additions: Iterable[Addition]) -> dict[str, str]:

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions, Unsolved
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import NothingToDoError
 from mutabot.frozen import frozen
 from mutabot.model import Mutant
+from mutabot.results.results import MutantResult, Results
+from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
 
 from .bands import decimal, is_number, unseen
 from .checks import Check, candidates, known

@@ -1,6 +1,6 @@
 """What one process sees of the names of a middleware: what is done under which, with which messages.
 
-The hooks are those of a campaign (``inside.targets.messages``). Nothing is changed.
+The hooks are those of a campaign (``runtime.targets.messages``). Nothing is changed.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from contextvars import ContextVar
 from types import FrameType
 from typing import Any
 
-from mutabot.border.watch import Use, Values
-from mutabot.inside.targets.messages import Messages
-from mutabot.inside.targets.target import Handler, Where
-from mutabot.model.named import MAIN, SETTING_UP, WRITTEN, Form
+from mutabot.model.job import Use, Values
+from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Handler, Where
 
 from .values import look
 
