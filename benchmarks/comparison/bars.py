@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from mutabot.report.terminal.console import plural
-from mutabot.report.thresholds.picture import FAINT, INK, PAPER, Picture, Rectangle, Words
 
+from .drawing import FAINT, INK, PAPER, Picture, Rectangle, Words
 from .ends import End
 from .families import Family
 

@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from mutabot.cli.report import FORMATS
 
 from analysis import samples
 from analysis.thresholds import journals
-from mutabot.cli.report import FORMATS
 
 #: what runs a campaign, and what that needs
 NOT_FOR_LOOKING = (

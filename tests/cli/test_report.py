@@ -9,10 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from mutabot.cli.report import FORMATS
 
 from analysis import samples
 from mutabot.cli.app import main
-from mutabot.cli.report import FORMATS
 from mutabot.report.format import names
 
 JOURNAL = Path(".mutabot", "journal.sqlite")

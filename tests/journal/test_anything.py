@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mutabot.cli.report import FORMATS
 
 from analysis import samples
 from mutabot.analysis.gate import decide
@@ -22,7 +23,6 @@ from mutabot.analysis.stored import open as open_campaign
 from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.border.events import TestEnd
 from mutabot.cli.app import main
-from mutabot.cli.report import FORMATS
 from mutabot.errors import JournalError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.database import COLUMNS, decode

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mutabot.report.thresholds.picture import Picture, check_picture, write_drawing
 
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import UsageError
-from mutabot.report.thresholds.picture import Picture, check_picture, write_drawing
 from tests.campaign.conftest import script as script  # noqa: PLC0414  # a fixture
 from tests.campaign.project import Quiet, request_for, write_project
 from tests.campaign.scripted import Script

@@ -7,15 +7,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypedDict, get_args, get_type_hints
+from typing import Annotated, Any, TypedDict, get_args, get_type_hints
 
 import typer
 
 from mutabot import __version__, limits
 from mutabot.errors import UsageError
-
-if TYPE_CHECKING:
-    from mutabot.extensions import Part
+from mutabot.extensions import Part, brought
 
 _KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
 #: an engine is a file; its name is told without loading it, so that `--help` is fast
@@ -43,14 +41,15 @@ def _number(value: float | None) -> float | None:
 Version = Annotated[
     bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for a machine to read.")]
-All = Annotated[bool, typer.Option("--all", help="Also list every mutant that the plan leaves out.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+All = Annotated[bool, typer.Option("--all", help="Also list every skipped mutant.")]
+EveryRound = Annotated[bool, typer.Option("--all", help="Show every round, test and check.")]
 Only = Annotated[
     list[str] | None,
     typer.Option(
         "--only",
         metavar="WHICH",
-        help="Only these: id, number, numbers (3,16-20), file, file:line, operator, family or role; "
+        help="Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; "
         "globs too; @FILE for a list, one per line. Repeatable.",
     ),
 ]
@@ -69,7 +68,7 @@ Families = Annotated[
     typer.Option(
         "--family",
         metavar="NAME",
-        help="Families of mutants, as `mutabot operators` lists them. Repeatable, or with commas.",
+        help="Families of mutants, see `mutabot operators`. Repeatable, or with commas.",
         autocompletion=_families,
     ),
 ]
@@ -84,7 +83,7 @@ Sample = Annotated[
 Rounds = Annotated[
     int | None,
     typer.Option(
-        "--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Repetitions, each with its own seeds."
+        "--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Number of repetitions, each with new seeds."
     ),
 ]
 Seed = Annotated[
@@ -99,16 +98,14 @@ Engine = Annotated[
     typer.Option(
         "--engine",
         metavar="ENGINE",
-        help=f"What runs the mutants: {', '.join(ENGINES)}.",
+        help=f"How mutants are run: {', '.join(ENGINES)}.",
         autocompletion=lambda: list(ENGINES),
     ),
 ]
-OneMutant = Annotated[
-    str, typer.Argument(metavar="MUTANT", help="The mutant's number or id, or as much of it as is unique.")
-]
+OneMutant = Annotated[str, typer.Argument(metavar="MUTANT", help="Number, id, or a unique part of the id.")]
 Shard = Annotated[
     str | None,
-    typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` puts them together."),
+    typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` merges the parts."),
 ]
 Fresh = Annotated[
     bool, typer.Option("--fresh", help="Re-run everything, including results that are still valid.")
@@ -134,7 +131,7 @@ Compared = Annotated[
     typer.Option(
         "--compare",
         metavar="OLD",
-        help="Tell what differs from this journal, or a project's folder with one.",
+        help="Compare with this journal (or with the journal in this project folder).",
     ),
 ]
 Budget = Annotated[
@@ -142,7 +139,8 @@ Budget = Annotated[
     typer.Option(
         "--budget",
         metavar="TIME",
-        help="Stop after this much time (90s, 10m, 1h30m), baseline included; the most informative first.",
+        help="Stop after this much time (90s, 10m, 1h30m), baseline included; run the most informative "
+        "mutants first.",
     ),
 ]
 Verify = Annotated[
@@ -166,13 +164,13 @@ MinScore = Annotated[
         min=0,
         max=100,
         callback=_number,
-        help="Exit with 1 if a score is under this many percent.",
+        help="Exit with 1 if a score is below this percentage.",
     ),
 ]
 
 
 class Setting(TypedDict, total=False):
-    """The options of commands that take a baseline; commands take them as ``**given: Unpack[…]``."""
+    """Options of commands that take a baseline; commands take them as ``**given: Unpack[…]``."""
 
     family: Families
     rounds: Rounds
@@ -181,7 +179,7 @@ class Setting(TypedDict, total=False):
 
 
 class Planning(Setting, total=False):
-    """The same for commands that make a plan."""
+    """Options of commands that make a plan."""
 
     only: Only
     skip: Skip
@@ -191,7 +189,7 @@ class Planning(Setting, total=False):
 
 
 class Running(Planning, total=False):
-    """The same for commands that run a campaign."""
+    """Options of commands that run a campaign."""
 
     engine: Engine
     fresh: Fresh
@@ -202,42 +200,34 @@ class Running(Planning, total=False):
 
 
 _DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False, "verify": 0}
-_FIRST = ("context", "only", "skip", "family", "rounds", "jobs", "min_score", "json", "settings")
 #: a parameter of this name stands for the options of all executors
 _EXECUTOR = "executor"
 
 
-def with_options(
-    function: Callable[..., object], executors: Mapping[str, Part] | None = None
-) -> Callable[..., object]:
-    """A command as typer makes options of it.
+def with_options(function: Callable[..., object]) -> Callable[..., object]:
+    """Make a command of which typer can read the options.
 
     Its ``**given: Unpack[…]`` becomes the options of a class above. A parameter ``executor`` becomes an
-    option for each of these executors, and takes which was chosen: its name and the option's value.
+    option for each executor, and takes which was chosen: its name and the option's value.
     """
     own = signature(function, eval_str=True)
-    options = {f"{_EXECUTOR}_{name.replace('-', '_')}": part for name, part in (executors or {}).items()}
-    if _EXECUTOR not in own.parameters:
-        options = {}
+    found = brought("executors", Running.__annotations__) if _EXECUTOR in own.parameters else {}
+    names = {f"{_EXECUTOR}_{name.replace('-', '_')}": part for name, part in found.items()}
 
     @wraps(function)
     def command(**values: Any) -> object:
-        if options:
-            given = {part.name: values.pop(key) for key, part in options.items()}
-            values[_EXECUTOR] = _chosen({name: value for name, value in given.items() if value is not None})
-        return function(**values)
+        chosen = [(part.name, value) for key, part in names.items() if (value := values.pop(key)) is not None]
+        if len(chosen) > 1:
+            raise UsageError(
+                f"{' and '.join(f'--{name}' for name, _ in chosen)}: a campaign has one executor"
+            )
+        return function(**values, **({_EXECUTOR: chosen[0]} if chosen else {}))
 
-    found = _parameters(own.parameters.values(), options)
-    parameters = sorted((one.replace(kind=one.KEYWORD_ONLY) for one in found), key=_place)
+    parameters = list(_parameters(own.parameters.values(), names))
     changed: Any = command
     changed.__signature__ = own.replace(parameters=parameters)
     changed.__annotations__ = {one.name: one.annotation for one in parameters}
     return command
-
-
-def _place(one: Parameter) -> int:
-    """Where it stands in ``--help``: what the first week needs comes first."""
-    return _FIRST.index(one.name) if one.name in _FIRST else len(_FIRST)
 
 
 def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iterator[Parameter]:
@@ -251,10 +241,3 @@ def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iter
     for key, part in executors.items():
         option = typer.Option(f"--{part.name}", metavar=part.metavar, help=part.help)
         yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])
-
-
-def _chosen(given: Mapping[str, str]) -> tuple[str, str] | None:
-    """Raises UsageError for more than one executor."""
-    if len(given) > 1:
-        raise UsageError(f"{' and '.join(f'--{name}' for name in given)}: a campaign has one executor")
-    return next(iter(given.items()), None)

@@ -1,30 +1,19 @@
-"""What differs between two campaigns: as text, as JSON and as Markdown, in the same sections."""
+"""What differs between two campaigns, on the terminal and as Markdown, in the same sections."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from rich.console import Console, RenderableType
-from rich.table import Table
+from rich.console import Console
 from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.stored import Changes, Ends
-from mutabot.report.terminal.campaign import WIDE
-from mutabot.report.terminal.console import (
-    add_row,
-    heading,
-    make_mutant_table,
-    make_table,
-    percent,
-    plain,
-    short_place,
-)
-from mutabot.report.texts import escaped, table
 
-from .texts import rounds_text
+from .terminal.console import heading, make_table, percent, plain, short_place
+from .texts import escaped, rounds_text, table
 
 #: a heading, and the mutants of which it is said, each with what happened to it
 Section = tuple[str, tuple[tuple[MutantResult, str], ...]]
@@ -35,9 +24,9 @@ def sections(changes: Changes) -> Iterator[Section]:
     pairs = (
         ("New survivors", changes.appeared),
         ("Changed survivors", changes.changed),
-        ("Survivors of which nothing is known now", changes.unknown),
+        ("Survivors with unknown state now", changes.unknown),
         ("Fixed survivors", changes.fixed),
-        ("Mutants that are gone", changes.gone),
+        ("Removed mutants", changes.gone),
     )
     for name, found in pairs:
         if found:
@@ -87,67 +76,39 @@ _ROWS = 50
 
 
 def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
-    """The lines. ``path`` names a file of the project as the reader knows it."""
-    yield "### Since the older campaign"
-    yield ""
-    yield f"{summary(changes)}."
-    yield ""
+    """Yield the lines of Markdown. ``path`` names a file of the project as the reader knows it."""
+    yield from ("### Since the older campaign", "", f"{summary(changes)}.", "")
     for line in notes(changes):
-        yield f"> **{escaped(line)}**"
-        yield ""
+        yield from (f"> **{escaped(line)}**", "")
     yield from table(("family · role", "old", "new", "points"), score_rows(changes), right=(1, 2, 3))
     for title, found in sections(changes):
-        yield f"#### {title}: {len(found)}"
-        yield ""
-        rows = (
-            (
-                str(result.mutant.number),
-                replace(result.mutant.site.span, file=path(result.mutant.site.span.file)).place,
-                result.mutant.operator,
-                result.mutant.description,
-                told,
-            )
-            for result, told in found[:_ROWS]
-        )
-        yield from table(("no.", "place", "operator", "what it does", "how it ended"), rows, right=(0,))
+        yield from (f"#### {title}: {len(found)}", "")
+        rows = []
+        for result, told in found[:_ROWS]:
+            mutant, span = result.mutant, result.mutant.site.span
+            place = replace(span, file=path(span.file)).place
+            rows.append((str(mutant.number), place, mutant.operator, mutant.description, told))
+        yield from table(("no.", "place", "operator", "fault", "result"), rows, right=(0,))
         if len(found) > _ROWS:
-            yield f"and {len(found) - _ROWS} more"
-            yield ""
+            yield from (f"and {len(found) - _ROWS} more", "")
 
 
 def print_changes(console: Console, changes: Changes) -> None:
     """Print what differs."""
-    for part in _parts(changes, console.width):
-        console.print(part)
-
-
-def _parts(changes: Changes, width: int) -> Iterator[RenderableType]:
-    yield Text(summary(changes), style="bold")
+    console.print(Text(summary(changes), style="bold"))
     for line in notes(changes):
-        yield Text(plain(line), style="bold")
-    yield _scores(changes)
-    for title, found in sections(changes):
-        yield heading(f"{title}: {len(found)}")
-        yield _mutants(found, width)
-        if len(found) > _ROWS:
-            yield Text(f"and {len(found) - _ROWS} more", style="dim")
-
-
-def _scores(changes: Changes) -> Table:
-    table = make_table()
-    table.add_column("family · role")
-    for name in ("old", "new", "points"):
-        table.add_column(name, justify="right", no_wrap=True)
+        console.print(Text(plain(line), style="bold"))
+    scores = make_table(("family · role", ">old", ">new", ">points"))
     for row in score_rows(changes):
-        table.add_row(*row)
-    return table
-
-
-def _mutants(found: Sequence[tuple[MutantResult, str]], width: int) -> Table:
-    narrow = width < WIDE
-    table = make_mutant_table(("place", "operator"), "what it does, and how it ended", narrow=narrow)
-    for result, told in found[:_ROWS]:
-        mutant = result.mutant
-        facts = (short_place(mutant.site.span), mutant.operator)
-        add_row(table, mutant.number, facts, f"{mutant.description}\n{told}", narrow=narrow)
-    return table
+        scores.add_row(*row)
+    console.print(scores)
+    for title, found in sections(changes):
+        console.print(heading(f"{title}: {len(found)}"))
+        mutants = make_table((">no.", "place", "operator", "*fault and result"))
+        for result, told in found[:_ROWS]:
+            mutant = result.mutant
+            text = plain(f"{mutant.description}\n{told}")
+            mutants.add_row(str(mutant.number), short_place(mutant.site.span), mutant.operator, text)
+        console.print(mutants)
+        if len(found) > _ROWS:
+            console.print(Text(f"and {len(found) - _ROWS} more", style="dim"))

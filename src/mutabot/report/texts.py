@@ -13,10 +13,10 @@ from enum import Enum
 from itertools import groupby
 from typing import Any, TypeVar
 
-from mutabot.analysis.divergence import first_line
+from mutabot.analysis.divergence import first_line, worst_of
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.journal.records import Reaching
-from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
+from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
@@ -187,7 +187,7 @@ def rounds_text(result: MutantResult) -> str:
     by_end: dict[str, list[int]] = {}
     for number, outcome in enumerate(result.rounds, start=1):
         by_end.setdefault(_end(outcome), []).append(number)
-    return ", ".join(f"{end} in {_numbers(numbers)}" for end, numbers in by_end.items()) or "not run"
+    return ", ".join(f"{end} in {numbers_text(numbers)}" for end, numbers in by_end.items()) or "not run"
 
 
 def reason_of(result: MutantResult) -> str:
@@ -211,8 +211,33 @@ def survivor_text(result: MutantResult) -> str:
 
 
 def why_alone(result: MutantResult) -> str:
-    """The line about a survivor, for a place where what it does stands beside it."""
-    return result.why.removeprefix(f"{result.mutant.description}; ")
+    """Return the line about a mutant, for a place where its description stands beside it.
+
+    Of a mutant that only some rounds let through it says how many killed it; of a story, in which test it
+    happened.
+    """
+    why, rate = result.why.removeprefix(f"{result.mutant.description}; "), result.kill_rate
+    most = telling(result)
+    if result.is_survivor and most is not None and most[1] is not None and most[1].story in why:
+        why += f" (in {most[1].test.rpartition('/')[2]})" if most[1].story else ""
+    if result.is_survivor and rate.killed:
+        why += f"; killed in {rate.killed} of {rate.valid} rounds"
+    return why
+
+
+def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
+    """Return the 0-based round that tells most about a mutant, and the test in which the robot did otherwise.
+
+    Of a survivor that is the round that let it through farthest from the original, which ``result.why`` is
+    about too; else the first round with its state. None if it has not been run.
+    """
+    status = status_of(result)
+    outcomes = result.survived or [one for one in result.outcomes if one.verdict is status]
+    if not outcomes:
+        return next(((one.round, None) for one in result.outcomes), None)
+    worst = max(outcomes, key=worst_of)
+    told = sorted(worst.diverged, key=lambda one: not one.story)
+    return worst.round, told[0] if told else None
 
 
 def short_reason(result: MutantResult) -> str:
@@ -227,8 +252,8 @@ def _end(outcome: Outcome | None) -> str:
     return f"{outcome.verdict} by {outcome.by}" if outcome.by is not None else outcome.verdict.value
 
 
-def _numbers(numbers: Iterable[int]) -> str:
-    """``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
+def numbers_text(numbers: Iterable[int]) -> str:
+    """Return ``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
     runs: list[str] = []
     for _, group in groupby(enumerate(numbers), key=lambda pair: pair[1] - pair[0]):
         run = [number for _, number in group]

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mutabot.report.thresholds.picture import picture_of, svg
+from mutabot.report.thresholds.text import print_thresholds, suggested_toml
 
 from analysis.thresholds import journals
 from analysis.thresholds.journals import LETTERS, SIZES, Rungs
@@ -17,8 +19,6 @@ from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds.picture import picture_of, svg
-from mutabot.report.thresholds.text import print_thresholds, suggested_toml
 
 ROUND = st.text("".join(LETTERS) + ".CCCSSS", min_size=len(SIZES), max_size=len(SIZES))
 
