@@ -53,14 +53,12 @@ def init(
 
 def operators(family: options.Families = None, json: options.Json = False) -> None:
     """List the operators and the bugs they stand for."""
-
     rules = [asdict(rule) for rule in listed_rules(families_of(family))]
     print_json({"operators": rules}) if json else print_rules(make_console(), rules)
 
 
 def check(context: typer.Context, json: options.Json = False, **given: Unpack[options.Setting]) -> None:
     """Try the set-up without running mutants."""
-
     request = request_of(context.obj, **given)
     with progress_shown() as progress:
         report = checking.check(request, progress)
@@ -74,7 +72,6 @@ def list_(
     **given: Unpack[options.Planning],
 ) -> None:
     """List the mutants that would run."""
-
     request = request_of(context.obj, **given)
     with progress_shown() as progress:
         mutants, left_out = running.plan_only(request, progress)
@@ -92,7 +89,6 @@ def run(
     **given: Unpack[options.Running],
 ) -> None:
     """Run the campaign, or continue it."""
-
     request = request_of(context.obj, executor=executor, evidence=True, **given)
     show_end(request, partial(running.run_campaign, request), min_score, json=json)
 
@@ -145,7 +141,6 @@ def merge(
 
     Judges the campaign as `run` does. Exits with 4 if a part is missing; the others are written all the same.
     """
-
     configuration = load_configuration(context.obj)
     target = output or configuration.root / HOME / JOURNAL
     missing = merging.merge(journals, target, root=configuration.root, room=configuration.evidence)
@@ -165,7 +160,6 @@ def replay(
 
     Exits with 4 if an outcome differs from the one in the journal.
     """
-
     path = find_journal(context.obj)
     with JournalReader.open(path) as journal:
         found = read_results(journal, earlier=True)
@@ -225,7 +219,6 @@ def suggest(
 
 def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:
     """Return the survivors that were asked for. Raises NothingToDoError if there is none, saying why."""
-
     if results.graded and not results.mutants:
         raise NothingToDoError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
     if not results.mutants:

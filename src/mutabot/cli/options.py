@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any, TypedDict, get_args, get_type_hints
 
 import typer
+from typer import Option
 
 from mutabot import __version__, limits
 from mutabot.errors import UsageError
@@ -39,133 +40,61 @@ def _number(value: float | None) -> float | None:
 
 
 Version = Annotated[
-    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    bool, Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-All = Annotated[bool, typer.Option("--all", help="Also list every skipped mutant.")]
-EveryRound = Annotated[bool, typer.Option("--all", help="Show every round, test and check.")]
-Only = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--only",
-        metavar="WHICH",
-        help="Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; "
-        "globs too; @FILE for a list, one per line. Repeatable.",
-    ),
-]
-Skip = Annotated[
-    list[str] | None,
-    typer.Option("--skip", metavar="WHICH", help="Exclude these mutants. Same syntax as --only. Repeatable."),
-]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "-o", metavar="KEY=VALUE", help="Set a key of the configuration for this command. Repeatable."
-    ),
-]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
+All = Annotated[bool, Option("--all", help="Also list every skipped mutant.")]
+EveryRound = Annotated[bool, Option("--all", help="Show every round, test and check.")]
+_ONLY = (
+    "Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; globs "
+    "too; @FILE for a list, one per line. Repeatable."
+)
+_SKIP = "Exclude these mutants. Same syntax as --only. Repeatable."
+_SETTING = "Set a key of the configuration for this command. Repeatable."
+_FAMILY = "Families of mutants, see `mutabot operators`. Repeatable, or with commas."
+_SAMPLE = "Only a random sample: 10% of each family and role, or 50 of each family."
+_SINCE = "Run only what changes since this git revision can have altered; reuse the other results."
+_JOURNAL = "Also reuse valid outcomes from this journal, e.g. one downloaded from CI."
+_BUDGET = "Stop after this much time (90s, 10m), baseline included; run the most informative mutants first."
+_COMPARE = "Compare with this journal (or with the journal in this project folder)."
+_VERIFY = "Re-run N random outcomes in fresh processes; exit with 4 if one ends differently."
+_MIN_SCORE = "Exit with 1 if a score is below this percentage."
+_ENGINE = f"How mutants are run: {', '.join(ENGINES)}."
+Only = Annotated[list[str] | None, Option("--only", metavar="WHICH", help=_ONLY)]
+Skip = Annotated[list[str] | None, Option("--skip", metavar="WHICH", help=_SKIP)]
+Settings = Annotated[list[str] | None, Option("-o", metavar="KEY=VALUE", help=_SETTING)]
 Families = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--family",
-        metavar="NAME",
-        help="Families of mutants, see `mutabot operators`. Repeatable, or with commas.",
-        autocompletion=_families,
-    ),
+    list[str] | None, Option("--family", metavar="NAME", help=_FAMILY, autocompletion=_families)
 ]
-Sample = Annotated[
-    str | None,
-    typer.Option(
-        "--sample",
-        metavar="SIZE",
-        help="Only a random sample: 10% of each family and role, or 50 of each family.",
-    ),
-]
+Sample = Annotated[str | None, Option("--sample", metavar="SIZE", help=_SAMPLE)]
 Rounds = Annotated[
-    int | None,
-    typer.Option(
-        "--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Number of repetitions, each with new seeds."
-    ),
+    int | None, Option("--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Rounds, each with new seeds.")
 ]
 Seed = Annotated[
-    int | None, typer.Option("--seed", metavar="N", min=0, max=limits.SEED, help="The campaign's seed.")
+    int | None, Option("--seed", metavar="N", min=0, max=limits.SEED, help="The campaign's seed.")
 ]
 Jobs = Annotated[
-    int | None,
-    typer.Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs."),
+    int | None, Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs.")
 ]
 Engine = Annotated[
-    str,
-    typer.Option(
-        "--engine",
-        metavar="ENGINE",
-        help=f"How mutants are run: {', '.join(ENGINES)}.",
-        autocompletion=lambda: list(ENGINES),
-    ),
+    str, Option("--engine", metavar="ENGINE", help=_ENGINE, autocompletion=lambda: list(ENGINES))
 ]
 OneMutant = Annotated[str, typer.Argument(metavar="MUTANT", help="Number, id, or a unique part of the id.")]
 Shard = Annotated[
-    str | None,
-    typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` merges the parts."),
+    str | None, Option("--shard", metavar="N/M", help="Run only part N of M; see `mutabot merge`.")
 ]
-Fresh = Annotated[
-    bool, typer.Option("--fresh", help="Re-run everything, including results that are still valid.")
-]
-Since = Annotated[
-    str | None,
-    typer.Option(
-        "--since",
-        metavar="REF",
-        help="Run only what changes since this git revision can have altered; reuse the other results.",
-    ),
-]
-OtherJournal = Annotated[
-    Path | None,
-    typer.Option(
-        "--journal",
-        metavar="PATH",
-        help="Also reuse valid outcomes from this journal, e.g. one downloaded from CI.",
-    ),
-]
-Compared = Annotated[
-    Path | None,
-    typer.Option(
-        "--compare",
-        metavar="OLD",
-        help="Compare with this journal (or with the journal in this project folder).",
-    ),
-]
-Budget = Annotated[
-    str | None,
-    typer.Option(
-        "--budget",
-        metavar="TIME",
-        help="Stop after this much time (90s, 10m, 1h30m), baseline included; run the most informative "
-        "mutants first.",
-    ),
-]
-Verify = Annotated[
-    int,
-    typer.Option(
-        "--verify",
-        metavar="N",
-        min=0,
-        max=limits.VERIFIED,
-        help="Re-run N random outcomes in fresh processes; exit with 4 if one ends differently.",
-    ),
-]
+Fresh = Annotated[bool, Option("--fresh", help="Re-run everything, including results that are still valid.")]
+Since = Annotated[str | None, Option("--since", metavar="REF", help=_SINCE)]
+OtherJournal = Annotated[Path | None, Option("--journal", metavar="PATH", help=_JOURNAL)]
+Compared = Annotated[Path | None, Option("--compare", metavar="OLD", help=_COMPARE)]
+Budget = Annotated[str | None, Option("--budget", metavar="TIME", help=_BUDGET)]
+Verify = Annotated[int, Option("--verify", metavar="N", min=0, max=limits.VERIFIED, help=_VERIFY)]
 Round = Annotated[
-    int | None, typer.Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
+    int | None, Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
 ]
 MinScore = Annotated[
     float | None,
-    typer.Option(
-        "--min-score",
-        metavar="PERCENT",
-        min=0,
-        max=100,
-        callback=_number,
-        help="Exit with 1 if a score is below this percentage.",
-    ),
+    Option("--min-score", metavar="PERCENT", min=0, max=100, callback=_number, help=_MIN_SCORE),
 ]
 
 
@@ -239,5 +168,5 @@ def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iter
         elif one.name != _EXECUTOR:
             yield one.replace(kind=one.KEYWORD_ONLY)
     for key, part in executors.items():
-        option = typer.Option(f"--{part.name}", metavar=part.metavar, help=part.help)
+        option = Option(f"--{part.name}", metavar=part.metavar, help=part.help)
         yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])

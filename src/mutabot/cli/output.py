@@ -23,7 +23,6 @@ def echo(text: str) -> None:
 
 def print_bytes(data: bytes) -> None:
     """Print bytes as they are, in UTF-8 whatever the terminal has."""
-
     try:
         sys.stdout.flush()
         sys.stdout.buffer.write(data)
@@ -40,13 +39,11 @@ def tell(lines: Iterable[str]) -> None:
 
 def print_json(data: Any) -> None:
     """Print data as JSON, as docs/json.md describes it."""
-
     echo(dumps(data_of(data)))
 
 
 def progress_shown() -> Bar | Lines:
     """Return what shows the progress of a campaign on standard error."""
-
     return make_progress(make_console(stderr=True))
 
 
@@ -60,7 +57,6 @@ def show_results(
         earlier: also show what earlier campaigns found.
         summary: leave out the table of mutants.
     """
-
     found = results_at(path, earlier=earlier)
     if json:
         print_json(document(found))

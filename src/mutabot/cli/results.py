@@ -115,7 +115,6 @@ def thresholds(
 
 def _graded(journal: Path) -> Results:
     """Read a journal. Raises JournalError if it holds no graded mutants."""
-
     found = results_at(journal)
     if not found.ladders:
         raise JournalError(
@@ -143,7 +142,6 @@ def report(
 
     With --compare alone, print how it differs from an older campaign.
     """
-
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
         raise UsageError(
@@ -177,7 +175,6 @@ def report(
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
     """Yield each format with its file. Raises UsageError if they do not go together or cannot be written."""
-
     if len(files) > len(names) or (len(names) > 1 and len(files) < len(names)):
         raise UsageError(
             f"{len(names)} formats and {len(files)} files: each --format takes one --output, in the same "

@@ -1,60 +1,68 @@
-"""What differs between two campaigns, on the terminal and as Markdown, in the same sections."""
+"""What differs between two campaigns, in the same sections on the terminal and as Markdown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
 
 from rich.console import Console
 from rich.text import Text
 
-from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.stored import Changes, Ends
+from mutabot.model import Span
 
-from .terminal.console import heading, make_table, percent, plain, short_place
-from .texts import escaped, rounds_text, table
+from .sections import Section, percent
+from .terminal.console import plain, print_section, short_place
+from .texts import escaped, rounds_text, section_lines
 
-#: a heading, and the mutants of which it is said, each with what happened to it
-Section = tuple[str, tuple[tuple[MutantResult, str], ...]]
+#: mutants of a section that are shown
+_ROWS = 50
 
 
-def sections(changes: Changes) -> Iterator[Section]:
-    """The sections that are not empty, what needs action first."""
-    pairs = (
+def sections(changes: Changes, place: Callable[[Span], str]) -> Iterator[Section]:
+    """Yield the scores, then the sections that are not empty, what needs action first."""
+    yield Section("Scores", ("family · role", ">old", ">new", ">points"), [*_score_rows(changes)])
+    pairs: tuple[tuple[str, Sequence[Ends]], ...] = (
         ("New survivors", changes.appeared),
         ("Changed survivors", changes.changed),
         ("Survivors with unknown state now", changes.unknown),
         ("Fixed survivors", changes.fixed),
         ("Removed mutants", changes.gone),
+        ("New mutants that do not survive", [one for one in changes.added if not one.either.is_survivor]),
     )
     for name, found in pairs:
-        if found:
-            yield name, tuple((pair.either, _told(pair)) for pair in found)
-    added = tuple(
-        (one.either, rounds_text(one.either)) for one in changes.added if not one.either.is_survivor
-    )
-    if added:
-        yield "New mutants that do not survive", added
+        rows = [_row(pair, place) for pair in found]
+        if rows:
+            yield Section(f"{name}: {len(rows)}", (">no.", "place", "operator", "*fault", "*result"), rows)
+
+
+def _row(pair: Ends, place: Callable[[Span], str]) -> tuple[str, ...]:
+    mutant = pair.either.mutant
+    told = rounds_text(pair.either)
+    if pair.new is not None and pair.old is not None:
+        told = f"{told}; before: {rounds_text(pair.old)}"
+    elif pair.new is None:
+        told = f"before: {told}"
+    return str(mutant.number), place(mutant.site.span), mutant.operator, mutant.description, told
 
 
 def summary(changes: Changes) -> str:
-    """The numbers in a line."""
+    """Return the numbers in a line."""
     return (
         f"Survivors: {len(changes.appeared)} new, {len(changes.fixed)} fixed, "
         f"{len(changes.changed)} changed, {changes.same} as before, {len(changes.unknown)} unknown; "
-        f"mutants: {len(changes.added)} new, {len(changes.gone)} gone"
+        f"mutants: {len(changes.added)} new, {len(changes.gone)} removed"
     )
 
 
 def notes(changes: Changes) -> list[str]:
-    """What is to be known of campaigns that did not run to their end, or not of the same mutants."""
+    """Return what to know about campaigns that did not run to their end, or not of the same mutants."""
     states = (("old", changes.old_state), ("new", changes.new_state))
     ends = [f"the {name} campaign is not complete: {state}" for name, state in states if state != "complete"]
     return [*ends, *changes.notes]
 
 
-def score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
+def _score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
     """Family and role, the old score, the new one, and the difference in percentage points."""
     for (family, role), (old, new) in changes.scores.items():
         before, after = _mean(old), _mean(new)
@@ -62,53 +70,22 @@ def score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
         yield f"{family} · {role}", percent(before), percent(after), by
 
 
-def _told(pair: Ends) -> str:
-    old = f"before: {rounds_text(pair.old)}" if pair.old is not None else "a new mutant"
-    return f"{rounds_text(pair.new)}; {old}" if pair.new is not None else old
-
-
 def _mean(group: Group | None) -> float | None:
     return group.scores.mean if group is not None else None
 
 
-#: mutants of a section that are shown
-_ROWS = 50
-
-
-def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
-    """Yield the lines of Markdown. ``path`` names a file of the project as the reader knows it."""
+def change_lines(changes: Changes, place: Callable[[Span], str]) -> Iterator[str]:
+    """Yield the lines of Markdown. ``place`` names a span as the reader knows it."""
     yield from ("### Since the older campaign", "", f"{summary(changes)}.", "")
     for line in notes(changes):
         yield from (f"> **{escaped(line)}**", "")
-    yield from table(("family · role", "old", "new", "points"), score_rows(changes), right=(1, 2, 3))
-    for title, found in sections(changes):
-        yield from (f"#### {title}: {len(found)}", "")
-        rows = []
-        for result, told in found[:_ROWS]:
-            mutant, span = result.mutant, result.mutant.site.span
-            place = replace(span, file=path(span.file)).place
-            rows.append((str(mutant.number), place, mutant.operator, mutant.description, told))
-        yield from table(("no.", "place", "operator", "fault", "result"), rows, right=(0,))
-        if len(found) > _ROWS:
-            yield from (f"and {len(found) - _ROWS} more", "")
+    for section in sections(changes, place):
+        yield from section_lines(section, _ROWS, level=4)
 
 
 def print_changes(console: Console, changes: Changes) -> None:
     """Print what differs."""
-    console.print(Text(summary(changes), style="bold"))
-    for line in notes(changes):
+    for line in (summary(changes), *notes(changes)):
         console.print(Text(plain(line), style="bold"))
-    scores = make_table(("family · role", ">old", ">new", ">points"))
-    for row in score_rows(changes):
-        scores.add_row(*row)
-    console.print(scores)
-    for title, found in sections(changes):
-        console.print(heading(f"{title}: {len(found)}"))
-        mutants = make_table((">no.", "place", "operator", "*fault and result"))
-        for result, told in found[:_ROWS]:
-            mutant = result.mutant
-            text = plain(f"{mutant.description}\n{told}")
-            mutants.add_row(str(mutant.number), short_place(mutant.site.span), mutant.operator, text)
-        console.print(mutants)
-        if len(found) > _ROWS:
-            console.print(Text(f"and {len(found) - _ROWS} more", style="dim"))
+    for section in sections(changes, short_place):
+        print_section(console, section, _ROWS)

@@ -7,16 +7,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.analysis.divergence import first_line, worst_of
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.journal.records import Reaching
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
+
+if TYPE_CHECKING:
+    from .sections import Section
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
@@ -70,20 +73,21 @@ def escaped(text: str) -> str:
     return _START.sub(lambda found: f"\\{found[1]}" if found[1] else f"{found[2]}\\{found[3]}", line)
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]], *, right: Container[int] = ()) -> Iterator[str]:
-    """The lines of a table, and an empty one. ``right``: columns of numbers."""
-    yield _row(head)
-    yield _row_of("---:" if index in right else "---" for index in range(len(head)))
-    for row in rows:
-        yield _row(row)
-    yield ""
+def section_lines(section: Section, at_most: int, *, level: int = 3) -> Iterator[str]:
+    """Yield the Markdown of a section, of many rows the first."""
+    yield from (f"{'#' * level} {escaped(section.title)}", "")
+    if section.columns:
+        yield _row(name.lstrip(">*") for name in section.columns)
+        yield _row("---:" if name.startswith(">") else "---" for name in section.columns)
+        yield from (_row(map(escaped, row)) for row in section.rows[:at_most])
+        yield ""
+        if len(section.rows) > at_most:
+            yield from (f"and {len(section.rows) - at_most} more, which the command line prints.", "")
+    if section.lines:
+        yield from (*(f"- {escaped(line)}" for line in section.lines), "")
 
 
 def _row(cells: Iterable[str]) -> str:
-    return _row_of(escaped(cell) for cell in cells)
-
-
-def _row_of(cells: Iterable[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
@@ -211,15 +215,16 @@ def survivor_text(result: MutantResult) -> str:
 
 
 def why_alone(result: MutantResult) -> str:
-    """Return the line about a mutant, for a place where its description stands beside it.
+    """Return the line about a mutant, for a place where its description stands beside it."""
+    return result.why.removeprefix(f"{result.mutant.description}; ")
 
-    Of a mutant that only some rounds let through it says how many killed it; of a story, in which test it
-    happened.
-    """
-    why, rate = result.why.removeprefix(f"{result.mutant.description}; "), result.kill_rate
-    most = telling(result)
-    if result.is_survivor and most is not None and most[1] is not None and most[1].story in why:
-        why += f" (in {most[1].test.rpartition('/')[2]})" if most[1].story else ""
+
+def effect_text(result: MutantResult) -> str:
+    """Return the line about a mutant with the test in which it happened, and how many rounds killed it."""
+    why, rate = why_alone(result), result.kill_rate
+    _, diverged = telling(result) or (0, None)
+    if diverged is not None and diverged.story and diverged.story in why:
+        why += f" (in {diverged.test.rpartition('/')[2]})"
     if result.is_survivor and rate.killed:
         why += f"; killed in {rate.killed} of {rate.valid} rounds"
     return why

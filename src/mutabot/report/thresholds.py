@@ -14,7 +14,8 @@ from mutabot.analysis.thresholds.ladders import Ladder
 from mutabot.analysis.thresholds.thresholds import Change, Comparison, Thresholds
 from mutabot.analysis.thresholds.words import amount, line_of, violations_in_words
 from mutabot.model.graded import OFFSET
-from mutabot.report.terminal.console import make_table, note, percent, plain, plural
+from mutabot.report.sections import Section, percent, plural
+from mutabot.report.terminal.console import make_table, plain, print_section
 
 _LEGEND = "· no round notices   ▒ some do   █ all do   × the robot refuses; one sign per magnitude"
 
@@ -32,8 +33,8 @@ def print_thresholds(console: Console, thresholds: Thresholds) -> None:
         console.print(table)
         console.print(Text(_LEGEND, style="dim"))
     for name, lines in _sections(thresholds).items():
-        for part in note(name, lines) if lines else ():
-            console.print(part)
+        if lines:
+            print_section(console, Section(name, lines=lines))
     console.print(Text(f"\n{_confidence(thresholds)}", style="dim"))
 
 
@@ -121,8 +122,10 @@ def print_compared(console: Console, comparison: Comparison) -> None:
         console.print(table)
         console.print(Text(_LEGEND, style="dim"))
     for name, ids in (("the old", comparison.gone), ("the new", comparison.added)):
-        for part in note(f"{plural(len(ids), 'ladder')} only in {name} campaign", ids) if ids else ():
-            console.print(part)
+        if ids:
+            print_section(
+                console, Section(f"{plural(len(ids), 'ladder')} only in {name} campaign", lines=ids)
+            )
 
 
 def _mean_text(comparison: Comparison) -> str:

@@ -22,7 +22,7 @@ from mutabot.model import By
 from mutabot.report.document import data_of, finite
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
-from mutabot.report.texts import status_of, why_alone
+from mutabot.report.texts import effect_text, status_of
 
 from .mutant import Recorded, mutant_page
 
@@ -90,7 +90,7 @@ def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
     return {
         **data_of.facts(result, _ROW),
         "status": data_of(status_of(result)) or "not run",
-        "why": why_alone(result),
+        "why": effect_text(result),
         "ends": "".join(mark_of(one).letter for one in result.rounds),
         "kills": [*kills.values()],
     }

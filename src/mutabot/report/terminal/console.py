@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import IO
 
 from rich import box
@@ -14,9 +14,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.statistics import Interval
 from mutabot.frozen import frozen
 from mutabot.model import By, Outcome, Span, Verdict
+from mutabot.report.sections import Section
 
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
@@ -61,14 +61,6 @@ def below(text: str, indent: int = 2, style: str = "") -> RenderableType:
     return Padding(Text(plain(text), style=style, overflow="fold"), (0, 0, 0, indent), expand=False)
 
 
-def note(text: str, lines: Sequence[str] = (), style: str = "bold") -> Iterator[RenderableType]:
-    """Yield a sentence and the lines that belong to it, of many the first."""
-    yield Text(f"\n{plain(text)}", style=style, overflow="fold")
-    yield from map(below, lines[:_MOST])
-    if len(lines) > _MOST:
-        yield below(f"and {len(lines) - _MOST} more", style="dim")
-
-
 def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
     """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the room that is left."""
     look = box.SIMPLE_HEAD
@@ -96,19 +88,27 @@ def short_place(span: Span, width: int = 24) -> str:
     return place if "/".join(parts) == place else "…/" + "/".join(parts)
 
 
-def percent(share: float | None) -> str:
-    """Return a score as text: ``92.3 %``, or ``–`` where nothing was valid."""
-    return "–" if share is None else f"{100 * share:.1f} %"
-
-
-def between(interval: Interval | None) -> str:
-    """Return an interval as text: ``34–90 %``, or ``–`` where there is none."""
-    return "–" if interval is None else f"{100 * interval.low:.0f}–{100 * interval.high:.0f} %"
-
-
-def plural(count: int, singular: str, several: str | None = None) -> str:
-    """Return ``1 mutant``, ``2 mutants``."""
-    return f"{count} {singular if count == 1 else several or singular + 's'}"
+def print_section(console: Console, section: Section, at_most: int | None = None) -> None:
+    """Print a section, of many rows and lines the first. Columns of longer texts share one cell."""
+    style = "bold red" if section.is_alarm else "bold"
+    console.print(Text(f"\n{plain(section.title)}", style=style, overflow="fold"))
+    if section.columns:
+        is_wide = [name.startswith("*") for name in section.columns]
+        wide = "*" + " and ".join(name[1:] for name in section.columns if name.startswith("*"))
+        columns = [name for name in section.columns if not name.startswith("*")]
+        at = is_wide.index(True) if True in is_wide else len(columns)
+        table = make_table([*columns[:at], *([wide] if True in is_wide else []), *columns[at:]])
+        for row in section.rows[:at_most]:
+            short = [plain(cell) for cell, one in zip(row, is_wide, strict=True) if not one]
+            long = "\n".join(plain(cell) for cell, one in zip(row, is_wide, strict=True) if one)
+            table.add_row(*short[:at], *([long] if True in is_wide else []), *short[at:])
+        console.print(table)
+        if at_most is not None and len(section.rows) > at_most:
+            console.print(Text(f"and {len(section.rows) - at_most} more", style="dim"))
+    for line in section.lines[:_MOST]:
+        console.print(below(line))
+    if len(section.lines) > _MOST:
+        console.print(below(f"and {len(section.lines) - _MOST} more", style="dim"))
 
 
 @frozen

@@ -12,9 +12,9 @@ from rich.text import Text
 
 from mutabot.model import LeftOut, Mutant
 from mutabot.report.document import data_of
+from mutabot.report.sections import plural, skipped
 
-from .campaign import left_out_lines
-from .console import below, heading, make_table, plain, plural, short_place
+from .console import below, heading, make_table, plain, print_section, short_place
 
 
 def print_plan(
@@ -30,8 +30,10 @@ def print_plan(
     ladders = len({mutant.ladder for mutant in mutants} - {""})
     of_them = f" ({plural(ladders, 'ladder')} in one line each)" if ladders and not everything else ""
     console.print(f"{plural(len(mutants), 'mutant')}{of_them}")
-    for line in left_out_lines(left_out, everything=everything):
-        console.print(line)
+    if left_out:
+        print_section(console, skipped(left_out))
+    for item in left_out if everything else ():
+        console.print(below(f"{item.id}  {item.description}: {item.reason}"))
 
 
 def _ladders_in_one(mutants: Sequence[Mutant]) -> list[Mutant]:

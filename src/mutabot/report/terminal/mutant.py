@@ -19,10 +19,11 @@ from mutabot.evidence.story import Entry, amount, around, timeline
 from mutabot.journal.records import Replayed
 from mutabot.model import Diverged, Kind, Looked, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import end_in_words
-from mutabot.report.texts import numbers_text, telling, why_alone
+from mutabot.report.sections import between, plural
+from mutabot.report.texts import effect_text, numbers_text, telling
 
 from .campaign import letters
-from .console import below, between, heading, make_table, mark_of, plain, plural
+from .console import below, heading, make_table, mark_of, plain
 from .suggested import print_suggestions, suggested_parts
 
 __all__ = ["excerpt", "print_mutant", "print_replayed", "print_suggestions"]
@@ -91,7 +92,7 @@ def _facts(result: MutantResult) -> Table:
         "quantity": _quantity_text(mutant.quantity, result.quantity) if mutant.operation else "",
         "change": f"the program {result.change}" if result.change is not None else "",
         "killed": of_rounds + interval,
-        "result": why_alone(result),
+        "result": effect_text(result),
         "better": result.improvement,
     }
     table = make_table(("", "*"), header=False)

@@ -82,8 +82,10 @@ def make_progress(console: Console) -> Bar | Lines:
 
 
 class _Progress(Progress):
+    room = 0
+
     def get_renderables(self) -> Iterable[RenderableType]:
-        yield Constrain(self.make_tasks_table(self.tasks), self.console.width - _SPARE)
+        yield Constrain(self.make_tasks_table(self.tasks), self.room)
 
 
 class Bar:
@@ -100,6 +102,7 @@ class Bar:
             console=console,
             expand=True,
         )
+        self._progress.room = console.width - _SPARE
         self._task: TaskID | None = None
 
     def stage(self, text: str, total: int | None = None) -> None:

@@ -10,9 +10,10 @@ from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.report.sections import Section, plural
 from mutabot.report.texts import numbers_text
 
-from .console import below, heading, note, plural
+from .console import below, heading, print_section
 
 
 def print_suggestions(console: Console, found: Suggestions) -> None:
@@ -36,8 +37,8 @@ def print_suggestions(console: Console, found: Suggestions) -> None:
         f"{plural(len(dropped), 'check')} dropped, because verification failed": dropped,
     }
     for name, lines in sections.items():
-        for part in note(name, lines) if lines else ():
-            console.print(part)
+        if lines:
+            print_section(console, Section(name, lines=lines))
     if found.diff:
         console.print(f"\n{found.diff.rstrip()}", soft_wrap=True)
 
