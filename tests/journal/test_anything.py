@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mutabot.cli.report import FORMATS
 
 from analysis import samples
 from mutabot.analysis.gate import decide
@@ -31,7 +30,7 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.marks import mark_of
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import REACHING
-from mutabot.report.format import Material, format_of
+from mutabot.report.format import Material, format_of, names
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
@@ -166,7 +165,7 @@ def written_as(name: str) -> Callable[[Path], None]:
 @pytest.mark.whole
 def test_rows_may_hold_anything(whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chance = random.Random(SEED)
-    ways = [read_all, read_all, *(written_as(name) for name in FORMATS)]
+    ways = [read_all, read_all, *(written_as(name) for name in names())]
     expected = {(one.mutant, one.round): one for one in samples.OUTCOMES}
     path = tmp_path / "journal.sqlite"
     for number in range(TIMES):

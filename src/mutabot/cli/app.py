@@ -74,11 +74,14 @@ class Commands(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the name of the command to run, the command, and its arguments."""
+        if args and args[0] not in _OWN:
+            self.commands = dict.fromkeys(self.list_commands(ctx))  # typer suggests the nearest of these
         name, _, rest = super().resolve_command(ctx, args)
-        return name, _command(str(name), with_options(_function(str(name)))), rest
+        return name, _command(str(name), with_options(function_of(str(name)))), rest
 
 
-def _function(name: str) -> Callable[..., object]:
+def function_of(name: str) -> Callable[..., object]:
+    """Import the function of a command."""
     if name in _OWN:
         module, _, attribute = _OWN[name][0].partition(":")
         return getattr(importlib.import_module(f"mutabot.cli.{module}"), attribute)  # type: ignore[no-any-return]

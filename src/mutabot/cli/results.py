@@ -149,9 +149,10 @@ def report(
         )
     if html is not None:
         check_folder(html)
-    for name in ["--html"] if html is not None else [one.name for one, _ in wanted if not one.tells_changes]:
-        if compare is not None:
-            raise UsageError(f"{name} cannot hold a comparison; --format markdown can")
+    unfit = ["--html"] if html is not None else []
+    unfit += [f"the format {one.name}" for one, _ in wanted if not one.tells_changes]
+    if compare is not None and unfit:
+        raise UsageError(f"{unfit[0]} cannot hold a comparison; markdown can")
     if json and (wanted or html is not None or compare is None):
         raise UsageError("--json goes with --compare alone; `mutabot results --json` prints the results")
     journal, folder = find_journal(context.obj), PurePosixPath(prefix)

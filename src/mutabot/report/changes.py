@@ -11,9 +11,9 @@ from mutabot.analysis.score import Group
 from mutabot.analysis.stored import Changes, Ends
 from mutabot.model import Span
 
-from .sections import Section, percent
+from .sections import Section, percent, section_lines
 from .terminal.console import plain, print_section, short_place
-from .texts import escaped, rounds_text, section_lines
+from .texts import escaped, rounds_text
 
 #: mutants of a section that are shown
 _ROWS = 50

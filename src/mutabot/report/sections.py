@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from mutabot.analysis.chance import Estimate, false_kills, false_survivors
 from mutabot.analysis.divergence import first_line
-from mutabot.analysis.results import MutantResult, Results, unlooked
+from mutabot.analysis.results import Results, unlooked
 from mutabot.analysis.score import Group
 from mutabot.analysis.statistics import Interval
 from mutabot.analysis.thresholds.thresholds import thresholds_of
@@ -16,7 +16,7 @@ from mutabot.frozen import frozen
 from mutabot.journal.records import REMARKS, Repeated
 from mutabot.model import LeftOut, Span, Verdict
 
-from .texts import OUTSIDE, effect_text, rounds_text, short_reason, status_of
+from .texts import OUTSIDE, effect_text, escaped, rounds_text
 
 Place = Callable[[Span], str]
 #: numbers of mutants that a line gives
@@ -164,28 +164,26 @@ def _survivors(results: Results, place: Place) -> Iterator[Section]:
 
 
 def _outside(results: Results, place: Place) -> Iterator[Section]:
-    """Mutants that do not count, with the state of each and the reason."""
-    found: dict[Verdict | None, list[MutantResult]] = {}
-    for result in results.mutants:
-        found.setdefault(status_of(result), []).append(result)
-    states = [status for status in OUTSIDE if status in found]
-    if states:
-        told = ", ".join(f"{len(found[status])} {status}" for status in states)
+    """Mutants with rounds that do not count, with the reason of the first such round."""
+    found = [(verdict, results.with_verdict(verdict)) for verdict in OUTSIDE]
+    told = ", ".join(f"{len(those)} {verdict}" for verdict, those in found if those)
+    rows = [
+        (
+            str(one.mutant.number),
+            place(one.mutant.site.span),
+            one.mutant.operator,
+            one.mutant.description,
+            f"{rounds_text(one)}: {first_line(outcome.message)}",
+        )
+        for _, those in found
+        for one, outcome in those
+    ]
+    if rows:
         columns = (">no.", "place", "operator", "*fault", "*result")
-        rows = [
-            (
-                str(one.mutant.number),
-                place(one.mutant.site.span),
-                one.mutant.operator,
-                one.mutant.description,
-                f"{rounds_text(one)}: {short_reason(one)}",
-            )
-            for status in states
-            for one in found[status]
-        ]
         yield Section(f"Not counted in the score: {told}", columns, rows, is_detail=True)
-    if None in found:
-        yield Section(f"{plural(len(found[None]), 'mutant')} not run yet")
+    waiting = sum(not result.outcomes for result in results.mutants)
+    if waiting:
+        yield Section(f"{plural(waiting, 'mutant')} not run yet")
 
 
 def skipped(left_out: Sequence[LeftOut]) -> Section:
@@ -256,6 +254,24 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
     if parts:
         text = f"{what.capitalize()}: {'; '.join(parts)}"
         yield Section(text, is_alarm=any(one.changed for _, one in kinds))
+
+
+def section_lines(section: Section, at_most: int, *, level: int = 3) -> Iterator[str]:
+    """Yield the Markdown of a section, of many rows the first."""
+    yield from (f"{'#' * level} {escaped(section.title)}", "")
+    if section.columns:
+        yield _row(name.lstrip(">*") for name in section.columns)
+        yield _row("---:" if name.startswith(">") else "---" for name in section.columns)
+        yield from (_row(map(escaped, row)) for row in section.rows[:at_most])
+        yield ""
+        if len(section.rows) > at_most:
+            yield from (f"and {len(section.rows) - at_most} more, which the command line prints.", "")
+    if section.lines:
+        yield from (*(f"- {escaped(line)}" for line in section.lines), "")
+
+
+def _row(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
 
 
 def numbered(numbers: Sequence[int]) -> str:

@@ -7,19 +7,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from mutabot.analysis.divergence import first_line, worst_of
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.journal.records import Reaching
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
-
-if TYPE_CHECKING:
-    from .sections import Section
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
@@ -71,24 +68,6 @@ def escaped(text: str) -> str:
     # no link is made of an address that a program wrote
     line = line.replace("://", ":&#47;&#47;").replace("www.", "www&#46;")
     return _START.sub(lambda found: f"\\{found[1]}" if found[1] else f"{found[2]}\\{found[3]}", line)
-
-
-def section_lines(section: Section, at_most: int, *, level: int = 3) -> Iterator[str]:
-    """Yield the Markdown of a section, of many rows the first."""
-    yield from (f"{'#' * level} {escaped(section.title)}", "")
-    if section.columns:
-        yield _row(name.lstrip(">*") for name in section.columns)
-        yield _row("---:" if name.startswith(">") else "---" for name in section.columns)
-        yield from (_row(map(escaped, row)) for row in section.rows[:at_most])
-        yield ""
-        if len(section.rows) > at_most:
-            yield from (f"and {len(section.rows) - at_most} more, which the command line prints.", "")
-    if section.lines:
-        yield from (*(f"- {escaped(line)}" for line in section.lines), "")
-
-
-def _row(cells: Iterable[str]) -> str:
-    return f"| {' | '.join(cells)} |"
 
 
 T = TypeVar("T")

@@ -91,9 +91,10 @@ def _confidence(thresholds: Thresholds) -> str:
     elif first is not None and first.median is not None:
         level = f"{100 * first.median.level:.0f} % confidence"
         parts.append(f"The median threshold lies above “none up to” and at most at “all from” with {level}.")
-        if first.share_shown is not None:
-            share = f"at least {100 * first.share_shown:.0f} % of further rounds do (95 %)"
-            parts.append(f"Where all {len(first.counted)} rounds notice, {share}.")
+        shares = [one.share_shown for one in thresholds.ladders if one.share_shown is not None]
+        if shares:
+            share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"
+            parts.append(f"Where all rounds notice, {share}.")
     if thresholds.exhaustive:
         alarms = thresholds.false_alarms
         parts.append(f"{thresholds.runs} of {plural(thresholds.exhaustive, 'possible run')} were needed.")

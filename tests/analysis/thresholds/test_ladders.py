@@ -9,8 +9,6 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mutabot.report.thresholds.picture import picture_of, svg
-from mutabot.report.thresholds.text import print_thresholds, suggested_toml
 
 from analysis.thresholds import journals
 from analysis.thresholds.journals import LETTERS, SIZES, Rungs
@@ -19,6 +17,7 @@ from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
+from mutabot.report.thresholds import print_thresholds, suggested_toml
 
 ROUND = st.text("".join(LETTERS) + ".CCCSSS", min_size=len(SIZES), max_size=len(SIZES))
 
@@ -35,10 +34,9 @@ def test_whatever_was_seen_can_be_told(
     assert len(found.all) == 2
     for one in found.ladders:
         assert_sound(one)
-    print_thresholds(make_console(io.StringIO(), width=80), found, steps=True)
+    print_thresholds(make_console(io.StringIO(), width=80), found)
     dumps(data_of(found))
     suggested_toml(found.ladders, table="demand")
-    svg(picture_of(found), by="a test")
 
 
 def assert_sound(one: Ladder) -> None:

@@ -1,4 +1,4 @@
-"""``mutabot show`` tells of a survivor who looked, and of other mutants nothing."""
+"""``mutabot show`` --all`` tells which checks ran with a survivor, and of other mutants nothing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def shown(folder: Path, mutant: Mutant, width: int = 120) -> str:
     with Journal.open(samples.write_journal(folder / "journal.sqlite")) as journal:
         result = find_mutant(read_results(journal), str(mutant.number))
     file = io.StringIO()
-    print_mutant(make_console(file, width=width), result, samples.SENSORS)
+    print_mutant(make_console(file, width=width), result, samples.SENSORS, everything=True)
     return file.getvalue()
 
 
@@ -39,4 +39,4 @@ def test_no_line_is_longer_than_the_terminal(tmp_path: Path, width: int) -> None
 
 
 def test_a_mutant_that_was_killed_has_no_such_section(tmp_path: Path) -> None:
-    assert "Who looked" not in shown(tmp_path, samples.REVERSE)
+    assert "Checks that ran" not in shown(tmp_path, samples.REVERSE)

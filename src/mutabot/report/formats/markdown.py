@@ -8,8 +8,8 @@ from dataclasses import replace
 from mutabot.model import Span
 from mutabot.report.changes import change_lines
 from mutabot.report.format import Format, Material
-from mutabot.report.sections import plural, sections
-from mutabot.report.texts import escaped, section_lines
+from mutabot.report.sections import plural, section_lines, sections
+from mutabot.report.texts import escaped
 
 #: rows of a table; GitHub takes no summary of more than a megabyte
 _ROWS = 100
