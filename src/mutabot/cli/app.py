@@ -75,7 +75,8 @@ class Commands(TyperGroup):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the name of the command to run, the command, and its arguments."""
         if args and args[0] not in _OWN:
-            self.commands = dict.fromkeys(self.list_commands(ctx))  # typer suggests the nearest of these
+            names: Any = dict.fromkeys(self.list_commands(ctx))
+            self.commands = names  # typer suggests the nearest of these
         name, _, rest = super().resolve_command(ctx, args)
         return name, _command(str(name), with_options(function_of(str(name)))), rest
 

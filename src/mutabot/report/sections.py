@@ -36,7 +36,7 @@ class Section:
         rows: of its table.
         lines: what stands below the table.
         is_alarm: whether results cannot be relied on without knowing it.
-        is_detail: whether the summary of a run shows the title alone.
+        is_detail: whether the summary of a run shows the title of its table alone, and nothing without one.
     """
 
     title: str
@@ -233,7 +233,8 @@ def _reliability(results: Results) -> Iterator[Section]:
         yield Section("Self-check failed", lines=wrong, is_alarm=True)
     elif results.controls:
         files = plural(len({one.test_file.partition("::")[0] for one in results.controls}), "test file")
-        yield Section(f"Self-check passed in {files} (a no-op mutant survived, a crashing one was killed)")
+        text = f"Self-check passed in {files} (a no-op mutant survived, a crashing one was killed)"
+        yield Section(text, is_detail=True)
 
 
 def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repeated]]) -> Iterator[Section]:

@@ -37,10 +37,11 @@ def print_results(console: Console, results: Results, *, everything: bool = Fals
 
 
 def print_summary(console: Console, results: Results) -> None:
-    """Print how a run ended: errors, scores, survivors, and the titles of what is only detail."""
+    """Print how a run ended: errors, scores, survivors, and the titles of tables that are only details."""
     console.print(Text(title(results), style="bold"))
     for section in sections(results, short_place):
-        print_section(console, Section(section.title) if section.is_detail else section, _ROWS)
+        if section.columns or not section.is_detail:
+            print_section(console, Section(section.title) if section.is_detail else section, _ROWS)
     console.print(Text(_NEXT, style="dim"))
 
 

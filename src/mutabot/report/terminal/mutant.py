@@ -133,7 +133,8 @@ def _rounds(result: MutantResult, *, everything: bool) -> Iterator[RenderableTyp
         test = f" in {outcome.test}" if outcome is not None and outcome.test is not None else ""
         mark = mark_of(outcome)
         which = numbers_text(number + 1 for number in numbers)
-        yield Text.assemble(f"  {which}: ", (mark.letter, mark.style), f" {mark.words}{plain(test)}")
+        line = Text.assemble(f"{which}: ", (mark.letter, mark.style), f" {mark.words}{plain(test)}")
+        yield Padding(line, (0, 0, 0, 2), expand=False)
         if outcome is not None:
             lines = "\n".join(_details(outcome)).splitlines()
             yield from (below(line, 8) for line in (lines if everything else lines[:_LINES]))
