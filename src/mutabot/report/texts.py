@@ -203,9 +203,10 @@ def effect_text(result: MutantResult) -> str:
     why, rate = why_alone(result), result.kill_rate
     _, diverged = telling(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
-        why += f" (in {diverged.test.rpartition('/')[2]})"
+        why += f" (in {diverged.test.rpartition('::')[2]})"
     if result.is_survivor and rate.killed:
-        why += f"; killed in {rate.killed} of {rate.valid} rounds"
+        where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
+        why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"
     return why
 
 
