@@ -21,7 +21,7 @@
         step(before, "← Previous", "p"), h("span", null, where >= 0 ? `${where + 1} of ${order.length}` : ""), step(after, "Next →", "n")),
       h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
       h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, " in ", one.function), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
-      h("p", { class: "story big" }, one.why));
+      h("p", { class: "story big" }, mutabot.breakable(one.why)));
     const holder = h("div", null, h("p", { class: "wait" }, "The mutant is being read …"));
     body.append(holder);
     const stops = [];

@@ -133,7 +133,7 @@
     return h("li", null,
       h("div", { class: "finding-head" }, marks.ends(one.ends), h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`),
         h("span", { class: "place" }, one.place, " · ", one.operator)),
-      h("p", { class: "story" }, one.why));
+      h("p", { class: "story" }, mutabot.breakable(one.why)));
   }
 
   function unseen(campaign) {
