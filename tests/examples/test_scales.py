@@ -176,7 +176,9 @@ def test_the_page_on_reading_a_report_quotes_what_is_printed(
     assert main(["-C", str(project), "show", str(number), "--all"]) == 0
     printed = {line.rstrip() for line in capsys.readouterr().out.splitlines()}
     page = blocks((EXAMPLE.parents[1] / "docs" / "reading-a-report.md").read_text(encoding="utf-8"))
-    quotes = [block for block in page if "survivors, largest" in block.text or "Checks that ran" in block.text]
+    quotes = [
+        block for block in page if "survivors, largest" in block.text or "Checks that ran" in block.text
+    ]
     assert len(quotes) == 2
     for line in (line for block in quotes for line in block.text.splitlines()):
         assert line in printed or line.strip() in {"", "…"}

@@ -15,27 +15,29 @@ from mutabot.analysis.thresholds.thresholds import Change, Comparison, Threshold
 from mutabot.analysis.thresholds.words import amount, line_of, violations_in_words
 from mutabot.model.graded import OFFSET
 from mutabot.report.sections import Section, percent, plural
-from mutabot.report.terminal.console import make_table, plain, print_section
+from mutabot.report.terminal.console import print_section
 
+#: lines of a section that are shown; --json has all
+_MOST = 12
 _LEGEND = "· no round notices   ▒ some do   █ all do   × the robot refuses; one sign per magnitude"
 
 
 def print_thresholds(console: Console, thresholds: Thresholds) -> None:
     """Print the thresholds of a campaign, the loosest first."""
     size = f"{plural(len(thresholds.all), 'ladder')} × {plural(thresholds.rounds, 'round')}"
-    console.print(Text(f"{size}: {thresholds.state}", style="bold"))
-    if thresholds.ladders:
-        table = make_table(("*fault", ">none up to", "magnitudes", ">all from", "*noticed by"))
-        for one in thresholds.ladders:
-            none = amount(one.none_up_to, one.unit) if one.none_up_to else "–"
-            every = amount(one.all_from, one.unit) if one.all_from in one.sizes else "–"
-            table.add_row(plain(f"{one.place} {one.name}"), none, bar(one), every, _noticed_by(one))
-        console.print(table)
-        console.print(Text(_LEGEND, style="dim"))
+    columns = ("*fault", ">none up to", "magnitudes", ">all from", "*noticed by")
+    rows = [_row(one) for one in thresholds.ladders]
+    print_section(console, Section(f"{size}: {thresholds.state}", columns, rows, [_LEGEND]))
     for name, lines in _sections(thresholds).items():
         if lines:
-            print_section(console, Section(name, lines=lines))
+            print_section(console, Section(name, lines=lines), _MOST)
     console.print(Text(f"\n{_confidence(thresholds)}", style="dim"))
+
+
+def _row(one: Ladder) -> tuple[str, ...]:
+    none = amount(one.none_up_to, one.unit) if one.none_up_to else "–"
+    every = amount(one.all_from, one.unit) if one.all_from in one.sizes else "–"
+    return f"{one.place} {one.name}", none, bar(one), every, _noticed_by(one)
 
 
 def bar(ladder: Ladder) -> str:
@@ -113,20 +115,21 @@ def print_compared(console: Console, comparison: Comparison) -> None:
     console.print(
         f"No ladder is called improved or worse: {why}." if why else f"In these rounds: {told or 'none'}."
     )
-    console.print(Text(_mean_text(comparison)))
-    table = make_table(("*fault", "before", "now", "*change"))
-    for one in comparison.ladders:
-        if one.change is not Change.SAME:
-            change = "" if why and one.change is not Change.UNKNOWN else str(one.change)
-            table.add_row(plain(f"{one.new.place} {one.new.name}"), bar(one.old), bar(one.new), change)
-    if table.row_count:
-        console.print(table)
-        console.print(Text(_LEGEND, style="dim"))
+    rows = [
+        (
+            f"{one.new.place} {one.new.name}",
+            bar(one.old),
+            bar(one.new),
+            "" if why and one.change is not Change.UNKNOWN else str(one.change),
+        )
+        for one in comparison.ladders
+        if one.change is not Change.SAME
+    ]
+    columns = ("*fault", "before", "now", "*change")
+    print_section(console, Section(_mean_text(comparison), columns, rows, [_LEGEND]))
     for name, ids in (("the old", comparison.gone), ("the new", comparison.added)):
         if ids:
-            print_section(
-                console, Section(f"{plural(len(ids), 'ladder')} only in {name} campaign", lines=ids)
-            )
+            print_section(console, Section(f"Ladders only in {name} campaign: {len(ids)}", lines=ids))
 
 
 def _mean_text(comparison: Comparison) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 
 import pytest
@@ -27,8 +28,7 @@ def test_each_check_is_told_with_its_values_and_its_margin(tmp_path: Path) -> No
     text = shown(tmp_path, samples.NEGATE)
     assert "tests/test_box.py::test_arrives: 2 checks held, the nearest by 0.08" in text
     line = next(line for line in text.splitlines() if "test_box.py:7" in line)
-    assert "x == approx(0.5, abs=0.1) (2 times)   0.48 == approx(0.5)" in line
-    assert line.split()[-1] == "0.08"
+    assert re.search(r"x == approx\(0.5, abs=0.1\) \(2 times\) +0.08 +0.48 == approx\(0.5\)", line)
     assert "box.colour == [red]" in text  # as it is, and no markup
     assert "tests/test_box.py::test_leaves: the mutant changed nothing in it" in text
 

@@ -20,8 +20,6 @@ from mutabot.report.sections import Section
 
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
-#: lines of a note that are shown
-_MOST = 10
 
 
 class _Console(Console):
@@ -89,26 +87,26 @@ def short_place(span: Span, width: int = 24) -> str:
 
 
 def print_section(console: Console, section: Section, at_most: int | None = None) -> None:
-    """Print a section, of many rows and lines the first. Columns of longer texts share one cell."""
+    """Print a section, of many rows and lines the first. Neighbouring columns of texts share a cell."""
     style = "bold red" if section.is_alarm else "bold"
     console.print(Text(f"\n{plain(section.title)}", style=style, overflow="fold"))
-    if section.columns:
-        is_wide = [name.startswith("*") for name in section.columns]
-        wide = "*" + " and ".join(name[1:] for name in section.columns if name.startswith("*"))
-        columns = [name for name in section.columns if not name.startswith("*")]
-        at = is_wide.index(True) if True in is_wide else len(columns)
-        table = make_table([*columns[:at], *([wide] if True in is_wide else []), *columns[at:]])
+    groups: list[list[int]] = []
+    for index, name in enumerate(section.columns):
+        if groups and name.startswith("*") and section.columns[index - 1].startswith("*"):
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    if groups:
+        names = (" and ".join(section.columns[index] for index in group) for group in groups)
+        table = make_table([name.replace(" and *", " and ") for name in names])
         for row in section.rows[:at_most]:
-            short = [plain(cell) for cell, one in zip(row, is_wide, strict=True) if not one]
-            long = "\n".join(plain(cell) for cell, one in zip(row, is_wide, strict=True) if one)
-            table.add_row(*short[:at], *([long] if True in is_wide else []), *short[at:])
+            table.add_row(*("\n".join(plain(row[index]) for index in group) for group in groups))
         console.print(table)
-        if at_most is not None and len(section.rows) > at_most:
-            console.print(Text(f"and {len(section.rows) - at_most} more", style="dim"))
-    for line in section.lines[:_MOST]:
-        console.print(below(line))
-    if len(section.lines) > _MOST:
-        console.print(below(f"and {len(section.lines) - _MOST} more", style="dim"))
+    for line in section.lines[:at_most]:
+        console.print(below(line.lstrip(), 2 + len(line) - len(line.lstrip())))
+    left = max(len(section.rows), len(section.lines)) - (at_most or 0)
+    if at_most is not None and left > 0:
+        console.print(below(f"and {left} more", style="dim"))
 
 
 @frozen

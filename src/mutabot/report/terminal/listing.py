@@ -12,24 +12,29 @@ from rich.text import Text
 
 from mutabot.model import LeftOut, Mutant
 from mutabot.report.document import data_of
-from mutabot.report.sections import plural, skipped
+from mutabot.report.sections import Section, plural, skipped
 
-from .console import below, heading, make_table, plain, print_section, short_place
+from .console import below, heading, print_section, short_place
 
 
 def print_plan(
     console: Console, mutants: Sequence[Mutant], left_out: Sequence[LeftOut], *, everything: bool = False
 ) -> None:
     """Print every planned mutant, a ladder in one line; ``everything`` adds ids and all that was left out."""
-    table = make_table((">no.", "role", "place", "operator", "*fault"))
-    for mutant in mutants if everything else _ladders_in_one(mutants):
-        text = f"{mutant.description}\n{mutant.id}" if everything else mutant.description
-        place = short_place(mutant.site.span)
-        table.add_row(str(mutant.number), mutant.site.role.value, place, mutant.operator, plain(text))
-    console.print(table)
     ladders = len({mutant.ladder for mutant in mutants} - {""})
     of_them = f" ({plural(ladders, 'ladder')} in one line each)" if ladders and not everything else ""
-    console.print(f"{plural(len(mutants), 'mutant')}{of_them}")
+    rows = [
+        (
+            str(mutant.number),
+            mutant.site.role.value,
+            short_place(mutant.site.span),
+            mutant.operator,
+            f"{mutant.description}\n{mutant.id}" if everything else mutant.description,
+        )
+        for mutant in (mutants if everything else _ladders_in_one(mutants))
+    ]
+    columns = (">no.", "role", "place", "operator", "*fault")
+    print_section(console, Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows))
     if left_out:
         print_section(console, skipped(left_out))
     for item in left_out if everything else ():

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from rich.cells import cell_len
-from rich.console import Console, RenderableType
-from rich.padding import Padding
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -17,14 +16,14 @@ from mutabot.analysis.suggested import Suggestions
 from mutabot.evidence.recording import Recording
 from mutabot.evidence.story import Entry, amount, around, timeline
 from mutabot.journal.records import Replayed
-from mutabot.model import Diverged, Kind, Looked, Mutant, Outcome, Quantity, Span
-from mutabot.model.outcome import end_in_words
-from mutabot.report.sections import between, plural
+from mutabot.model import Diverged, Looked, Mutant, Outcome, Quantity, Span
+from mutabot.model.outcome import Apart, end_in_words
+from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import effect_text, numbers_text, telling
 
 from .campaign import letters
-from .console import below, heading, make_table, mark_of, plain
-from .suggested import print_suggestions, suggested_parts
+from .console import below, heading, make_table, mark_of, plain, print_section
+from .suggested import print_suggestions, suggested_sections
 
 __all__ = ["excerpt", "print_mutant", "print_replayed", "print_suggestions"]
 
@@ -57,10 +56,10 @@ def print_mutant(
     if lines:
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
-    parts = [*_rounds(result, everything=everything), *_happened(result, evidence, everything=everything)]
-    parts += [*(_looked(result) if everything else ()), *suggested_parts(result, suggestions)]
-    for part in parts:
-        console.print(part)
+    found = [_rounds(result, everything=everything), *_happened(result, evidence, everything=everything)]
+    found += [*(_looked(result) if everything else ()), *suggested_sections(result, suggestions)]
+    for section in found:
+        print_section(console, section)
     if not everything:
         console.print(Text("\nUse --all for every round, test and check.", style="dim"))
 
@@ -103,41 +102,30 @@ def _facts(result: MutantResult) -> Table:
 
 
 def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
-    if name is None:
-        return "the call as a whole"
-    if quantity is None:
-        return name
-    turned = quantity.kind in (Kind.ROTATION, Kind.ORIENTATION, Kind.ANGLE)
-    words = [
-        quantity.kind.value,
-        quantity.axis and f"{'about' if turned else 'along'} {quantity.axis}",
-        quantity.unit and f"in {quantity.unit}",
-        f"frame {quantity.frame}" if quantity.frame else None,
-    ]
+    if name is None or quantity is None:
+        return name or "the call as a whole"
+    words = (quantity.kind.value, quantity.axis, quantity.unit, quantity.frame and f"frame {quantity.frame}")
     return f"{name}: {', '.join(word for word in words if word)}"
 
 
-def _rounds(result: MutantResult, *, everything: bool) -> Iterator[RenderableType]:
+def _rounds(result: MutantResult, *, everything: bool) -> Section:
     """Rounds that ended alike, with the details of the first of them; on one screen those that tell most."""
     groups: dict[Any, list[int]] = {}
     for number, outcome in enumerate(result.rounds):
         groups.setdefault(outcome and (end_in_words(outcome), outcome.place), []).append(number)
     most = telling(result)
-    yield heading("Rounds")
-    if len(result.rounds) > 1:
-        yield Padding(letters(result.rounds), (0, 0, 0, 2))
+    lines = [letters(result.rounds).plain] if len(result.rounds) > 1 else []
     for numbers in groups.values():
-        outcome = result.rounds[numbers[0]]
-        if not everything and most is not None and most[0] not in numbers:
-            continue
-        test = f" in {outcome.test}" if outcome is not None and outcome.test is not None else ""
-        mark = mark_of(outcome)
-        which = numbers_text(number + 1 for number in numbers)
-        line = Text.assemble(f"{which}: ", (mark.letter, mark.style), f" {mark.words}{plain(test)}")
-        yield Padding(line, (0, 0, 0, 2), expand=False)
-        if outcome is not None:
-            lines = "\n".join(_details(outcome)).splitlines()
-            yield from (below(line, 8) for line in (lines if everything else lines[:_LINES]))
+        outcome = result.rounds[most[0] if most is not None and most[0] in numbers else numbers[0]]
+        if everything or most is None or most[0] in numbers:
+            test = f" in {outcome.test}" if outcome is not None and outcome.test is not None else ""
+            mark = mark_of(outcome)
+            lines.append(
+                f"{numbers_text(number + 1 for number in numbers)}: {mark.letter} {mark.words}{test}"
+            )
+            details = "\n".join(_details(outcome)).splitlines() if outcome is not None else []
+            lines += (f"    {line}" for line in (details if everything else details[:_LINES]))
+    return Section("Rounds", lines=lines)
 
 
 def _details(outcome: Outcome) -> Iterator[str]:
@@ -162,15 +150,16 @@ def _details(outcome: Outcome) -> Iterator[str]:
 
 def _happened(
     result: MutantResult, evidence: StoredEvidence | None, *, everything: bool
-) -> Iterator[RenderableType]:
+) -> Iterator[Section]:
     """What the robot did in the round and test that tell most; nothing where nothing was recorded."""
     number, diverged = telling(result) or (0, None)
     if diverged is None:
         return
-    yield heading(f"What the robot did (round {number + 1}, {diverged.test})")
-    yield from map(below, _sentences(diverged))
+    title = f"What the robot did (round {number + 1}, {diverged.test})"
+    yield Section(title, lines=[*_sentences(diverged)])
     if everything and diverged.apart:
-        yield Padding(_apart_table(diverged), (0, 0, 0, 4), expand=False)
+        columns = ("*difference", ">from", ">at most", ">at", ">at the end", ">off its path")
+        yield Section("How far apart", columns, [_apart_row(one) for one in diverged.apart])
     if evidence is not None:
         does = result.change or ("not sent" if result.mutant.operator == "skip" else "fault")
         yield from _timeline(*evidence.pair(result.mutant.id, number, diverged.test), does)
@@ -189,56 +178,49 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
         yield f"Closest approach of {one.body} to {one.obstacle}: {least}, at {one.at:.1f} s."
 
 
-def _apart_table(diverged: Diverged) -> Table:
-    table = make_table(("*difference", ">from", ">at most", ">at", ">at the end", ">off its path"))
-    for one in diverged.apart:
-        largest, final = amount(one.largest, one.unit), amount(one.final, one.unit)
-        aside = amount(one.aside, one.unit) if one.aside is not None else "–"
-        table.add_row(plain(one.name), f"{one.first:.1f} s", largest, f"{one.at:.1f} s", final, aside)
-    return table
+def _apart_row(one: Apart) -> tuple[str, ...]:
+    largest, final = amount(one.largest, one.unit), amount(one.final, one.unit)
+    aside = amount(one.aside, one.unit) if one.aside is not None else "–"
+    return one.name, f"{one.first:.1f} s", largest, f"{one.at:.1f} s", final, aside
 
 
-def _timeline(original: Recording | None, mutant: Recording | None, does: str) -> Iterator[RenderableType]:
+def _timeline(original: Recording | None, mutant: Recording | None, does: str) -> Iterator[Section]:
     """Calls and contacts around the first that differ; at the fault the value that was sent."""
     if original is None or mutant is None:
-        yield below("The recording was discarded to save space; raise the limit and run again to keep it.")
+        yield Section("The recording was discarded to save space; raise the limit and run again to keep it")
         return
-    rows, before, after = around(timeline(original, mutant))
-    if not rows:
-        return
-    table = make_table((">s", "*original", ">s", "*mutant"))
-    for row in rows:
+    found, before, after = around(timeline(original, mutant))
+    rows = []
+    for row in found:
         cells = (*_cells(row.original), *_cells(row.mutant))
-        table.add_row(*cells[:3], Text(f"{cells[3]}  <- {plain(does)}", "bold") if row.is_fault else cells[3])
-    yield Padding(table, (0, 0, 0, 2), expand=False)
+        rows.append((*cells[:3], f"{cells[3]}  <- {does}") if row.is_fault else cells)
     left_out = [f"{count} {where}" for count, where in ((before, "before"), (after, "after")) if count]
-    if left_out:
-        yield below(f"not shown: {', '.join(left_out)}", style="dim")
+    lines = [f"not shown: {', '.join(left_out)}"] if left_out else []
+    if rows:
+        yield Section("Timeline", (">s", "*original", ">s", "*mutant"), rows, lines)
 
 
 def _cells(entry: Entry | None) -> tuple[str, str]:
     if entry is None:
         return "", "–"
-    return "" if entry.time is None else f"{entry.time:.1f}", plain(entry.text)
+    return "" if entry.time is None else f"{entry.time:.1f}", entry.text
 
 
-def _looked(result: MutantResult) -> Iterator[RenderableType]:
+def _looked(result: MutantResult) -> Iterator[Section]:
     """The checks that ran with a survivor, and by how much each held."""
-    found = next(((number, one) for number, one in enumerate(result.rounds) if one and one.looked), None)
-    if found is None or not result.is_survivor:
-        return
-    number, outcome = found
-    yield heading(f"Checks that ran (round {number + 1})")
-    for looked in outcome.looked:
-        yield below(_summary(looked))
-        if looked.acted and looked.checks:
-            table = make_table(("place", "*check", "*with", ">to spare"))
-            for one in looked.checks[:_CHECKS]:
-                times = f" ({one.times} times)" if one.times > 1 else ""
-                spare = f"{one.spare:.3g}" if one.spare is not None else "–"
-                name = one.place.rpartition("/")[2]
-                table.add_row(name, plain(f"{one.text}{times}"), plain(one.seen or "–"), spare)
-            yield Padding(table, (0, 0, 0, 4), expand=False)
+    found = next((one for one in result.outcomes if one.looked), None)
+    for looked in found.looked if found is not None and result.is_survivor else ():
+        rows = [
+            (
+                one.place.rpartition("/")[2],
+                one.text + (f" ({one.times} times)" if one.times > 1 else ""),
+                f"{one.spare:.3g}" if one.spare is not None else "–",
+                one.seen or "–",
+            )
+            for one in looked.checks[:_CHECKS]
+        ]
+        columns = ("place", "*check", ">to spare", "*with") if rows else ()
+        yield Section(f"Checks that ran: {_summary(looked)}", columns, rows)
 
 
 def _summary(looked: Looked) -> str:

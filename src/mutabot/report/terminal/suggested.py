@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from rich.console import Console, RenderableType
+from rich.console import Console
 from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
@@ -13,7 +13,10 @@ from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
 from mutabot.report.sections import Section, plural
 from mutabot.report.texts import numbers_text
 
-from .console import below, heading, print_section
+from .console import print_section
+
+#: lines of a section that are shown; --json has all
+_MOST = 10
 
 
 def print_suggestions(console: Console, found: Suggestions) -> None:
@@ -23,22 +26,18 @@ def print_suggestions(console: Console, found: Suggestions) -> None:
     text = f"{plural(len(found.suggestions), 'check')} for {len(killed)} of {survivors}"
     console.print(Text(text, style="bold"))
     for number, one in enumerate(found.suggestions, start=1):
-        console.print(heading(f"{number}  {one.test}"))
-        for line in lines_of(one, found):
-            console.print(below(line, 3))
-    never = [one for one in found.unsolved if one.never]
-    left = [one for one in found.unsolved if not one.never]
+        print_section(console, Section(f"{number}  {one.test}", lines=[*lines_of(one, found)]))
+    left = [_left(one, found) for one in found.unsolved if not one.never]
+    never = [_left(one, found) for one in found.unsolved if one.never]
     dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]
     sections = {
-        f"No check found for {plural(len(left), 'survivor')}": [_left(one, found) for one in left],
-        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": [
-            _left(one, found) for one in never
-        ],
+        f"No check found for {plural(len(left), 'survivor')}": left,
+        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": never,
         f"{plural(len(dropped), 'check')} dropped, because verification failed": dropped,
     }
     for name, lines in sections.items():
         if lines:
-            print_section(console, Section(name, lines=lines))
+            print_section(console, Section(name, lines=lines), _MOST)
     if found.diff:
         console.print(f"\n{found.diff.rstrip()}", soft_wrap=True)
 
@@ -86,26 +85,23 @@ def _left(one: Unsolved, found: Suggestions) -> str:
     return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
 
 
-def suggested_parts(result: MutantResult, found: Suggestions | None) -> Iterator[RenderableType]:
+def suggested_sections(result: MutantResult, found: Suggestions | None) -> Iterator[Section]:
     """Yield the section of a survivor; nothing for other mutants."""
     if not result.is_survivor or result.mutant.ladder:
         return
-    yield heading("A check that would catch it")
     check = check_on_page(result, found)
     reasons = {one.mutant: one.reason for one in found.unsolved} if found is not None else {}
     if check is not None:
-        yield below(f"in {check['test']}:")
-        yield from (below(line) for line in (check["code"], *check["notes"]))
-        yield below("`mutabot suggest` prints it as a diff.", style="dim")
+        lines = [f"in {check['test']}:", check["code"], *check["notes"]]
+        lines.append("`mutabot suggest` prints it as a diff.")
     elif result.mutant.id in reasons:
-        yield below(f"None was found: {reasons[result.mutant.id]}")
+        lines = [f"None was found: {reasons[result.mutant.id]}"]
     elif result.indistinguishable:
-        yield below("No measured difference. Add a probe or a test that would show one,")
-        yield below("or accept it as an equivalent mutant.")
+        add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
+        lines = [f"No measured difference. {add}"]
     else:
-        yield below(
-            f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."
-        )
+        lines = [f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."]
+    yield Section("A check that would catch it", lines=lines)
 
 
 def check_on_page(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
