@@ -91,8 +91,9 @@ def _confidence(thresholds: Thresholds) -> str:
     if first is not None and first.median is None:
         parts.append("One round says nothing about further rounds.")
     elif first is not None and first.median is not None:
-        level = f"{100 * first.median.level:.0f} % confidence"
-        parts.append(f"The median threshold lies above “none up to” and at most at “all from” with {level}.")
+        level = f"With {100 * first.median.level:.0f} % confidence"
+        ends = "the largest fault that no round noticed and the smallest that every round noticed"
+        parts.append(f"{level} the median threshold lies between {ends}.")
         shares = [one.share_shown for one in thresholds.ladders if one.share_shown is not None]
         if shares:
             share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"

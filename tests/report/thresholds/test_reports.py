@@ -72,7 +72,7 @@ def test_the_loosest_comes_first(thresholds: Thresholds) -> None:
 
 def test_what_the_lines_say_of_further_rounds_has_its_level(thresholds: Thresholds) -> None:
     text = text_of(thresholds, width=300)
-    assert "with 94 % confidence" in text
+    assert "With 94 % confidence the median threshold" in text
     assert "at least 55 % of further rounds do" in text
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
-from types import TracebackType
 from typing import Self
 
 from rich.console import Console, RenderableType
@@ -44,11 +43,6 @@ class Pace:
     def advance(self) -> None:
         """One more is done."""
         self.done += 1
-
-    @property
-    def is_done(self) -> bool:
-        """Whether all are, if it is known how many there are."""
-        return self.total is not None and self.done >= self.total
 
     @property
     def spent(self) -> float:
@@ -128,9 +122,7 @@ class Bar:
         self._progress.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._close_stage()
         self._progress.stop()
 
@@ -166,10 +158,9 @@ class Lines:
         pace = self._pace
         if pace.total is None:
             return str(pace.done)
-        done = f"{pace.done}/{pace.total}"
-        if pace.is_done:
-            return f"{done}, took {pace.spent:.0f} s"
-        return done if pace.left is None else f"{done}, {pace.left:.0f} s left"
+        took = f", took {pace.spent:.0f} s" if pace.done >= pace.total else ""
+        left = f", {pace.left:.0f} s left" if not took and pace.left is not None else ""
+        return f"{pace.done}/{pace.total}{took or left}"
 
     def _print(self, text: str) -> None:
         self._console.print(plain(text), soft_wrap=True)
@@ -177,7 +168,5 @@ class Lines:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         pass
