@@ -31,5 +31,5 @@ class ExitCode(IntEnum):
     )
     TOO_MANY_TIMEOUTS = 5, "more time-outs than `timeout_limit` allows"
     INTERNAL_ERROR = 70, "an internal error; `.mutabot/crash.txt` has the details"
-    INTERRUPTED = 130, "interrupted by Ctrl-C; `mutabot results` shows what is there"
-    TERMINATED = 143, "ended by SIGTERM, as Ctrl-C ends it; `mutabot results` shows what is there"
+    INTERRUPTED = 130, "interrupted by Ctrl-C; `mutabot results` shows the results so far"
+    TERMINATED = 143, "ended by SIGTERM, as Ctrl-C ends it; `mutabot results` shows the results so far"
