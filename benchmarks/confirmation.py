@@ -24,12 +24,12 @@ from pathlib import Path
 from statistics import median
 from textwrap import dedent
 
-from mutabot.analysis.results import read_results
 from mutabot.campaign.engines import confirmation
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
+from mutabot.results.results import read_results
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 

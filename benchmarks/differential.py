@@ -26,11 +26,11 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from mutabot.border.codec import to_data
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
+from mutabot.model.codec import to_data
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 

@@ -21,13 +21,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from textwrap import dedent
 
-from mutabot.analysis.chance import Estimate, false_kills, false_survivors
-from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
+from mutabot.results.results import Results, read_results
+from mutabot.results.statistics import Estimate, false_kills, false_survivors
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 

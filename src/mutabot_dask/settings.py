@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from mutabot.campaign.request import ExecutorChoice, Request
-from mutabot.campaign.workers.task import Executor
 from mutabot.errors import UsageError
+from mutabot.execution.task import Executor
 from mutabot.settings.table import ProjectFiles, Table
 
 if TYPE_CHECKING:

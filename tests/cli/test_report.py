@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
 from mutabot.cli.app import main
 from mutabot.report.format import names
+from results import samples
 
 JOURNAL = Path(".mutabot", "journal.sqlite")
 

@@ -11,13 +11,13 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from mutabot.analysis.results import read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.report.document import document, dumps
+from mutabot.results.results import read_results
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 from pages import blocks

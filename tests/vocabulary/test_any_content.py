@@ -10,9 +10,9 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.errors import ConfigurationError
 from mutabot.model import Vocabulary
+from mutabot.model.codec import from_data, to_data
 from mutabot.settings.configuration import Settings, load_configuration
 from mutabot.vocabulary import load
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import Problem
 from mutabot.errors import ConfigurationError, UnknownNameError, VocabularyError
+from mutabot.model.events import Problem
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load, problem_error
 

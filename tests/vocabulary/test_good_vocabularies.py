@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary
-from mutabot.model.values.answer import restore
+from mutabot.model.answer import restore
+from mutabot.model.codec import from_data, to_data
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 from pages import blocks

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.model import Operation, Vocabulary
+from mutabot.model.codec import from_data, to_data
 from mutabot.vocabulary import load
 from tests.vocabulary.test_named import loaded, refused
 

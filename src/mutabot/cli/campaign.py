@@ -13,15 +13,12 @@ from typing import Annotated, Unpack
 import typer
 
 from mutabot import limits
-from mutabot.analysis.gate import Decision, decide
-from mutabot.analysis.results import MutantResult, Results, find_mutant, read_results, results_at
-from mutabot.analysis.suggested import keep_suggestions
 from mutabot.campaign import check as checking
 from mutabot.campaign import run as running
 from mutabot.campaign.again import replay_one
-from mutabot.campaign.plan.plan import listed_rules
-from mutabot.campaign.plan.selection import select
+from mutabot.campaign.plan import listed_rules
 from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.selection import select
 from mutabot.campaign.sharding import merge as merging
 from mutabot.cli import options
 from mutabot.cli.output import echo, print_json, progress_shown, show_results, tell
@@ -34,6 +31,9 @@ from mutabot.report.document import replayed as replayed_data
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.listing import plan_data, print_plan, print_rules
 from mutabot.report.terminal.mutant import print_replayed, print_suggestions
+from mutabot.results.gate import Decision, decide
+from mutabot.results.results import MutantResult, Results, find_mutant, read_results, results_at
+from mutabot.results.suggested import keep_suggestions
 from mutabot.settings.configuration import Configuration, load_configuration
 
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import typer
 
-from mutabot.analysis.results import Results, results_at
 from mutabot.report.document import data_of, document, dumps
 from mutabot.report.terminal.campaign import print_results, print_summary
 from mutabot.report.terminal.console import leave_pipe, make_console
 from mutabot.report.terminal.progress import Bar, Lines, make_progress
+from mutabot.results.results import Results, results_at
 
 
 def echo(text: str) -> None:

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Unpack
 
-from mutabot.analysis.results import Results
 from mutabot.campaign.request import ExecutorChoice, Request
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
 from mutabot.model import Moment
+from mutabot.results.results import Results
 from mutabot.settings.configuration import load_configuration
 from mutabot.settings.families import asked_for
 from mutabot.settings.options import Sample, Shard, seconds_of

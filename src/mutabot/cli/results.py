@@ -10,12 +10,6 @@ from typing import Annotated
 
 import typer
 
-from mutabot.analysis.results import Results, find_mutant, results_at
-from mutabot.analysis.stored import Changes, StoredEvidence, journal_at
-from mutabot.analysis.stored import changes as changes_between
-from mutabot.analysis.suggested import kept_suggestions
-from mutabot.analysis.thresholds.thresholds import compare as compared
-from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.cli import options
 from mutabot.cli.output import echo, print_bytes, print_json, show_results, tell
 from mutabot.errors import JournalError, UsageError
@@ -27,6 +21,12 @@ from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
 from mutabot.report.thresholds import print_compared, print_thresholds, suggested_toml
+from mutabot.results.results import Results, find_mutant, results_at
+from mutabot.results.stored import Changes, StoredEvidence, journal_at
+from mutabot.results.stored import changes as changes_between
+from mutabot.results.suggested import kept_suggestions
+from mutabot.results.thresholds import compare as compared
+from mutabot.results.thresholds import thresholds_of
 
 #: stands for standard output
 _STANDARD = Path("-")

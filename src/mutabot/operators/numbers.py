@@ -6,7 +6,7 @@ from array import array
 from typing import Any
 
 from mutabot.model import Quantity
-from mutabot.model.values.quantity import Value
+from mutabot.model.quantity import Value
 
 from .operator import Unchanged
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from rich.console import Console
 from rich.text import Text
 
-from mutabot.analysis.score import Group
-from mutabot.analysis.stored import Changes, Ends
 from mutabot.model import Span
+from mutabot.results.score import Group
+from mutabot.results.stored import Changes, Ends
 
 from .sections import Section, percent, section_lines
 from .terminal.console import plain, print_section, short_place

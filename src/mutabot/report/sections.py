@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from mutabot.analysis.chance import Estimate, false_kills, false_survivors
-from mutabot.analysis.divergence import first_line
-from mutabot.analysis.results import Results, unlooked
-from mutabot.analysis.score import Group
-from mutabot.analysis.statistics import Interval
-from mutabot.analysis.thresholds.thresholds import thresholds_of
-from mutabot.analysis.thresholds.words import line_of
 from mutabot.frozen import frozen
 from mutabot.journal.records import REMARKS, Repeated
 from mutabot.model import LeftOut, Span, Verdict
+from mutabot.results.divergence import first_line
+from mutabot.results.results import Results, unlooked
+from mutabot.results.score import Group
+from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
+from mutabot.results.thresholds import line_of, thresholds_of
 
 from .texts import OUTSIDE, effect_text, escaped, rounds_text
 

@@ -9,13 +9,12 @@ from collections.abc import Iterator, Sequence
 from rich.console import Console
 from rich.text import Text
 
-from mutabot.analysis.thresholds.demands import suggested
-from mutabot.analysis.thresholds.ladders import Ladder
-from mutabot.analysis.thresholds.thresholds import Change, Comparison, Thresholds
-from mutabot.analysis.thresholds.words import amount, line_of, violations_in_words
 from mutabot.model.graded import OFFSET
 from mutabot.report.sections import Section, percent, plural
 from mutabot.report.terminal.console import print_section
+from mutabot.results.demands import suggested
+from mutabot.results.ladders import Ladder
+from mutabot.results.thresholds import Change, Comparison, Thresholds, amount, line_of, violations_in_words
 
 #: lines of a section that are shown; --json has all
 _MOST = 12

@@ -11,7 +11,7 @@ from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
 from mutabot.faults import need_vocabulary
 from mutabot.model import Clock, Operation, Probe, Quantity, Vocabulary, Wait
-from mutabot.model.values.quantity import READING_OF, is_reading_of
+from mutabot.model.quantity import READING_OF, is_reading_of
 from mutabot.settings.document import Document
 from mutabot.settings.mistakes import Check, raise_errors
 from mutabot.settings.toml_lines import KeyPath

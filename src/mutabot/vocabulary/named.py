@@ -15,7 +15,7 @@ from functools import partial
 from typing import Any
 
 from mutabot.model import Case, Kind, Operation, Path, Pattern, Quantity
-from mutabot.model.named import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
+from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.when import Undecided, in_case, in_cases, read_when

@@ -6,8 +6,8 @@ from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.model import ANY, Case, Clock, Operation, Path, Pattern, Probe, Quantity, Wait
-from mutabot.model.values.signature import parse_signature
-from mutabot.model.values.units import UNITS, Dimension, dimension_of
+from mutabot.model.signature import parse_signature
+from mutabot.model.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.when import Undecided, in_cases

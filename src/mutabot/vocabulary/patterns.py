@@ -8,7 +8,7 @@ from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.model import Path, Pattern, Quantity
-from mutabot.model.values.notation import Field, Notation
+from mutabot.model.notation import Field, Notation
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.when import cases_of, name_of

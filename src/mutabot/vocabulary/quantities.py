@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from mutabot.model import Kind, Path, Quantity
-from mutabot.model.values.path import Step
+from mutabot.model.path import Step
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 

@@ -3,8 +3,8 @@
 What the values mean together is checked where the tables are turned into operations. An operation that is no
 Python callable, which is named ``module:qualified.name``, has a key of its own in place of ``call``, as those
 with a name on a middleware have (``vocabulary.named``), and the kind that finds it at run time in
-``Operation.kind`` (see ``inside.targets.target``). What a command answers while the robot does nothing may be
-made by a callable.
+``Operation.kind`` (see ``runtime.targets.target``). A callable may make what a command answers while the
+robot does nothing.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def _with_colon(text: str) -> str:
 
 
 def read_idle(check: Check, raw: Any, place: KeyPath) -> Any:
-    """``idle = …`` as data that ``model.values.answer.restore`` understands; mistakes are noted.
+    """``idle = …`` as data that ``model.answer.restore`` understands; mistakes are noted.
 
     A TOML value is the answer itself; ``{ call = "module:name" }`` names a function that makes it.
     """

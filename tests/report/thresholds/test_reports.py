@@ -11,15 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
-from analysis.thresholds import journals
-from analysis.thresholds.journals import Rungs
-from mutabot.analysis.thresholds.thresholds import SORTS, Thresholds, compare, thresholds_of
 from mutabot.model import Operation, Role, Vocabulary
 from mutabot.model.outcome import Figure
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.thresholds import bar, print_compared, print_thresholds, suggested_toml
+from mutabot.results.thresholds import SORTS, Thresholds, compare, thresholds_of
+from results import samples
+from results.thresholds import journals
+from results.thresholds.journals import Rungs
 
 FIVE = 5
 NOISY = Vocabulary(

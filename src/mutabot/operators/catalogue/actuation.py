@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Quantity
-from mutabot.model.values.quantity import Value
+from mutabot.model.quantity import Value
 from mutabot.operators.examples import changed, unchanged, writing
 from mutabot.operators.numbers import like, map_numbers, middle_of, within
 from mutabot.operators.operator import Context, Example, Subject

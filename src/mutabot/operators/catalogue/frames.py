@@ -10,9 +10,8 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
-from mutabot.model.values.units import convert
+from mutabot.model.quantity import Value
+from mutabot.model.units import Quaternion, convert, from_euler, inverse, product
 from mutabot.operators.examples import MOVE_TO, changed, unchanged
 from mutabot.operators.numbers import is_number, like, map_numbers
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of

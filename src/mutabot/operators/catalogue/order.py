@@ -8,8 +8,7 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Proceed, Reply
-from mutabot.model.values.quantity import WHOLE, Value
-from mutabot.model.values.sameness import are_same
+from mutabot.model.quantity import WHOLE, Value, are_same
 from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
 from mutabot.operators.numbers import like, map_numbers

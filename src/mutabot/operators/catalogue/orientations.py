@@ -7,10 +7,8 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Kind
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.rotation import from_euler
-from mutabot.model.values.sameness import is_same
-from mutabot.model.values.units import convert
+from mutabot.model.quantity import Value, is_same
+from mutabot.model.units import convert, from_euler
 from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.numbers import map_numbers
 from mutabot.operators.operator import Context, Example, Unchanged

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import MEASURED, WHOLE, Value
+from mutabot.model.quantity import MEASURED, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
 from mutabot.operators.examples import changed, reading, unchanged
 from mutabot.operators.numbers import is_number, like, map_numbers, middle_of, next_of, within

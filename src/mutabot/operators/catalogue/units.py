@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.units import convert
+from mutabot.model.quantity import Value
+from mutabot.model.units import convert
 from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.numbers import like, map_numbers
 from mutabot.operators.operator import Context, Example, Subject, quantity_of

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from mutabot.model import Call, Mishap, Proceed, Reply
-from mutabot.model.named import COMING, WRITTEN, Form
-from mutabot.model.values.quantity import Value
+from mutabot.model.operation import COMING, WRITTEN, Form
+from mutabot.model.quantity import Value
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 
 from ._examples import CALL, GOAL, TICK

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from mutabot.model import Kind, Quantity
-from mutabot.model.named import DEFAULT, Form
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.sameness import is_same
+from mutabot.model.operation import DEFAULT, Form
+from mutabot.model.quantity import Value, is_same
 from mutabot.operators.command import form_of
 from mutabot.operators.examples import changed, unchanged
 from mutabot.operators.numbers import is_number

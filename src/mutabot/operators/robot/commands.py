@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.notation import Notation
-from mutabot.model.values.quantity import Value
+from mutabot.model.notation import Notation
+from mutabot.model.quantity import Value
 from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, changed, unchanged, writing
 from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged

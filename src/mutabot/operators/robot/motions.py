@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
-from mutabot.model.values.quantity import READING_OF, Value
+from mutabot.model.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
 from mutabot.operators.numbers import is_number, map_numbers
 from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of

@@ -8,7 +8,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.model import Kind, Quantity
-from mutabot.model.values.quantity import MEASURED, PLAIN, Value
+from mutabot.model.quantity import MEASURED, PLAIN, Value
 from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
 from mutabot.operators.numbers import map_numbers, next_of, within
 from mutabot.operators.operator import Context, Example, Published, Subject, quantity_of

@@ -8,9 +8,9 @@ from datetime import datetime
 from rich.console import Console, RenderableType
 from rich.text import Text
 
-from mutabot.analysis.results import Results
 from mutabot.model import Outcome
 from mutabot.report.sections import Section, plural, sections
+from mutabot.results.results import Results
 
 from .console import below, legend, make_table, mark_of, marks_in, plain, print_section, short_place
 

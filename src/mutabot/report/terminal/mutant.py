@@ -10,9 +10,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.stored import StoredEvidence
-from mutabot.analysis.suggested import Suggestions
 from mutabot.evidence.recording import Recording
 from mutabot.evidence.story import Entry, amount, around, timeline
 from mutabot.journal.records import Replayed
@@ -20,6 +17,9 @@ from mutabot.model import Diverged, Looked, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Apart, end_in_words
 from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import effect_text, numbers_text, telling
+from mutabot.results.results import MutantResult
+from mutabot.results.stored import StoredEvidence
+from mutabot.results.suggested import Suggestions
 
 from .campaign import letters
 from .console import below, heading, make_table, mark_of, plain, print_section

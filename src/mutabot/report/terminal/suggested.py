@@ -8,10 +8,10 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
 from mutabot.report.sections import Section, plural
 from mutabot.report.texts import numbers_text
+from mutabot.results.results import MutantResult
+from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
 
 from .console import print_section
 
