@@ -49,9 +49,9 @@ from mutabot.campaign.engines.trunk import Trunks
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.workers.workers import Workers
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.model import Outcome
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES: dict[str, dict[str, Any]] = {

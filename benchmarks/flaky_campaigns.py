@@ -25,11 +25,11 @@ from mutabot.analysis.chance import Estimate, false_kills, false_survivors
 from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 _FILES = {
     "robot.py": """

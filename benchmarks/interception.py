@@ -15,9 +15,9 @@ from unittest.mock import Mock
 
 from mutabot.border.events import Event
 from mutabot.border.job import Job
+from mutabot.config.vocabulary import load
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
-from mutabot.vocabulary import load
 
 CALLS = 200_000
 ROBOT = "class Arm:\n    def move_by(self, dx):\n        return None\n"

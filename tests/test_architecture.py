@@ -14,9 +14,8 @@ from rooms import SOURCE, files, imports, levels, name_of, rooms
 
 #: package -> packages of ours it may import, beside ``frozen`` and ``lazy``
 ALLOWED = {
-    "exit_codes": set(),
     "limits": set(),
-    "errors": {"exit_codes", "limits"},
+    "errors": {"limits"},
     "extensions": {"errors"},
     "families": set(),
     "faults": {"errors", "extensions", "families", "model", "border", "operators"},
@@ -25,23 +24,22 @@ ALLOWED = {
     "languages": {"model"},
     "border": {"errors", "model"},
     "operators": {"errors", "extensions", "families", "model"},
-    "settings": {"errors", "extensions", "families", "limits", "model", "border", "operators", "faults"},
-    "vocabulary": {"errors", "extensions", "families", "faults", "limits", "model", "settings"},
+    "config": {"errors", "extensions", "families", "limits", "model", "border", "operators", "faults"},
     "evidence": {"model"},
     "inside": {"errors", "extensions", "model", "languages", "border", "operators", "evidence"},
     "journal": {"errors", "model", "border", "repository"},
     "campaign": {
-        "errors", "extensions", "families", "faults", "model", "languages", "border", "settings",
-        "operators", "vocabulary", "journal", "evidence", "repository",
+        "errors", "extensions", "families", "faults", "model", "languages", "border", "config",
+        "operators", "journal", "evidence", "repository",
     },
-    "proposal": {"errors", "extensions", "model", "border", "settings", "vocabulary", "campaign"},
+    "proposal": {"errors", "extensions", "model", "border", "config", "campaign"},
     "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
-    "analysis": {"exit_codes", "errors", "families", "model", "border", "vocabulary", "journal", "evidence"},
-    "report": {"errors", "extensions", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
+    "analysis": {"errors", "families", "model", "border", "journal", "evidence"},
+    "report": {"errors", "extensions", "model", "border", "journal", "analysis", "evidence"},
     "__main__": {"cli"},
     "cli": {
-        "exit_codes", "errors", "extensions", "families", "limits", "model", "border", "settings",
-        "vocabulary", "journal", "campaign", "proposal", "suggestion", "analysis", "report",
+        "errors", "extensions", "families", "limits", "model", "border", "config",
+        "journal", "campaign", "proposal", "suggestion", "analysis", "report",
     },
 }  # fmt: skip
 FILES = files()

@@ -24,14 +24,14 @@ from typing import Any
 
 from mutabot.border.events import Problem
 from mutabot.border.job import Job
+from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary.load import shipped
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.event_file import Held
 from mutabot.inside.session import Session
 from mutabot.inside.targets.callables import Callables
 from mutabot.model import Operation, Vocabulary
 from mutabot.model.values.signature import parse_signature, signature_of
-from mutabot.vocabulary import load
-from mutabot.vocabulary.load import shipped
 
 #: a member of an enumeration, as pybind11 writes one that is a default
 _DEFAULT_MEMBER = re.compile(r"<[^<>]*>")

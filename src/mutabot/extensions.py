@@ -71,7 +71,7 @@ class Extension:
         versions: distributions whose versions decide how tests end; a campaign's journal notes them.
         executors: subclasses of ``mutabot.campaign.request.ExecutorChoice``. One named ``cluster``
             gives commands that run campaigns an option ``--cluster``, whose value says where.
-        tables: subclasses of ``mutabot.settings.table.Table``, by the table's name in the configuration.
+        tables: subclasses of ``mutabot.config.table.Table``, by the table's name in the configuration.
         commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.commands``).
         formats: a ``mutabot.report.format.Format`` each, by its name.
         sections: functions of ``mutabot.analysis.results.Results`` that make a section of the results

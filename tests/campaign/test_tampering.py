@@ -9,7 +9,7 @@ import pytest
 from mutabot.analysis.gate import decide
 from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.run import run_campaign
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.reader import JournalReader
 from mutabot.model import Verdict
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project

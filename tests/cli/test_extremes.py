@@ -15,12 +15,11 @@ from typer.models import OptionInfo
 
 from mutabot import limits
 from mutabot.cli.app import app, main
-from mutabot.errors import ConfigurationError
-from mutabot.exit_codes import ExitCode
+from mutabot.config.configuration import Settings, load_configuration
+from mutabot.config.demands import DemandTable
+from mutabot.config.vocabulary import load, schema
+from mutabot.errors import ConfigurationError, ExitCode
 from mutabot.extensions import brought
-from mutabot.settings.configuration import Settings, load_configuration
-from mutabot.settings.demands import DemandTable
-from mutabot.vocabulary import load, schema
 from tests.campaign.project import write_project
 
 DIGITS = "9" * 400

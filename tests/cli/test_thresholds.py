@@ -12,7 +12,7 @@ from analysis.thresholds import journals
 from analysis.thresholds.journals import Rungs
 from mutabot.analysis.gate import decide
 from mutabot.cli.app import main
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.model.outcome import Figure
 from mutabot.report.terminal.campaign import print_summary
 from mutabot.report.terminal.console import make_console

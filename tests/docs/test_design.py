@@ -91,7 +91,7 @@ TRAVELS = {
 ON_MANY_WAYS = {
     "border.event_file.unsealed", "inside.event_file.EventFile.send",
     "report.terminal.progress.Lines.advance",
-    "settings.document.Document.read",
+    "config.document.Document.read",
 }  # fmt: skip
 
 

@@ -15,11 +15,11 @@ from mutabot.analysis.results import read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.report.document import document, dumps
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 from pages import blocks
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "scales"

@@ -17,11 +17,11 @@ from typing import Any
 
 from mutabot.border.events import Event, SiteSeen
 from mutabot.border.job import Budget, Job
+from mutabot.config.vocabulary import load
 from mutabot.inside.calls.activation import Activation
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
-from mutabot.vocabulary import load
 
 _numbers = count(1)
 

@@ -23,8 +23,7 @@ from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.border.events import TestEnd
 from mutabot.cli.app import main
 from mutabot.cli.report import FORMATS
-from mutabot.errors import JournalError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, JournalError
 from mutabot.journal.database import COLUMNS, decode
 from mutabot.journal.fitting import inflated
 from mutabot.journal.journal import Journal

@@ -15,12 +15,12 @@ from typing import Any
 from mutabot.analysis.results import read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import plan_only, run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.errors import MutabotError
 from mutabot.inside.seeds import derive
 from mutabot.journal.journal import Journal
 from mutabot.report.document import data_of, document
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 from .editor import Facts
 from .graded_editor import OPERATORS as GRADED_OPERATORS

@@ -11,14 +11,14 @@ from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
 from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.reuse.opened import OpenedFiles
+from mutabot.config.configuration import Configuration
+from mutabot.config.vocabulary.load import shipped
 from mutabot.extensions import brought
 from mutabot.families import CATALOGUE
 from mutabot.journal.lock import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
 from mutabot.operators import load_all
-from mutabot.settings.configuration import Configuration
-from mutabot.vocabulary.load import shipped
 
 from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign

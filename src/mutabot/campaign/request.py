@@ -13,14 +13,14 @@ from typing import Any, Protocol, Self
 from mutabot.border.job import Job
 from mutabot.campaign.workers.interruption import Pause
 from mutabot.campaign.workers.task import Executor
+from mutabot.config.configuration import Configuration
+from mutabot.config.options import Sample, Shard
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
 from mutabot.faults import Project
 from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
-from mutabot.settings.configuration import Configuration
-from mutabot.settings.options import Sample, Shard
 
 
 class Preview(Protocol):

@@ -21,8 +21,7 @@ from typing import Annotated
 import typer
 
 from mutabot.cli import campaign, report, results, thresholds
-from mutabot.errors import MutabotError, UsageError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, MutabotError, UsageError
 from mutabot.extensions import not_installed
 from mutabot.limits import shortened
 

@@ -16,14 +16,14 @@ import typer
 from mutabot.cli import options
 from mutabot.cli.output import decided, echo, exit_as, print_json, progress_shown, show_results
 from mutabot.cli.request import families_of, request_of
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.files import HOME, JOURNAL
 
 if TYPE_CHECKING:
     from mutabot.analysis.gate import Decision
     from mutabot.analysis.results import Results
     from mutabot.campaign.request import Progress, Request
-    from mutabot.settings.configuration import Configuration
+    from mutabot.config.configuration import Configuration
 
 
 def init(
@@ -125,7 +125,7 @@ def merge(
     Exit code 4 if something is missing; what is there is written all the same.
     """
     from mutabot.campaign.sharding.merge import merge as put_together
-    from mutabot.settings.configuration import load_configuration
+    from mutabot.config.configuration import load_configuration
 
     configuration = load_configuration(context.obj)
     target = output or configuration.root / HOME / JOURNAL

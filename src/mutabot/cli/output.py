@@ -14,8 +14,8 @@ import typer
 if TYPE_CHECKING:
     from mutabot.analysis.gate import Decision
     from mutabot.analysis.results import Results
+    from mutabot.config.configuration import Configuration
     from mutabot.report.terminal.progress import Bar, Lines
-    from mutabot.settings.configuration import Configuration
 
 
 def echo(text: str) -> None:

@@ -17,8 +17,8 @@ from .options import ENGINES, Running
 if TYPE_CHECKING:
     from mutabot.analysis.results import Results
     from mutabot.campaign.request import ExecutorChoice, Request
+    from mutabot.config.configuration import Configuration
     from mutabot.model import Moment
-    from mutabot.settings.configuration import Configuration
 
 
 def request_of(
@@ -42,9 +42,9 @@ def request_of(
     Raises UsageError and ConfigurationError.
     """
     from mutabot.campaign.request import Request
-    from mutabot.settings.configuration import load_configuration
-    from mutabot.settings.options import Sample, Shard, seconds_of
-    from mutabot.vocabulary import load
+    from mutabot.config.configuration import load_configuration
+    from mutabot.config.options import Sample, Shard, seconds_of
+    from mutabot.config.vocabulary import load
 
     if unknown := given.keys() - Running.__annotations__.keys():
         raise TypeError(f"there is no option {', '.join(sorted(unknown))}")
@@ -103,7 +103,7 @@ def _choice(configuration: Configuration, name: str, value: str) -> ExecutorChoi
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:
     """The families of the command line, in the order of their numbers. Raises UsageError."""
-    from mutabot.settings.families import asked_for
+    from mutabot.faults import asked_for
 
     named = (name.strip() for text in given or () for name in text.split(","))
     return asked_for(name for name in named if name)

@@ -14,8 +14,7 @@ from mutabot import limits
 from mutabot.cli import options
 from mutabot.cli.output import print_json, progress_shown, show_results
 from mutabot.cli.request import request_again
-from mutabot.errors import NothingToDoError, UsageError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, NothingToDoError, UsageError
 from mutabot.journal.files import find_journal
 
 if TYPE_CHECKING:

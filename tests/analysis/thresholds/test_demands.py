@@ -11,7 +11,7 @@ from analysis.thresholds import journals
 from analysis.thresholds.journals import Rungs
 from mutabot.analysis.gate import decide
 from mutabot.analysis.thresholds.demands import Held, rulings, suggested
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.model import Kind
 from mutabot.model.graded import Demand, parse_amount, wanted_magnitudes
 

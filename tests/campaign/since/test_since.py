@@ -16,8 +16,7 @@ from mutabot.analysis.gate import decide
 from mutabot.analysis.results import read_results
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.since.since import Revision
-from mutabot.errors import UsageError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, UsageError
 from mutabot.journal.journal import Journal
 from tests.campaign.project import Quiet, fingerprint, request_for, write_project
 from tests.campaign.scripted import CHECKED, End, Run, Script

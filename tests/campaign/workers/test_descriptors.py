@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.workers.descriptors import needed
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from tests.campaign.project import REPLAY, write_project
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n"

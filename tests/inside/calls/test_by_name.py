@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.vocabulary import load
+from mutabot.config.vocabulary import load
 from tests.inside.client import ClientStage
 
 VOCABULARY = """
@@ -14,7 +14,7 @@ VOCABULARY = """
 topic = "/arm/goal"
 direction = "publish"
 fields.x = { kind = "translation", axis = "x", unit = "m", mode = "to", relative = true }
-current = { topic = "/arm/pose" }
+current = "receive /arm/pose"
 refused = [{ topic = "/arm/note", path = "code", values = [7] }]
 
 [[operation]]
@@ -25,7 +25,7 @@ fields.x = { kind = "position", axis = "x", unit = "mm" }
 [[operation]]
 action = "/arm/follow"
 goal.x = { kind = "translation", axis = "x", unit = "m", mode = "to", relative = true }
-current = { parameter = "home" }
+current = "parameter home"
 refused = ["ABORTED"]
 
 [[operation]]

@@ -17,6 +17,7 @@ from mutabot.border.job import Job
 from mutabot.campaign.comparing.observation import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.workers.task import ABNORMAL, Executor, Result, Task, at, death, said_in
+from mutabot.config.vocabulary import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
@@ -25,7 +26,6 @@ from mutabot.model import Instrumentation, Probe, ProgramText, Span, Vocabulary
 from mutabot.model.mutant import Place
 from mutabot.model.seed import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.operators import load_all
-from mutabot.vocabulary import problem_error
 
 from .baseline import Baseline, Hit, RecordedAnswers, cost
 from .observed import observations_of, places_of, refused_of

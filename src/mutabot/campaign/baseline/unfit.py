@@ -9,10 +9,10 @@ from typing import Any
 from mutabot.border.events import Problem, Remark
 from mutabot.campaign.comparing.orientations import parts_of, readings_of
 from mutabot.campaign.request import Progress
+from mutabot.config.vocabulary import problem_error
 from mutabot.extensions import brought
 from mutabot.model import Operation, Pattern, Quantity, Vocabulary
 from mutabot.model.values.quantity import is_number, value_text
-from mutabot.vocabulary import problem_error
 
 from .baseline import Baseline
 

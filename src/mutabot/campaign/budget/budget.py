@@ -21,9 +21,9 @@ from mutabot.campaign.plan.plan import shuffled
 from mutabot.campaign.reuse.reuse import Reused
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.workers.interruption import OutOfTimeError, limited
+from mutabot.config.options import in_words
 from mutabot.journal.records import BUDGET, Budgeted
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.settings.options import in_words
 
 Pair = tuple[str, int]
 
