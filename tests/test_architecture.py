@@ -38,7 +38,7 @@ ALLOWED = {
     "report": {"errors", "extensions", "model", "border", "journal", "analysis", "evidence"},
     "__main__": {"cli"},
     "cli": {
-        "errors", "extensions", "families", "limits", "model", "border", "config",
+        "errors", "extensions", "families", "faults", "limits", "model", "border", "config",
         "journal", "campaign", "proposal", "suggestion", "analysis", "report",
     },
 }  # fmt: skip

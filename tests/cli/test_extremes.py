@@ -156,7 +156,6 @@ QUANTITY = OPERATION + "arguments.dx = { kind = 'translation', mode = 'by', unit
 PLACES: list[tuple[str, type[BaseModel], set[str]]] = [
     (QUANTITY, schema.QuantityTable, {"kind", "mode", "unit"}),
     (OPERATION + "KEY = %s", schema.OperationTable, {"call"}),
-    ("[[operation]]\ntopic = '/a'\nKEY = %s", schema.NamedTable, {"topic"}),
     ("[clock]\nKEY = %s", schema.ClockTable, set()),
     ("[wait]\nKEY = %s", schema.WaitTable, set()),
     ("[[probe]]\ncall = 'a:b'\nKEY = %s", schema.ProbeTable, {"call"}),

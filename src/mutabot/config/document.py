@@ -108,11 +108,11 @@ def _text_of(path: Path) -> str:
     """The text of a file. Raises OSError or ValueError if it cannot be read."""
     data = path.read_bytes()
     if len(data) > limits.FILE_BYTES:
-        raise _TooMuch(f"has {len(data):,} bytes; at most {limits.FILE_BYTES:,} are read")
+        raise _TooLargeError(f"has {len(data):,} bytes; at most {limits.FILE_BYTES:,} are read")
     return data.decode("utf-8-sig").replace("\r\n", "\n")
 
 
-class _TooMuch(ValueError):
+class _TooLargeError(ValueError):
     """A file is too large to be read."""
 
 
@@ -127,7 +127,7 @@ def _reason(error: Exception, text: str) -> tuple[str, int | None]:
             return f"is not UTF-8 text (byte {error.start + 1})", None
         case tomllib.TOMLDecodeError():
             return _syntax(str(error), text)
-        case _TooMuch():
+        case _TooLargeError():
             return str(error), None
         case RecursionError():
             return _TOO_DEEP, None

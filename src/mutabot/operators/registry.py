@@ -1,4 +1,4 @@
-"""Finding operators on calls by name: the built-in ones in their folders, and those that packages bring."""
+"""Finding operators on calls by name: the built-in ones, and those that packages bring."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mutabot.extensions import Part, brought
 from .command import CONTROLS
 from .operator import Operator, in_order
 
-_HERE = Path(__file__).parent
+_KINDS = Path(__file__).parent / "kinds"
 
 
 def built_in() -> list[str]:
@@ -83,14 +83,13 @@ def operator(name: str) -> Operator:
 
 @cache
 def _modules() -> dict[str, str]:
-    """The text of each module in the folders beside this file, by its name: nothing is loaded for it.
+    """The text of each module in the folder of operators, by its name: nothing is loaded for it.
 
     An operator is in a module whose text has its name in quotes, so that workers load no other.
     """
     return {
-        f"{__package__}.{folder.name}.{module}": (folder / f"{module}.py").read_text(encoding="utf-8")
-        for folder in folders_in(_HERE)
-        for module in modules_in(folder)
+        f"{__package__}.kinds.{module}": (_KINDS / f"{module}.py").read_text(encoding="utf-8")
+        for module in modules_in(_KINDS)
     }
 
 
@@ -123,11 +122,6 @@ def _loaded(part: Part) -> Operator:
 def modules_in(folder: Path) -> list[str]:
     """Names of the modules in a folder, bar those that begin with ``_``; none of them is loaded."""
     return sorted(file.stem for file in folder.glob("*.py") if not file.name.startswith("_"))
-
-
-def folders_in(folder: Path) -> list[Path]:
-    """The packages in a folder; none of them is loaded."""
-    return sorted(file.parent for file in folder.glob("*/__init__.py"))
 
 
 def classes_in(module: ModuleType, base: type[Any]) -> list[type[Any]]:

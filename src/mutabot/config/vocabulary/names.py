@@ -1,4 +1,4 @@
-"""Names on a middleware, such as topics and services: what a vocabulary may say of them, and what they stand for.
+"""Names on a middleware, such as topics and services: how a vocabulary writes them, and what they stand for.
 
 One entry stands for all that is done under its name: ``topic`` with ``direction = "publish"`` for publishing
 and for setting up the publisher, an action for its goal, feedback, result and cancelling.
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from mutabot.model.named import WRITTEN, Form
 
-#: the keys that name an operation on a middleware, each with the forms that it stands for, the main one first;
-#: a topic's depend on its ``direction``
+#: the keys that name an operation on a middleware, each with the forms that it stands for, the main one
+#: first; a topic's depend on its ``direction``
 FORMS: Mapping[str, tuple[Form, ...]] = {
     "topic": (),
     "service": (Form.CALL, Form.CLIENT),

@@ -50,7 +50,7 @@ def in_message(path: Path, root: str | None) -> Path:
 
 
 def bare_path(text: str) -> Path:
-    """The bare path to a field of a message, whose root is that field. Raises ValueError for anything else."""
+    """The bare path to a field of a message, whose root is that field. Raises ValueError if it is none."""
     try:
         return Path.parse(text.removeprefix("."), rooted=True)
     except ValueError as error:

@@ -154,7 +154,7 @@ def is_target(text: str) -> bool:
 
 
 def check_target(text: str) -> str:
-    """Return a target, ``module:qualified.name``. Raises ValueError for anything else, saying what is wrong."""
+    """Return a target, ``module:qualified.name``. Raises ValueError if it is none, saying what is wrong."""
     form = "module:qualified.name"
     module, colon, name = text.partition(":")
     parts = (*module.split("."), *name.split("."))

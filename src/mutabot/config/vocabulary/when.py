@@ -1,4 +1,4 @@
-"""Calls whose meaning depends on the values of their arguments: ``when``, and a ``mode`` that an argument decides.
+"""Calls whose meaning depends on arguments: ``when``, and a ``mode`` that an argument decides.
 
 ``when = { argument = "type", value = "gripper" }``: one callable that does everything, such as
 ``client.write(node, value)``, is several operations in the words of a test engineer. Each has an entry of its

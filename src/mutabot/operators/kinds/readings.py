@@ -1,23 +1,36 @@
-"""Readings that drop out, are old, stuck, limited, far off or of something else."""
+"""Readings that are wrong, noisy, old, stuck, limited, lost, late or of something else."""
 
 from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from random import Random
 from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import MEASURED, WHOLE, Value
+from mutabot.model.values.quantity import MEASURED, PLAIN, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
-from mutabot.operators.examples import changed, reading, unchanged
-from mutabot.operators.numbers import is_number, like, map_numbers, middle_of, next_of, within
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
-from mutabot.operators.studies import SENSORS, TIMING
-from mutabot.operators.value import NOT_GIVEN, Exchange, ValueOperator, is_alike, label
+from mutabot.operators.examples import LOCATE, SENSORS, TIMING, X, changed, reading, unchanged
+from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of
+from mutabot.operators.value import (
+    NOT_GIVEN,
+    Exchange,
+    ValueOperator,
+    disturbed,
+    is_alike,
+    is_number,
+    label,
+    like,
+    map_numbers,
+    middle_of,
+    next_of,
+    the_other_way,
+    within,
+)
 
 _STANDS_FOR = f"A sensor that drops out or is misread: {SENSORS}."
 _NONE, _NAN = "none", "nan"
@@ -314,3 +327,129 @@ class LateReading(CommandOperator):
         reply = await proceed(call)
         await call.wait(_LATE)
         return reply
+
+
+#: standard deviation where the vocabulary gives none: a clearly bad sensor, not a broken one (m, rad)
+DEFAULT_DEVIATION = {
+    Kind.POSITION: (0.02, "m"),
+    Kind.DISTANCE: (0.02, "m"),
+    Kind.ORIENTATION: (0.05, "rad"),
+    Kind.ANGLE: (0.05, "rad"),
+    Kind.ROTATION_VECTOR: (0.05, "rad"),
+    Kind.QUATERNION: (0.05, "rad"),
+    Kind.EULER: (0.05, "rad"),
+}
+#: up to this many labels, each other label is a mutant of its own; with more, only the next one is
+ALL_UP_TO = 4
+
+_IN_MM = reading("laser:distance", Kind.DISTANCE, unit="mm")
+_LOOK = reading("camera:orientation", Kind.QUATERNION, order="wxyz")
+_NOISY = replace(LOCATE, result=(replace(X, noise=1.0),))
+_SORT = reading("camera:part", Kind.LABEL, values=("nut", "bolt", "washer"))
+_FEEL = reading("gripper:holding", Kind.FLAG, values=(False, True))
+
+
+class Negate(ValueOperator):
+    """A position, distance or angle is read with the wrong sign."""
+
+    name = "negate"
+    rank = 60
+    where = "read positions, distances, angles and orientations"
+    kinds = MEASURED - PLAIN
+    published = (Published(9, "distance value is x", "distance value is −x"),)
+    of_written = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(LOCATE, 0.55, -0.55, note="distance value is x: distance value is −x"),
+        changed(_IN_MM, 12, -12),
+        changed(
+            _LOOK,
+            [0.8, 0.6, 0.0, 0.0],
+            [0.8, -0.6, 0.0, 0.0],
+            note="an orientation as a whole: the inverse rotation",
+        ),
+        unchanged(LOCATE, 0.0, "a zero has no sign"),
+        unchanged(LOCATE, {}, "the reading has no such part this time"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if context.quantity.is_whole:
+            return the_other_way(context.quantity, value)
+        return map_numbers(value, lambda number: -number)
+
+
+class Noise(ValueOperator):
+    """A position, distance or angle is read with Gaussian noise added."""
+
+    name = "noise"
+    rank = 70
+    where = "read positions, distances, angles and orientations"
+    kinds = frozenset(DEFAULT_DEVIATION)
+    draws = True
+    published = (
+        Published(10, "distance value is x", "distance value is x + noise"),
+        Published(13, "a position or angle is read", "the reading has Gaussian noise"),
+    )
+    of_written = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(
+            _NOISY,
+            0.55,
+            # the first draw of Random(1).gauss(0, 1), the generator the examples are run with
+            0.55 + Random(1).gauss(0.0, 1.0),
+            note="distance value is x: distance value is x + noise",
+        ),
+        unchanged(_NOISY, None, "there is no number to disturb"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        quantity, random = context.quantity, context.random
+        deviation = deviation_of(quantity)
+        if quantity.is_whole:
+            return disturbed(quantity, value, random, deviation)
+
+        def noisy_number(number: float) -> float:
+            noisy = within(number + random.gauss(0.0, deviation), quantity.range)
+            return round(noisy) if isinstance(number, int) else noisy
+
+        return map_numbers(value, noisy_number)
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        deviation = quantity.text(deviation_of(quantity))
+        if quantity.is_whole:
+            deviation = f"{deviation if quantity.unit else f'{deviation} rad'} about each axis"
+        return f"reads {label(quantity)} {quantity.text(before)} + noise, σ = {deviation}"
+
+
+class Misread(ValueOperator):
+    """A label, such as a colour, or a flag is read as another one."""
+
+    name = "misread"
+    rank = 80
+    where = "read labels and flags"
+    published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
+    of_written = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(_SEE, "red", "blue", note="an incorrect colour classification"),
+        changed(_SORT, "bolt", "nut", "+2"),
+        changed(_FEEL, True, False),
+        unchanged(_SEE, "grey", "not one of the labels"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1
+
+    def variants_of(self, quantity: Quantity) -> Iterable[str]:
+        labels = len(quantity.values or ())
+        return [f"+{shift}" for shift in range(1, labels)] if 2 < labels <= ALL_UP_TO else [""]
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return next_of(value, context.quantity, int(context.subject.variant or "1"))
+
+
+def deviation_of(quantity: Quantity) -> float:
+    """Standard deviation of the noise, in the quantity's unit."""
+    if quantity.noise is not None:
+        return quantity.noise
+    amount, unit = DEFAULT_DEVIATION[quantity.kind]
+    return quantity.from_unit(amount, unit)

@@ -18,12 +18,20 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import from_rotation_vector, product
 from mutabot.model.values.units import Dimension, convert, convert_difference
 from mutabot.operators.command import CommandOperator
-from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, writing
+from mutabot.operators.examples import (
+    LOCATE,
+    MOVE_TO,
+    PARAMETERS,
+    SENSORS,
+    TIMING,
+    changed,
+    reading,
+    unchanged,
+    writing,
+)
 from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
-from mutabot.operators.numbers import is_number
 from mutabot.operators.operator import Context, Draws, Example, Need, Subject, quantity_of
-from mutabot.operators.studies import PARAMETERS, SENSORS, TIMING
-from mutabot.operators.value import ValueOperator, label
+from mutabot.operators.value import ValueOperator, is_number, label
 
 #: components of a slice without an end that are tried: those of an arm with seven joints
 _JOINTS = 7

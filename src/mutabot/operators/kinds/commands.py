@@ -1,22 +1,140 @@
-"""Commands in the wrong order, at the wrong time, or not once."""
+"""Commands that are lost, repeated, turned round, too early, too late or in the wrong order."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import ClassVar
 
 from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Proceed, Reply
+from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Reply
+from mutabot.model.values.notation import Notation
 from mutabot.model.values.quantity import WHOLE, Value
 from mutabot.model.values.sameness import are_same
 from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.numbers import like, map_numbers
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
-from mutabot.operators.robot.commands import other_end
-from mutabot.operators.studies import COMMANDS, TIMING
-from mutabot.operators.value import ValueOperator, given
+from mutabot.operators.examples import (
+    CLOSE,
+    COMMANDS,
+    GRIP,
+    MOVE_BY,
+    MOVE_TO,
+    TIMING,
+    changed,
+    unchanged,
+    writing,
+)
+from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged
+from mutabot.operators.value import ValueOperator, given, like, map_numbers
+
+_HOME = Operation("robot:Arm.home")
+_OPEN_TO = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
+_LAMP = writing("robot:Lamp.set", "lit", Kind.OUTPUT, values=(False, True))
+_FAN = writing("robot:Fan.set", "mode", Kind.OUTPUT, values=("off", "slow", "fast"))
+_LIFT = Pattern("lift/{height:g}", opposite="drop/{height:g}")
+_SEND = Operation("link:send", message="text", patterns=(_LIFT,))
+
+
+class Skip(CommandOperator):
+    """A command is not carried out; the program goes on as if it had been."""
+
+    name = "skip"
+    needs = frozenset({Need.IDLE})
+    does_nothing = True
+    rank = 30
+    where = "commands whose answer to doing nothing is known"
+    published = (Published(7, "do command x", "do nothing"),)
+    fault = "do nothing"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
+        Example(Subject(_HOME), performed=()),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        return idle_of(call)
+
+
+class Repeat(CommandOperator):
+    """A command is carried out twice; the program sees the second answer."""
+
+    name = "repeat"
+    rank = 40
+    where = "any command"
+    published = (Published(8, "do command x", "do command x twice"),)
+    fault = "do it twice"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            Subject(MOVE_BY),
+            {"dx": 0.1},
+            performed=({"dx": 0.1}, {"dx": 0.1}),
+            note="do command x: do command x twice",
+        ),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        await proceed(call)
+        return await proceed(call)
+
+
+class Opposite(CommandOperator):
+    """A two-state command does the opposite: open for close, off for on, release for grasp."""
+
+    name = "opposite"
+    rank = 50
+    where = "written openings and outputs with two ends, and commands with an opposite"
+    published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(GRIP, 1, 0, note="grasp: release"),
+        changed(_LAMP, False, True),
+        changed(_OPEN_TO, 85.0, 0.0, note="an opening at one end of its range goes to the other end"),
+        Example(Subject(CLOSE), performed=({"reversed": True},), note="calls the opposite operation"),
+        Example(
+            Subject(_SEND, _LIFT),
+            {"height": 5},
+            performed=({"height": 5, "reversed": True},),
+            note="sends the opposite text command",
+        ),
+        unchanged(_OPEN_TO, 40.0, "half open has no opposite"),
+        unchanged(GRIP, 0.5, "neither of the two states"),
+        unchanged(_FAN, "slow", "three states have no opposite"),
+    )
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
+        whole = Subject(operation, pattern)
+        for quantity in whole.written:
+            if quantity.kind in (Kind.OPENING, Kind.OUTPUT) and _ends(quantity) is not None:
+                yield Subject(operation, pattern, quantity)
+        if whole.opposite is not None:
+            yield whole
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        quantity = context.subject.quantity
+        if quantity is None:
+            return await proceed(call.opposite())
+        return await proceed(call.with_value(quantity, other_end(quantity, call.values.get(quantity.name))))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        if subject.quantity is not None:
+            return f"{subject.quantity.name} {' → '.join(subject.quantity.texts(before, after))}"
+        pattern, opposite = subject.pattern, subject.opposite
+        if opposite is not None and pattern is not None and pattern.notation is not None:
+            return f"{Notation.compile(opposite).short} instead"
+        return f"{opposite} instead"
+
+
+def _ends(quantity: Quantity) -> tuple[Value, Value] | None:
+    if quantity.values is not None:
+        return (quantity.values[0], quantity.values[1]) if len(quantity.values) == 2 else None
+    return quantity.range or quantity.clip
+
+
+def other_end(quantity: Quantity, value: Value) -> Value:
+    """The other of a quantity's two states. Raises Unchanged if the value is neither."""
+    ends = _ends(quantity)
+    value = quantity.clipped(value)
+    if ends is None or value is None or value not in ends:
+        raise Unchanged("the value is neither of the two ends")
+    return ends[1] if value == ends[0] else ends[0]
+
 
 #: seconds: as long as a pneumatic gripper takes to open or close
 _LATE = 0.5

@@ -10,9 +10,17 @@ from typing import ClassVar
 from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.numbers import is_number, map_numbers
 from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of
-from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, ValuesOperator, label, the_other_way
+from mutabot.operators.value import (
+    NOT_GIVEN,
+    NOT_TOLD,
+    ValueOperator,
+    ValuesOperator,
+    is_number,
+    label,
+    map_numbers,
+    the_other_way,
+)
 
 _PATH = Path.parse("message.pose.x", rooted=True)
 _GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)
