@@ -22,8 +22,9 @@ from .operator import Context, Operator, Subject, Unchanged, quantity_of
 
 CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _NAMES = re.compile(r"[._]")
-#: why an operator leaves a call without a value alone
-NOT_GIVEN = "the call gives no such value"
+#: why an operator leaves a call alone, or what it reads, that is without its value
+NOT_PASSED = "the call does not pass this argument"
+NOT_RETURNED = "the call does not return this value"
 #: why an operator that asks where the robot is leaves a call alone
 NOT_TOLD = "nothing has told yet where the robot is"
 SAME = "the value would stay the same"
@@ -130,7 +131,7 @@ class ValueOperator(ValuesOperator):
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         name = context.quantity.name
-        value = given(values, name)
+        value = given(values, name, context.subject)
         context.number += 1
         return {name: self.change(value, context)}
 
@@ -143,10 +144,10 @@ def label(quantity: Quantity) -> str:
     return f"{name} ({quantity.axis})"
 
 
-def given(values: Mapping[str, Value], name: str) -> Value:
+def given(values: Mapping[str, Value], name: str, subject: Subject) -> Value:
     """A value of a call. Raises Unchanged if the call does not give it."""
     if name not in values:
-        raise Unchanged(NOT_GIVEN)
+        raise Unchanged(NOT_PASSED if subject.is_written else NOT_RETURNED)
     return values[name]
 
 
@@ -216,7 +217,7 @@ class Exchange(ValuesOperator):
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         one, other = context.quantity.name, _other_of(context.subject).name
-        first, second = given(values, one), given(values, other)
+        first, second = (given(values, name, context.subject) for name in (one, other))
         return {one: second, other: first}
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:

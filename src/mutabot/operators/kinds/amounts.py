@@ -10,7 +10,7 @@ from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import COMMANDS, PARAMETERS, UNITS, changed, reading, unchanged, writing
-from mutabot.operators.operator import Context, Example, Subject, quantity_of
+from mutabot.operators.operator import Context, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, like, map_numbers, middle_of, within
 
 #: the robot, or the program, takes the number as if it were in the other unit
@@ -73,13 +73,14 @@ def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
 class CentimetreForMetre(_OtherUnit):
     """A length or linear speed in metres is taken for centimetres, or is given in centimetres; and the other
     way round.
+
+    Where: written and read quantities in m, cm, m/s or cm/s.
     """
 
     name = "cm-for-m"
     rank = 300
-    where = "written and read quantities in m, cm, m/s or cm/s"
     units = _both_ways({"m": "cm", "m/s": "cm/s"})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE_TO, 0.5, 0.005, "taken-cm"),
         changed(_MOVE_TO, 0.01, 1.0, "given-cm"),
         changed(_IN_CM, 12.0, 0.12, "given-m"),
@@ -90,13 +91,14 @@ class CentimetreForMetre(_OtherUnit):
 class MillimetreForMetre(_OtherUnit):
     """A length or linear speed in metres is taken for millimetres, or is given in millimetres; and the other
     way round.
+
+    Where: written and read quantities in m or mm, and their speeds and accelerations.
     """
 
     name = "mm-for-m"
     rank = 301
-    where = "written and read quantities in m or mm, and their speeds and accelerations"
     units = _both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE_BY, 0.5, 0.0005, "taken-mm"),
         changed(_MOVE_BY, 0.5, 500.0, "given-mm"),
         changed(_IN_MM, 12, 12000, "taken-m"),
@@ -105,13 +107,15 @@ class MillimetreForMetre(_OtherUnit):
 
 
 class InchForMillimetre(_OtherUnit):
-    """A length in millimetres is taken for inches, or is given in inches; and the other way round."""
+    """A length in millimetres is taken for inches, or is given in inches; and the other way round.
+
+    Where: written and read quantities in mm or inch.
+    """
 
     name = "inch-for-mm"
     rank = 302
-    where = "written and read quantities in mm or inch"
     units = _both_ways({"mm": "inch"})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE_IN_MM, 10, 254, "taken-inch"),
         changed(_MOVE_IN_MM, 254, 10, "given-inch"),
         changed(_IN_MM, 508.0, 20.0, "given-inch"),
@@ -122,16 +126,15 @@ class InchForMillimetre(_OtherUnit):
 class DegreeForRadian(_OtherUnit):
     """An angle or angular speed in radians is taken for degrees, or is given in degrees; and the other way
     round.
+
+    Where: written and read quantities in rad or deg, rotation vectors and Euler angles included, and their
+    speeds and accelerations.
     """
 
     name = "deg-for-rad"
     rank = 303
-    where = (
-        "written and read quantities in rad or deg, rotation vectors and Euler angles included, and"
-        " their speeds and accelerations"
-    )
     units = _both_ways({"rad": "deg", "rad/s": "deg/s", "rad/s^2": "deg/s^2"})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_TURN, 3.0, 171.88733853924697, "taken-rad"),
         changed(_TURN, 180.0, 3.141592653589793, "given-rad"),
         changed(_JOINTS, 1.0, 57.29577951308232, "given-deg"),
@@ -142,15 +145,16 @@ class DegreeForRadian(_OtherUnit):
 class MillisecondForSecond(_OtherUnit):
     """A duration in seconds is taken for milliseconds. The other way round it is so long that any test only
     times out.
+
+    Where: durations in s.
     """
 
     name = "ms-for-s"
     rank = 304
-    where = "durations in s"
     units: ClassVar[Mapping[str, str]] = {"s": "ms"}
     ways = (_TAKEN,)
     of_read = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_WAIT, 0.8, 0.0008, "taken-ms"),
         unchanged(_WAIT, 0.0, "no time is no time", "taken-ms"),
     )
@@ -183,13 +187,15 @@ class _Factor(ValueOperator):
 
 
 class SpeedOverride(_Factor):
-    """A speed or acceleration is 50 % or 200 % of what is commanded, within its range."""
+    """A speed or acceleration is 50 % or 200 % of what is commanded, within its range.
+
+    Where: written quantities of kind speed, acceleration or jerk.
+    """
 
     name = "speed-override"
     rank = 350
-    where = "written quantities of kind speed, acceleration or jerk"
     kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_SPEED, 0.5, 0.25, "x0.5"),
         changed(_SPEED, 0.8, 1.0, "x2", note="its range ends there"),
         unchanged(_SPEED, 1.0, "it is at the end of its range", "x2"),
@@ -197,13 +203,15 @@ class SpeedOverride(_Factor):
 
 
 class ForceOverride(_Factor):
-    """A force or torque is 50 % or 200 % of what is commanded, within its range."""
+    """A force or torque is 50 % or 200 % of what is commanded, within its range.
+
+    Where: written quantities of kind force or torque.
+    """
 
     name = "force-override"
     rank = 351
-    where = "written quantities of kind force or torque"
     kinds = frozenset({Kind.FORCE, Kind.TORQUE})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_PRESS, 40.0, 20.0, "x0.5"),
         changed(_PRESS, 40.0, 80.0, "x2"),
         unchanged(_PRESS, 0.0, "twice nothing is nothing", "x2"),
@@ -211,13 +219,15 @@ class ForceOverride(_Factor):
 
 
 class WeakGrip(_Factor):
-    """A gripper has 30 % of the force that it is told to have, or the least of its range."""
+    """A gripper has 30 % of the force that it is told to have, or the least of its range.
+
+    Where: written quantities of kind force, in calls that command no motion.
+    """
 
     name = "weak-grip"
     rank = 352
-    where = "written quantities of kind force, in calls that command no motion"
     variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_GRIP, 160, 48, "x0.3"),
         changed(_GRIP, 40, 20, "x0.3", note="the least of its range"),
         unchanged(_GRIP, 20, "it is the least already", "x0.3"),
@@ -231,15 +241,17 @@ class WeakGrip(_Factor):
 
 
 class WrongPayload(_Factor):
-    """The payload that is set is none, or twice as heavy as it is."""
+    """The payload that is set is none, or twice as heavy as it is.
+
+    Where: written quantities of kind mass.
+    """
 
     name = "wrong-payload"
     rank = 353
-    where = "written quantities of kind mass"
     kinds = frozenset({Kind.MASS})
     variants: ClassVar[Mapping[str, float]] = {"none": 0.0, "double": 2.0}
     is_limited = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_PAYLOAD, 1.2, 0.0, "none"),
         changed(_PAYLOAD, 1.2, 2.4, "double"),
         unchanged(_PAYLOAD, 4.0, "the robot takes 5 kg at most", "double"),
@@ -250,15 +262,16 @@ class WrongPayload(_Factor):
 class PartialOpening(ValueOperator):
     """A gripper stops half way, as seen from the end of its range that is farther off: half open, half
     closed.
+
+    Where: openings with a range or clip; those of two values take no other.
     """
 
     name = "partial-opening"
     family = CATALOGUE
     rank = 354
     stands_for = f"Commands that are not carried out in full, as by a gripper that jams: {COMMANDS}."
-    where = "openings with a range or clip; those of two values take no other"
     of_read = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_OPEN, 80.0, 40.0),
         changed(_OPEN, 0.0, 42.5, note="half closed"),
         unchanged(_OPEN, {}, "the call says nothing of it"),
@@ -278,15 +291,17 @@ class PartialOpening(ValueOperator):
 
 
 class SilentLimit(ValueOperator):
-    """A commanded value is limited to the middle 80 % of its range, without notice."""
+    """A commanded value is limited to the middle 80 % of its range, without notice.
+
+    Where: written numbers with a range or clip.
+    """
 
     name = "silent-limit"
     family = CATALOGUE
     rank = 355
     stands_for = f"A wrong parameter: {PARAMETERS}."
-    where = "written numbers with a range or clip"
     of_read = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_LIMITED, 100, 90),
         unchanged(_LIMITED, 50, "it is within"),
     )

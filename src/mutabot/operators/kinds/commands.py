@@ -35,16 +35,18 @@ _SEND = Operation("link:send", message="text", patterns=(_LIFT,))
 
 
 class Skip(CommandOperator):
-    """A command is not carried out; the program goes on as if it had been."""
+    """A command is not carried out; the program goes on as if it had been.
+
+    Where: commands whose answer to doing nothing is known.
+    """
 
     name = "skip"
     needs = frozenset({Need.IDLE})
     does_nothing = True
     rank = 30
-    where = "commands whose answer to doing nothing is known"
     published = (Published(7, "do command x", "do nothing"),)
     fault = "do nothing"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
         Example(Subject(_HOME), performed=()),
     )
@@ -54,14 +56,16 @@ class Skip(CommandOperator):
 
 
 class Repeat(CommandOperator):
-    """A command is carried out twice; the program sees the second answer."""
+    """A command is carried out twice; the program sees the second answer.
+
+    Where: any command.
+    """
 
     name = "repeat"
     rank = 40
-    where = "any command"
     published = (Published(8, "do command x", "do command x twice"),)
     fault = "do it twice"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(
             Subject(MOVE_BY),
             {"dx": 0.1},
@@ -76,13 +80,15 @@ class Repeat(CommandOperator):
 
 
 class Opposite(CommandOperator):
-    """A two-state command does the opposite: open for close, off for on, release for grasp."""
+    """A two-state command does the opposite: open for close, off for on, release for grasp.
+
+    Where: written openings and outputs with two ends, and commands with an opposite.
+    """
 
     name = "opposite"
     rank = 50
-    where = "written openings and outputs with two ends, and commands with an opposite"
     published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(GRIP, 1, 0, note="grasp: release"),
         changed(_LAMP, False, True),
         changed(_OPEN_TO, 85.0, 0.0, note="an opening at one end of its range goes to the other end"),
@@ -155,16 +161,15 @@ class _Timing(CommandOperator):
 class SwapNext(_Timing):
     """A command changes places with the program's next one, whichever that is; if none follows, it is never
     carried out. Meanwhile the program goes on as if it had been.
+
+    Where: any command whose answer to doing nothing is known.
     """
 
     name = "swap-next"
     rank = 330
     needs = frozenset({Need.IDLE, Need.PROGRAM})
-    where = "any command whose answer to doing nothing is known"
     fault = "only after the next command"
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example(Subject(MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),
-    )
+    examples = (Example(Subject(MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         reply = idle_of(call)
@@ -173,13 +178,15 @@ class SwapNext(_Timing):
 
 
 class PreviousTarget(_Timing):
-    """A motion goes to the target of the one before it again, or as far: a waypoint that is out of date."""
+    """A motion goes to the target of the one before it again, or as far: a waypoint that is out of date.
+
+    Where: commands that write a translation or rotation, from the second call of their operation on.
+    """
 
     name = "previous-target"
     rank = 331
-    where = "commands that write a translation or rotation, from the second call of their operation on"
     fault = "the motion of the call before it again"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(
             Subject(MOVE_TO),
             {"x": 0.4, "y": 0.1},
@@ -205,16 +212,18 @@ class PreviousTarget(_Timing):
 
 
 class HalfWait(ValueOperator):
-    """A wait is half as long: the next command comes before what was waited for is over."""
+    """A wait is half as long: the next command comes before what was waited for is over.
+
+    Where: written quantities of kind duration.
+    """
 
     name = "half-wait"
     family = CATALOGUE
     rank = 332
     stands_for = _Timing.stands_for
-    where = "written quantities of kind duration"
     kinds = frozenset({Kind.DURATION})
     of_read = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_WAIT, 0.8, 0.4),
         unchanged(_WAIT, 0.0, "there is nothing to shorten"),
     )
@@ -228,7 +237,7 @@ class NoWait(HalfWait):
 
     name = "no-wait"
     rank = 333
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_WAIT, 0.8, 0.0),
         unchanged(_WAIT, 0.0, "there is nothing to shorten"),
     )
@@ -245,9 +254,7 @@ class LateGrip(_Timing):
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     where = f"{_GRIPPING}; the vocabulary says how time passes: wait"
     fault = f"{_LATE:g} s late"
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example(Subject(GRIP), {"position": 1}, waited=_LATE, performed=({"position": 1},)),
-    )
+    examples = (Example(Subject(GRIP), {"position": 1}, waited=_LATE, performed=({"position": 1},)),)
 
     def fits(self, whole: Subject) -> bool:
         return _is_gripping(whole)
@@ -266,7 +273,7 @@ class EarlyRelease(_Timing):
     rank = 337
     where = _GRIPPING
     fault = "and back after the next command"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(GRIP), {"position": 1}, performed=({"position": 1},), afterwards=({"position": 0},)),
         Example(Subject(CLOSE), performed=({},), afterwards=({"reversed": True},)),
         Example(Subject(GRIP), {"position": 0.5}, away="half open has no opposite"),
@@ -292,7 +299,7 @@ def _undone(subject: Subject, call: Call) -> Call:
     """The call that takes a gripper command back. Raises Unchanged if its opening has no other end."""
     for quantity in subject.written:
         if quantity.kind is Kind.OPENING:
-            value = given(call.values, quantity.name)
+            value = given(call.values, quantity.name, replace(subject, quantity=quantity))
             return call.with_value(quantity, other_end(quantity, value))
     return call.opposite()
 
@@ -310,14 +317,16 @@ class _Chance(CommandOperator):
 
 
 class LostCommand(_Chance):
-    """A command is not carried out, with a probability of 30 %; the program goes on as if it had been."""
+    """A command is not carried out, with a probability of 30 %; the program goes on as if it had been.
+
+    Where: any command whose answer to doing nothing is known.
+    """
 
     name = "lost-command"
     rank = 334
     needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
-    where = "any command whose answer to doing nothing is known"
     fault = "do nothing, with a probability of {variant}"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(GRIP, variant="30%"), {"position": 1}, performed=()),
         Example(
             Subject(GRIP, variant="30%"),
@@ -333,13 +342,15 @@ class LostCommand(_Chance):
 
 
 class DoubleCommand(_Chance):
-    """A command is carried out twice, with a probability of 30 %; the program sees the second answer."""
+    """A command is carried out twice, with a probability of 30 %; the program sees the second answer.
+
+    Where: any command.
+    """
 
     name = "double-command"
     rank = 335
-    where = "any command"
     fault = "do it twice, with a probability of {variant}"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
         Example(
             Subject(MOVE_BY, variant="30%"),
@@ -358,6 +369,9 @@ class DoubleCommand(_Chance):
 class UnreportedRefusal(CommandOperator):
     """The robot refuses a command, or stops, and the program does not hear of it: it gets the answer to doing
     nothing.
+
+    Where: commands whose answer to doing nothing is known, where the tests make the robot raise one of its
+    refusals.
     """
 
     name = "unreported-refusal"
@@ -365,12 +379,8 @@ class UnreportedRefusal(CommandOperator):
     rank = 338
     needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
     stands_for = f"Errors that are swallowed on their way: {COMMANDS}."
-    where = (
-        "commands whose answer to doing nothing is known, where the tests make the robot raise one of"
-        " its refusals"
-    )
     fault = "a refusal is not reported"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(_REFUSED), {"dx": 9.0}, refused=True, performed=({"dx": 9.0},), received={}),
         Example(Subject(_REFUSED), {"dx": 0.1}, away="the robot does not refuse it"),
     )

@@ -16,9 +16,9 @@ from mutabot.model.values.rotation import Quaternion, from_euler, inverse, produ
 from mutabot.model.values.sameness import is_same
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import FRAMES, MOVE_TO, SIGNS, changed, reading, unchanged, writing
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
+from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
-    NOT_GIVEN,
+    NOT_PASSED,
     Exchange,
     ValueOperator,
     ValuesOperator,
@@ -56,13 +56,15 @@ _MOVE_TIP = Operation("robot:Arm.move_to", (_TIP,))
 
 
 class AxisSwap(Exchange):
-    """Two components of a motion are exchanged: what is meant along x goes along y."""
+    """Two components of a motion are exchanged: what is meant along x goes along y.
+
+    Where: commands that write two of the axes x, y, z of one translation or rotation.
+    """
 
     name = "axis-swap"
     rank = 310
     stands_for = f"A wrong axis: {FRAMES}."
-    where = "commands that write two of the axes x, y, z of one translation or rotation"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
         unchanged(MOVE_TO, {"x": 0.2, "y": 0.2}, "both are the same", "y"),
         unchanged(MOVE_TO, {"x": 0.2}, "the call gives no y", "y"),
@@ -76,13 +78,15 @@ class AxisSwap(Exchange):
 
 
 class JointOrder(Exchange):
-    """The angles of the first and the third joint are exchanged, as where joints are sorted by name."""
+    """The angles of the first and the third joint are exchanged, as where joints are sorted by name.
+
+    Where: written and read angles of the joints j1 and j3.
+    """
 
     name = "joint-order"
     rank = 311
     stands_for = f"Joints in another order, as in joint states that are sorted by name: {FRAMES}."
-    where = "written and read angles of the joints j1 and j3"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(
             _SET_JOINTS,
             {"joints[0]": 10, "joints[1]": 20, "joints[2]": 30},
@@ -110,14 +114,16 @@ class JointOrder(Exchange):
 
 
 class LeftHanded(ValuesOperator):
-    """A pose is taken as given in a left-handed frame: y and the turns about x and z are negated."""
+    """A pose is taken as given in a left-handed frame: y and the turns about x and z are negated.
+
+    Where: written and read poses with y and an orientation beside it; for y alone it is a wrong sign.
+    """
 
     name = "left-handed"
     family = CATALOGUE
     rank = 312
     stands_for = f"Frames of the other handedness, as of game engines: {FRAMES}."
-    where = "written and read poses with y and an orientation beside it; for y alone it is a wrong sign"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_POSE, {"y": 0.2, "yaw": 30.0}, {"y": -0.2, "yaw": -30.0}),
         changed(
             _PUT, {"y": 0.2, "turned": [0.8, 0.0, 0.0, 0.6]}, {"y": -0.2, "turned": [0.8, 0.0, 0.0, -0.6]}
@@ -135,7 +141,7 @@ class LeftHanded(ValuesOperator):
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         name = context.quantity.name
-        found = {name: map_numbers(given(values, name), _negative)}
+        found = {name: map_numbers(given(values, name, context.subject), _negative)}
         for one in context.subject.side:
             if _turns(one) and one.name in values:
                 found[one.name] = _mirrored(one, values[one.name])
@@ -171,6 +177,9 @@ def _mirrored(quantity: Quantity, value: Value) -> Value | None:
 class BaseForTool(ValuesOperator):
     """A relative move in the base's frame goes along the tool's axes, and one in the tool's along the
     base's.
+
+    Where: relative translations along x, y and z in a frame named base or tool, with a current that reads the
+    three angles of the tool, about axes that stay, in the base's frame.
     """
 
     name = "base-for-tool"
@@ -178,11 +187,7 @@ class BaseForTool(ValuesOperator):
     needs = frozenset({Need.PLACE})
     rank = 313
     stands_for = f"A wrong or missing transform: {FRAMES}."
-    where = (
-        "relative translations along x, y and z in a frame named base or tool, with a current that reads"
-        " the three angles of the tool, about axes that stay, in the base's frame"
-    )
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(
             _MOVE_BY,
             {"x": 0.1, "y": 0.0, "z": 0.2},
@@ -208,7 +213,7 @@ class BaseForTool(ValuesOperator):
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         before = {one.name: values.get(one.name) for one in _moved(context.subject)}
         if not all(is_number(value) for value in before.values()):
-            raise Unchanged(NOT_GIVEN)
+            raise Unchanged(NOT_PASSED)
         try:
             tool = await _orientation(context.call)
         except NotToldError:
@@ -252,13 +257,14 @@ def _turned(values: Mapping[str, Value], by: Quaternion) -> dict[str, float]:
 class _WrongTcp(ValueOperator):
     """Moves a target along the tool's offset.
 
+    Where: target positions whose vocabulary says how far the tool reaches: tcp.
+
     Class attributes:
         sign: which way, as a share of the offset.
     """
 
     family = CATALOGUE
     stands_for = f"A tool that is not set up, or set up in two places: {FRAMES}."
-    where = "target positions whose vocabulary says how far the tool reaches: tcp"
     of_read = False
     sign: ClassVar[float]
 
@@ -276,7 +282,7 @@ class TcpMissing(_WrongTcp):
     name = "tcp-missing"
     rank = 314
     sign = 1.0
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE_TIP, 0.3, 0.18, note="12 cm of gripper that looks down"),
         unchanged(_MOVE_TIP, 0.05, "it would be below the range [0, 0.6]"),
     )
@@ -288,23 +294,25 @@ class TcpDoubled(_WrongTcp):
     name = "tcp-doubled"
     rank = 315
     sign = -1.0
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE_TIP, 0.3, 0.42, note="12 cm of gripper that looks down"),
         unchanged(_MOVE_TIP, 0.5, "it would be above the range [0, 0.6]"),
     )
 
 
 class JointTurn(ValueOperator):
-    """The target of a joint is off by a full turn: the tool ends alike, the way there does not."""
+    """The target of a joint is off by a full turn: the tool ends alike, the way there does not.
+
+    Where: absolute angles of joints: rotation with an axis j1 … and mode to.
+    """
 
     name = "joint-turn"
     family = CATALOGUE
     rank = 316
     stands_for = f"Angles that wrap around at ±180° or 360°: {FRAMES}."
-    where = "absolute angles of joints: rotation with an axis j1 … and mode to"
     of_read = False
     variants: ClassVar[Mapping[str, float]] = {"+": 1.0, "-": -1.0}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_SET_J6, 170, -190, "-"),
         unchanged(_SET_J6, 170, "530° is out of the joint's range", "+"),
     )
@@ -347,14 +355,15 @@ class _OtherNumbers(ValueOperator):
 class EulerOrder(_OtherNumbers):
     """Euler angles are carried out in the reverse order: axes that stay are taken for axes that turn
     along.
+
+    Where: written and read quantities of kind euler.
     """
 
     name = "euler-order"
     rank = 320
     stands_for = f"Two conventions of Euler angles: {FRAMES}."
-    where = "written and read quantities of kind euler"
     kinds = frozenset({Kind.EULER})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_RPY, [45.0, 0.0, 90.0], [0.0, -45.0, 90.0]),
         unchanged(_RPY, [0.0, 0.0, 90.0], "a turn about one axis alone has no order"),
     )
@@ -366,14 +375,16 @@ class EulerOrder(_OtherNumbers):
 
 
 class QuaternionOrder(_OtherNumbers):
-    """A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back."""
+    """A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back.
+
+    Where: written and read quantities of kind quaternion.
+    """
 
     name = "quaternion-order"
     rank = 321
     stands_for = f"Libraries that order quaternions in two ways: {FRAMES}."
-    where = "written and read quantities of kind quaternion"
     kinds = frozenset({Kind.QUATERNION})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_ORIENT, [0.8, 0.6, 0.0, 0.0], [0.0, 0.8, 0.6, 0.0], note="0.8 is taken for x"),
         changed(_LOOK, [0.0, 0.0, 0.6, 0.8], [0.0, 0.6, 0.8, 0.0]),
         unchanged(_ORIENT, [0.5, 0.5, 0.5, 0.5], "all parts are the same, so their order is none"),
@@ -385,15 +396,17 @@ class QuaternionOrder(_OtherNumbers):
 
 
 class QuaternionSign(_OtherNumbers):
-    """One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's."""
+    """One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's.
+
+    Where: written and read quantities of kind quaternion.
+    """
 
     name = "quaternion-sign"
     rank = 322
     stands_for = f"A wrong sign: {SIGNS}."
-    where = "written and read quantities of kind quaternion"
     kinds = frozenset({Kind.QUATERNION})
     variants: ClassVar[dict[str, str]] = {part: part for part in "xyz"}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_ORIENT, [0.8, 0.48, 0.36, 0.0], [0.8, 0.48, -0.36, 0.0], "y"),
         unchanged(_ORIENT, [0.0, 1.0, 0.0, 0.0], "half a turn the other way is the same orientation", "x"),
         unchanged(_ORIENT, [0.8, 0.48, 0.36, 0.0], "a zero has no sign", "z"),

@@ -149,13 +149,15 @@ _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
 
 
 class Offset(NumberOperator):
-    """A commanded or read value is off by a fixed amount, at every call, in one direction."""
+    """A commanded or read value is off by a fixed amount, at every call, in one direction.
+
+    Where: every number that is commanded or read, bar waits.
+    """
 
     name = "offset"
-    where = "every number that is commanded or read, bar waits"
     stands_for = f"A tool, a fixture or a camera that stands off, or a wrong constant: {PARAMETERS}."
     rank = 200
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm"), note="the box is put down 20 mm too far"),
         changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm"), note="the camera was bumped into"),
         changed(
@@ -176,13 +178,15 @@ class Offset(NumberOperator):
 
 
 class Scale(NumberOperator):
-    """A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration."""
+    """A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration.
+
+    Where: every number whose zero means nothing: amounts, positions, distances, no target angles.
+    """
 
     name = "scale"
-    where = "every number whose zero means nothing: amounts, positions, distances, no target angles"
     stands_for = f"A wrong gain or calibration factor: {PARAMETERS}."
     rank = 210
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
         changed(
             _FEEL,
@@ -210,17 +214,18 @@ class Scale(NumberOperator):
 class SensorNoise(NumberOperator):
     """Each reading is off by Gaussian noise of standard deviation σ. The draws of a round are the same at
     every σ: a larger one is the same noise, only larger.
+
+    Where: every number that is read.
     """
 
     name = "sensor-noise"
-    where = "every number that is read"
     stands_for = f"A worse sensor than the program was written for: {SENSORS}."
     rank = 220
     draws = True
     directions = ("",)
     of_written = False
     fault = "+ noise, σ = {}"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(
             LOCATE,
             0.55,
@@ -240,15 +245,17 @@ class SensorNoise(NumberOperator):
 
 
 class Drift(NumberOperator):
-    """A reading drifts: it is off by δ for every second of simulated time since the test began."""
+    """A reading drifts: it is off by δ for every second of simulated time since the test began.
+
+    Where: every number that is read, with a clock in the vocabulary.
+    """
 
     name = "drift"
-    where = "every number that is read, with a clock in the vocabulary"
     stands_for = f"A sensor that warms up, or odometry that is summed: {SENSORS}."
     rank = 230
     needs = frozenset({Need.CLOCK})
     of_written = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(
             _FEEL,
             0.3,
@@ -273,15 +280,16 @@ class Drift(NumberOperator):
 class Quantise(NumberOperator):
     """A commanded or read value is rounded to the nearest multiple of a step, as by a coarse encoder or
     converter.
+
+    Where: every number that is commanded or read, bar orientations as a whole.
     """
 
     name = "quantise"
-    where = "every number that is commanded or read, bar orientations as a whole"
     stands_for = f"A coarse encoder or converter: {SENSORS}."
     rank = 240
     directions = ("",)
     fault = "in steps of {}"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MOVE, 0.23, 0.25, size=("", 50.0, "mm")),
         changed(LOCATE, 0.55, 0.56, size=("", 20.0, "mm")),
         unchanged(_MOVE, 0.2, "it is a multiple of the step", size=("", 50.0, "mm")),
@@ -297,16 +305,17 @@ class Quantise(NumberOperator):
 class Deadband(NumberOperator):
     """A target or reading that differs from the last one by less than δ is taken for that one; a relative
     move shorter than δ is none. As by a worn gear, or a filter against chatter.
+
+    Where: every number that is commanded or read, bar waits and orientations as a whole.
     """
 
     name = "deadband"
-    where = "every number that is commanded or read, bar waits and orientations as a whole"
     stands_for = f"Backlash of a worn gear, or a filter against chatter: {SENSORS}."
     rank = 250
     needs = frozenset({Need.MEMORY, Need.COPIES})
     directions = ("",)
     fault = "with a dead band of {}"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_GO, 0.41, 0.4, size=("", 20.0, "mm"), earlier=(0.4,)),
         changed(_FEEL, 0.31, 0.3, size=("", 20.0, "mm"), earlier=(0.3,)),
         unchanged(_GO, 0.45, "it is far enough from the last target", size=("", 20.0, "mm"), earlier=(0.4,)),
@@ -327,15 +336,17 @@ _HOME = Operation("robot:Arm.home")
 
 
 class Early(NumberOperator):
-    """A wait is so much shorter, so that what comes next comes too early."""
+    """A wait is so much shorter, so that what comes next comes too early.
+
+    Where: waits: arguments of kind `duration`.
+    """
 
     name = "early"
-    where = "waits: arguments of kind `duration`"
     stands_for = f"A wait that was measured on a faster machine: {TIMING}."
     rank = 270
     directions = ("-",)
     of_read = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms"), note="the gripper is given less time to close"),
         unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
     )
@@ -351,18 +362,17 @@ class Early(NumberOperator):
 class Lag(CommandOperator):
     """Each command is carried out so much later, while the rest of the world goes on; a reading was taken so
     much before the program gets it. Needs a `wait` in the vocabulary, or a middleware.
+
+    Where: every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware.
     """
 
     name = "lag"
     family = GRADED
     has_sizes = True
-    where = (
-        "every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware"
-    )
     stands_for = f"A busy network or controller: {TIMING}."
     rank = 260
     needs = frozenset({Need.WAIT, Need.PROGRAM})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({},), waited=0.2),
         Example(
             Subject(_FEEL, variant="50ms", magnitude=50.0, unit="ms"),

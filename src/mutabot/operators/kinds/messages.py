@@ -54,7 +54,7 @@ class Drop(MessageOperator):
         _CHANCE: "with a probability of 30 %, a",
     }
     fault = "{which} {what} is lost"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(PUBLISH), {"x": 0.4}, performed=(), note="nobody hears of it"),
         Example(
             Subject(RECEIVE),
@@ -98,7 +98,7 @@ class Duplicate(MessageOperator):
     rank = 120
     forms = _SENT | COMING
     fault = "each {what} arrives twice"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(PUBLISH), {"x": 0.4}, performed=({"x": 0.4}, {"x": 0.4})),
         Example(
             Subject(RECEIVE),
@@ -126,7 +126,7 @@ class Stale(MessageOperator):
     forms = _SENT | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
     variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
     fault = "the {variant} {what} again instead of the new one"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(
             Subject(RECEIVE, variant=_FIRST),
             replied={"gap": 0.02},
@@ -178,7 +178,7 @@ class Delay(MessageOperator):
     rank = 140
     forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
     fault = "each {what} comes {variant} s late"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(
             Subject(PUBLISH, variant="0.1", magnitude=0.1), {"x": 0.4}, performed=({"x": 0.4, "late": 0.1},)
         ),
@@ -214,7 +214,7 @@ class Reorder(MessageOperator):
     needs = _EARLIER
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
     fault = "every other {what} comes after the next one"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(PUBLISH), {"x": 0.4}, earlier=({"x": 0.2},), performed=({"x": 0.4}, {"x": 0.2})),
         Example(Subject(PUBLISH), {"x": 0.2}, performed=(), note="is held back for the next one"),
         Example(
@@ -283,7 +283,7 @@ class KillNode(_Mishap):
     mishap = Mishap.KILLED
     forms = frozenset({*WRITTEN, *COMING})
     fault = "the node is killed"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(GOAL), performed=({"killed": 0.0},)),
         Example(Subject(TICK), performed=({"killed": 0.0},)),
     )
@@ -300,7 +300,7 @@ class RestartNode(_Mishap):
     mishap = Mishap.RESTARTED
     forms = frozenset({*WRITTEN, *COMING})
     fault = "the node is killed and begins anew"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(GOAL), performed=({"restarted": 0.0},)),
         Example(Subject(TICK), performed=({"restarted": 0.0},)),
     )
@@ -314,7 +314,7 @@ class CancelGoal(_Mishap):
     mishap = Mishap.CANCELLED
     forms = frozenset({Form.GOAL})
     fault = "each {what} is cancelled as soon as it is sent"
-    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(GOAL), performed=({"cancelled": 0.0},)),)
+    examples = (Example(Subject(GOAL), performed=({"cancelled": 0.0},)),)
 
 
 class JumpClock(_Mishap):
@@ -328,7 +328,7 @@ class JumpClock(_Mishap):
     once = True
     variants: ClassVar[Mapping[str, float]] = {"10": 10.0, "-10": -10.0}
     fault = "the clock jumps 10 s {way} before the first {what}"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(Subject(TICK, variant="10"), performed=({"jumped": 10.0},)),
         Example(Subject(TICK, variant="10"), earlier=({},), away="it has happened already"),
     )
@@ -347,7 +347,7 @@ class LoseAnswer(MessageOperator):
     rank = 440
     forms = frozenset({Form.CALL, Form.GOAL})
     fault = "the answer to each {what} is lost"
-    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(CALL), performed=({},), lost=True),)
+    examples = (Example(Subject(CALL), performed=({},), lost=True),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         return (await proceed(call)).never()

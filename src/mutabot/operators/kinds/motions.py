@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import ClassVar
 
 from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of
+from mutabot.operators.operator import Context, Need, Published, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
-    NOT_GIVEN,
+    NOT_PASSED,
     NOT_TOLD,
     ValueOperator,
     ValuesOperator,
@@ -54,11 +53,13 @@ _COMPONENTS = frozenset({"x", "y", "z"})
 
 
 class Reverse(ValueOperator):
-    """A translation, rotation or speed goes the other way: one component is negated."""
+    """A translation, rotation or speed goes the other way: one component is negated.
+
+    Where: written translations, rotations, orientations as a whole, and speeds and ratios with a direction.
+    """
 
     name = "reverse"
     rank = 10
-    where = "written translations, rotations, orientations as a whole, and speeds and ratios with a direction"
     published = (
         Published(1, "rotate left by θ", "rotate right by θ"),
         Published(2, "rotate right by θ", "rotate left by θ"),
@@ -66,7 +67,7 @@ class Reverse(ValueOperator):
         Published(4, "translate backwards by δ", "translate forward by δ"),
     )
     of_read = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(
             _MOVE,
             {"dy": 0.2, "yaw": 0.0},
@@ -137,17 +138,19 @@ class Reverse(ValueOperator):
 
 
 class ByTo(ValuesOperator):
-    """A relative amount is taken for an absolute target, and the other way round."""
+    """A relative amount is taken for an absolute target, and the other way round.
+
+    Where: written translations and rotations whose operation has a current that tells them.
+    """
 
     name = "by-to"
     needs = frozenset({Need.PLACE})
     rank = 20
-    where = "written translations and rotations whose operation has a current that tells them"
     published = (
         Published(5, "translate forward by δ", "translate forward *to* δ"),
         Published(6, "translate backwards by δ", "translate backwards *to* δ"),
     )
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_BY, 0.5, 0.25, current={"dx": 0.25}, note="translate forward by δ: translate forward to δ"),
         changed(_BY, -0.5, -0.75, current={"dx": 0.25}),
         changed(_TO, 0.5, 0.75, current={"x": 0.25}),
@@ -188,7 +191,7 @@ async def _value_and_place(values: Mapping[str, Value], context: Context) -> tup
     """The value of the call, and where the robot is. Raises Unchanged."""
     quantity, value = context.quantity, values.get(context.quantity.name)
     if value is None or not is_number(value):
-        raise Unchanged(NOT_GIVEN)
+        raise Unchanged(NOT_PASSED)
     if quantity.mode is Mode.BY and value == 0:
         raise Unchanged("the amount is zero")
     try:

@@ -17,7 +17,7 @@ from mutabot.operators.command import CommandOperator, comes_by_itself
 from mutabot.operators.examples import LOCATE, SENSORS, TIMING, X, changed, reading, unchanged
 from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
-    NOT_GIVEN,
+    NOT_RETURNED,
     Exchange,
     ValueOperator,
     disturbed,
@@ -55,14 +55,15 @@ _LATE = 0.5
 class Dropout(CommandOperator):
     """A reading drops out: the program gets None, not a number or an exception, as the robot's API does
     it.
+
+    Where: read quantities whose vocabulary says what a reading gives that is not there: missing.
     """
 
     name = "dropout"
     family = CATALOGUE
     rank = 340
     stands_for = _STANDS_FOR
-    where = "read quantities whose vocabulary says what a reading gives that is not there: missing"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_OR_NAN, 0.2, math.nan),
         changed(_OR_NONE, "red", None),
         Example(
@@ -87,7 +88,7 @@ class Dropout(CommandOperator):
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         quantity, reply = context.quantity, await proceed(call)
         if quantity.name not in reply.values:
-            return reply.as_is(NOT_GIVEN)
+            return reply.as_is(NOT_RETURNED)
         if quantity.missing == _NONE:
             return reply.with_value(quantity, None)
         if quantity.missing != _NAN:
@@ -114,14 +115,16 @@ class _Reading(ValueOperator):
 
 
 class OldReading(_Reading):
-    """A reading is old: the value of the call before, or of five calls before, at the same place."""
+    """A reading is old: the value of the call before, or of five calls before, at the same place.
+
+    Where: read quantities, at places that a test calls more than once.
+    """
 
     name = "old-reading"
     rank = 341
-    where = "read quantities, at places that a test calls more than once"
     kinds = frozenset(Kind)
     variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MEASURE, 0.2, 0.3, "1", earlier=(0.5, 0.3)),
         unchanged(_MEASURE, 0.2, "there is none so old yet", "5", earlier=(0.5,)),
     )
@@ -142,13 +145,15 @@ class OldReading(_Reading):
 
 
 class StuckReading(_Reading):
-    """A sensor is stuck: from the second call on a place reads what it read first in the test."""
+    """A sensor is stuck: from the second call on a place reads what it read first in the test.
+
+    Where: read quantities, at places that a test calls more than once.
+    """
 
     name = "stuck-reading"
     rank = 342
-    where = "read quantities, at places that a test calls more than once"
     kinds = frozenset(Kind)
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
         unchanged(_MEASURE, 0.2, "it is the first reading"),
     )
@@ -174,14 +179,15 @@ def _kept(value: Value) -> Value:
 class Spike(_Reading):
     """One reading in ten, by chance, jumps: to the end of its range that is farther off, or to ten times its
     value where it has none.
+
+    Where: read numbers on a scale, but for orientations as a whole.
     """
 
     name = "spike"
     rank = 343
-    where = "read numbers on a scale, but for orientations as a whole"
     kinds = MEASURED - WHOLE
     variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_MEASURE, 0.2, 2.0, "10%", earlier=(0.2,)),
         changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,), note="the far end of its range"),
         unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
@@ -206,13 +212,14 @@ class Spike(_Reading):
 class SaturatedReading(_Reading):
     """A sensor saturates: its reading is limited to the middle 80 % of its range, or without a range to 80 %
     of the size of the first one at its place in the test.
+
+    Where: read numbers on a scale, but for orientations as a whole.
     """
 
     name = "saturated-reading"
     rank = 344
-    where = "read numbers on a scale, but for orientations as a whole"
     kinds = MEASURED - WHOLE
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_NEAR, 1.9, 1.8),
         changed(_MEASURE, -0.5, -0.4, earlier=(0.5,)),
         unchanged(_NEAR, 1.0, "it is in the middle"),
@@ -233,13 +240,15 @@ class SaturatedReading(_Reading):
 
 
 class SwappedChannels(Exchange):
-    """Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads."""
+    """Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads.
+
+    Where: calls that read two quantities of one kind and unit.
+    """
 
     name = "swapped-channels"
     rank = 345
     stands_for = _STANDS_FOR
-    where = "calls that read two quantities of one kind and unit"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_LOCATE, {".x": 0.4, ".y": 0.1}, {".x": 0.1, ".y": 0.4}, "y"),
         unchanged(_LOCATE, 0.4, "it reads no y this time", "y"),
     )
@@ -254,15 +263,17 @@ class SwappedChannels(Exchange):
 
 
 class WrongObject(ValueOperator):
-    """A reading is that of another object, camera or channel than the one that is asked for."""
+    """A reading is that of another object, camera or channel than the one that is asked for.
+
+    Where: outputs with values that say what a call reads: written beside a result.
+    """
 
     name = "wrong-object"
     family = CATALOGUE
     rank = 346
     stands_for = _STANDS_FOR
-    where = "outputs with values that say what a call reads: written beside a result"
     of_read = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_FIND, "washer", "nut", replied={"result": 0.3}),
         unchanged(_FIND, "screw", "it is none of those that are known"),
     )
@@ -275,13 +286,15 @@ class WrongObject(ValueOperator):
 
 
 class ConfusedLabel(_Reading):
-    """A label or flag is read as the next of its values, with a probability of 30 %."""
+    """A label or flag is read as the next of its values, with a probability of 30 %.
+
+    Where: read quantities of kind label or flag with two values or more.
+    """
 
     name = "confused-label"
     rank = 347
-    where = "read quantities of kind label or flag with two values or more"
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_SEE, "red", "blue", "30%"),
         unchanged(_SEE, "red", "most are read rightly", "30%", earlier=("red",) * 3),
     )
@@ -301,16 +314,18 @@ class ConfusedLabel(_Reading):
 
 
 class LateReading(CommandOperator):
-    """The program gets a reading 0.5 s after it was taken; the world goes on meanwhile."""
+    """The program gets a reading 0.5 s after it was taken; the world goes on meanwhile.
+
+    Where: calls that read and command nothing; the vocabulary says how time passes: wait.
+    """
 
     name = "late-reading"
     family = CATALOGUE
     rank = 348
     stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     needs = frozenset({Need.WAIT})
-    where = "calls that read and command nothing; the vocabulary says how time passes: wait"
     fault = f"read {_LATE:g} s before the program gets it"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(
             Subject(_MEASURE),
             replied={"result": 0.2},
@@ -350,15 +365,17 @@ _FEEL = reading("gripper:holding", Kind.FLAG, values=(False, True))
 
 
 class Negate(ValueOperator):
-    """A position, distance or angle is read with the wrong sign."""
+    """A position, distance or angle is read with the wrong sign.
+
+    Where: read positions, distances, angles and orientations.
+    """
 
     name = "negate"
     rank = 60
-    where = "read positions, distances, angles and orientations"
     kinds = MEASURED - PLAIN
     published = (Published(9, "distance value is x", "distance value is −x"),)
     of_written = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(LOCATE, 0.55, -0.55, note="distance value is x: distance value is −x"),
         changed(_IN_MM, 12, -12),
         changed(
@@ -378,11 +395,13 @@ class Negate(ValueOperator):
 
 
 class Noise(ValueOperator):
-    """A position, distance or angle is read with Gaussian noise added."""
+    """A position, distance or angle is read with Gaussian noise added.
+
+    Where: read positions, distances, angles and orientations.
+    """
 
     name = "noise"
     rank = 70
-    where = "read positions, distances, angles and orientations"
     kinds = frozenset(DEFAULT_DEVIATION)
     draws = True
     published = (
@@ -390,7 +409,7 @@ class Noise(ValueOperator):
         Published(13, "a position or angle is read", "the reading has Gaussian noise"),
     )
     of_written = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(
             _NOISY,
             0.55,
@@ -422,14 +441,16 @@ class Noise(ValueOperator):
 
 
 class Misread(ValueOperator):
-    """A label, such as a colour, or a flag is read as another one."""
+    """A label, such as a colour, or a flag is read as another one.
+
+    Where: read labels and flags.
+    """
 
     name = "misread"
     rank = 80
-    where = "read labels and flags"
     published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
     of_written = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_SEE, "red", "blue", note="an incorrect colour classification"),
         changed(_SORT, "bolt", "nut", "+2"),
         changed(_FEEL, True, False),

@@ -58,7 +58,7 @@ class WrongFrame(FreeValueOperator):
     name = "wrong-frame"
     rank = 210
     kinds = frozenset({Kind.FRAME_ID})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(_SEND, "base", "tool"),
         changed(_SEND_ANY, "base", "base_unknown", _UNKNOWN),
         changed(_HEAR, "base", "", _EMPTY),
@@ -87,7 +87,7 @@ class ShiftStamp(FreeValueOperator):
     #: seconds: more than programs that check the age of a message put up with. Less than 2 s is no difference
     #: between two numbers of seconds since 1970, as values are compared
     variants: ClassVar[Mapping[str, float]] = {"-5": -5.0, "5": 5.0}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(SEND_STAMP, 20.0, 15.0, "-5"),
         changed(HEAR_STAMP, 20.0, 25.0, "5"),
         unchanged(SEND_STAMP, 0.0, "the stamp is empty", "5"),
@@ -113,7 +113,7 @@ class EmptyStamp(FreeValueOperator):
     name = "empty-stamp"
     rank = 230
     kinds = frozenset({Kind.STAMP})
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(SEND_STAMP, 20.0, 0.0),
         changed(HEAR_STAMP, 20.0, 0.0),
         unchanged(SEND_STAMP, 0.0, "the stamp is empty already"),
@@ -161,7 +161,7 @@ class WrongName(_Setting):
     rank = 310
     setting = "name"
     variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
         changed(
             ADVERTISE,
@@ -193,7 +193,7 @@ class ShortQueue(_Setting):
     name = "short-queue"
     rank = 320
     setting = "depth"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"),
         unchanged(
             ADVERTISE, {"name": "target", "depth": 1}, "the value would stay the same", quantity="depth"
@@ -212,7 +212,7 @@ class FlipLatch(_Setting):
     name = "flip-latch"
     rank = 330
     setting = "latch"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(ADVERTISE, True, False, quantity="latch"),
         changed(ADVERTISE, False, True, quantity="latch"),
         unchanged(ADVERTISE, {"name": "target"}, "its middleware latches nothing", quantity="latch"),
@@ -242,7 +242,7 @@ class WrongReliability(_OtherOfTwo):
     name = "wrong-reliability"
     rank = 340
     setting = "reliability"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(ADVERTISE, "reliable", "best_effort", quantity="reliability"),
         changed(SUBSCRIBE, "best_effort", "reliable", quantity="reliability"),
         unchanged(
@@ -262,7 +262,7 @@ class WrongDurability(_OtherOfTwo):
     name = "wrong-durability"
     rank = 350
     setting = "durability"
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(ADVERTISE, "transient_local", "volatile", quantity="durability"),
         changed(SUBSCRIBE, "volatile", "transient_local", quantity="durability"),
         unchanged(
@@ -284,7 +284,7 @@ class WrongDeadline(_Setting):
     setting = "deadline"
     #: seconds: more often than any of the programs this is for publishes
     variants: ClassVar[Mapping[str, float]] = {_TIGHT: 0.001, _NONE: 0.0}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
         changed(ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
         unchanged(ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
@@ -303,7 +303,7 @@ class WrongPeriod(_Setting):
     rank = 370
     setting = "period"
     variants: ClassVar[Mapping[str, float]] = {"x2": 2.0, "x0.5": 0.5}
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         changed(TIMER, 0.1, 0.2, "x2", quantity="period"),
         changed(RATE, 0.1, 0.05, "x0.5", quantity="period"),
         unchanged(TIMER, 0.0, "it has no period", "x2", quantity="period"),
@@ -321,7 +321,7 @@ class UseDefault(FreeValueOperator):
     name = "use-default"
     rank = 380
     of_written = False
-    examples: ClassVar[tuple[Example, ...]] = (
+    examples = (
         Example(
             Subject(SPEED, quantity=SPEED.result[0]),
             {"default": 1.0},
