@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -27,27 +28,22 @@ from .schema import (
 from .when import in_cases, in_each_mode, read_when
 from .when import name_of as name_of_cases
 
-_CALLABLES = ("call", "method")
-_NAMES = tuple(key for key in NAMING if key not in _CALLABLES)
-#: keys that say something of operations with these names alone
-_ONLY = {
-    "direction": ("topic",),
-    "type": _NAMES,
-    "node": _NAMES,
-    "signature": _CALLABLES,
-    "overrides": ("call",),
-}
 #: keys with quantities
-_TABLES = tuple(
-    dict.fromkeys(key for one in (CALLABLE, *SIDES.values()) for key in (one.written, one.read) if key)
-)
+_TABLES = {key for one in (CALLABLE, *SIDES.values()) for key in (one.written, one.read) if key}
 #: forms that make the robot do something, unless the vocabulary says otherwise
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
-#: keys of those forms alone that write a message
-_OF_COMMANDS = (
-    *("command", "opposite", "idle", "message", "patterns", "current"),
-    *("refusals", "refused", "when"),
-)
+#: keys of callables, and of those forms alone that write a message
+_OF_COMMANDS = {
+    "command",
+    "opposite",
+    "idle",
+    "message",
+    "patterns",
+    "current",
+    "refusals",
+    "refused",
+    "when",
+}
 _REFUSED = 'such as refused = { path = "status", values = [5, 6] }'
 
 
@@ -64,46 +60,43 @@ def read_operations(place: Place, raw: Any) -> list[Operation]:
         return []
     for index, target in enumerate(table.refusals):
         (place / "refusals" / index).attempt(check_target, target)
-    if keys[0] in _CALLABLES:
-        _check_keys(place, table, keys[0], None)
+    if keys[0] in ("call", "method"):
+        _check_keys(place, table, keys[0], {"overrides"} if keys[0] == "call" else set())
         return [_read_callable(place, table)]
     named = _read_name(place, table, keys[0])
     if named is None:
         return []
     forms = forms_of(keys[0], table.direction)
-    _check_keys(place, table, keys[0], forms[0])
-    return [
-        _read_operation(
-            place, table, replace(named, form=form).target, replace(named, form=form), form is forms[0]
-        )
-        for form in forms
-    ]
+    _check_keys(place, table, keys[0], {"direction"} if keys[0] == "topic" else set(), forms)
+    names = [replace(named, form=form) for form in forms]
+    return [_read_operation(place, table, one.target, one, is_main=one is names[0]) for one in names]
 
 
-def _check_keys(place: Place, table: OperationTable, key: str, main: Form | None) -> None:
-    """Note keys that say nothing of an operation with such a name."""
-    forms = forms_of(key, table.direction) if main is not None else ()
+def _check_keys(
+    place: Place, table: OperationTable, key: str, own: set[str], forms: Sequence[Form] = ()
+) -> None:
+    """Note keys that say nothing of an operation with such a name. ``own``: those that only it may have."""
     sides = [SIDES[form] for form in forms if form in SIDES] if forms else [CALLABLE]
     fitting = {one for side in sides for one in (side.written, side.read) if one}
+    writes = not forms or forms[0] in WRITTEN
+    allowed = {key, *own, *fitting, *(("type", "node") if forms else ("signature",))}
+    allowed |= _OF_COMMANDS if writes else set() if table.command else {"command"}
+    if forms:
+        allowed.discard("opposite")
     what = f'a topic with direction = "{table.direction}"' if key == "topic" else f"a {key}"
     what = {"action": "an action", "tf": "a transform"}.get(key, what)
-    for other in _TABLES:
-        if getattr(table, other) is not None and other not in fitting:
-            instead = f"; its quantities stand in {' and '.join(sorted(fitting))}" if fitting else ""
-            (place / other).error(f"{what} has no {other}{instead}")
-    for other, names in _ONLY.items():
-        if getattr(table, other) and key not in names:
-            (place / other).error(f"{what} has no {other}; {' or '.join(names)} may have one")
-    if main in WRITTEN and table.opposite is not None:
-        (place / "opposite").error(
-            "another name cannot be the opposite: give a text command its opposite in patterns, "
-            "or describe a field with two values"
-        )
-    if main is None or main in WRITTEN:
-        return
-    for other in _OF_COMMANDS:
-        if getattr(table, other) not in (None, []) and not (other == "command" and not table.command):
-            (place / other).error(f"{what} sends nothing, so it has no {other}")
+    for other in table.model_fields_set - allowed:
+        text = f"{what} has no {other}"
+        if other in _TABLES and fitting:
+            text += f"; its quantities stand in {' and '.join(sorted(fitting))}"
+        elif other == "opposite" and writes:
+            text += (
+                ": another name cannot be the opposite; give a text command its opposite in patterns, "
+                "or describe a field with two values"
+            )
+        elif other in _OF_COMMANDS:
+            text += ", since it sends nothing"
+        (place / other).error(text)
 
 
 def _read_name(place: Place, table: OperationTable, key: str) -> Named | None:
@@ -129,8 +122,8 @@ def _read_callable(place: Place, table: OperationTable) -> Operation:
         target, table = f"{ANY}.{table.method}", table.model_copy(update=_of_any(table))
     else:
         (place / "method").error(f"{shown(table.method)} is not the name of a method, such as move_by")
-    _check_self(place, table)
     operation = _read_operation(place, table, target)
+    _check_self(place, operation)
     _check_from_self(place / "patterns", operation)
     if not (table.arguments or table.result or table.message or operation.command):
         place.error("says nothing: no arguments, no result, no patterns, and command = false")
@@ -144,70 +137,75 @@ def _of_any(table: OperationTable) -> dict[str, str]:
     return {key: f"{ANY}.{name}" for key, name in names.items() if name is not None and is_name(name)}
 
 
-def _check_self(place: Place, table: OperationTable) -> None:
+def _check_self(place: Place, operation: Operation) -> None:
     """Note what is said of the object or class of a callable that is no method."""
-    if table.call is None or "." in table.call.partition(":")[2]:
+    target = operation.target
+    if "." in target.partition(":")[2]:
         return
-    if table.overrides:
-        text = f"{table.call} is no method of a class, so nothing overrides it"
-        (place / "overrides").error(text)
-    silent = replace(place, errors=[])
-    cases = read_when(silent, table.when) if table.when is not None else ()
-    for key, paths in (("message", [table.message or ""]), ("when", [case.argument for case in cases])):
-        if any(path.partition(".")[0].partition("[")[0] == "self" for path in paths):
-            (place / key).error(f"{table.call} is no method of a class, so it has no self")
+    if operation.overrides:
+        (place / "overrides").error(f"{target} is no method of a class, so nothing overrides it")
+    cases = [case.argument for pattern in operation.patterns for case in pattern.when]
+    for key, paths in (("message", [operation.message]), ("when", cases)):
+        if any(path and Path.parse(path, rooted=True).root == "self" for path in paths):
+            (place / key).error(f"{target} is no method of a class, so it has no self")
 
 
 def _read_operation(
-    place: Place, table: OperationTable, target: str, named: Named | None = None, is_main: bool = True
+    place: Place, table: OperationTable, target: str, named: Named | None = None, *, is_main: bool = True
 ) -> Operation:
     """Read one of the operations of an entry: a callable, or one form of a name on a middleware."""
     form = named.form if named is not None else None
     sides = CALLABLE if form is None else SIDES.get(form, Sides(None, None))
-    source = place.source(target)
-    arguments: tuple[Quantity, ...] = settings_of(form) if form is not None else ()
-    result = _read_result(place, table, form, sides)
     written = getattr(table, sides.written) if sides.written else None
     modes = in_each_mode(place / (sides.written or ""), written) if written else []
     described = [(cases, read_quantities(at, raw, sides, is_written=True)) for cases, at, raw in modes]
-    if described:
-        arguments = described[0][1]
+    settings = settings_of(form) if form is not None else ()
     operation = Operation(
         target=target,
-        arguments=arguments,
-        result=result,
-        source=source,
+        arguments=described[0][1] if described else settings,
+        result=_read_result(place, table, form, sides),
+        source=place.source(target),
         kind="messages" if named is not None else "methods" if table.method is not None else None,
         named=named,
     )
-    if not is_main or (form is not None and sides.root is None):
-        return replace(operation, command=_is_command(table, operation))
+    if is_main and (form is None or sides.root is not None):
+        operation = _with_commands(place, table, operation, sides, described)
+    else:
+        operation = replace(operation, command=_is_command(table, operation))
+    return operation
+
+
+def _with_commands(
+    place: Place,
+    table: OperationTable,
+    operation: Operation,
+    sides: Sides,
+    described: list[tuple[tuple[Case, ...], tuple[Quantity, ...]]],
+) -> Operation:
+    """The operation with what is said of calls that write: how they are told apart, undone and refused.
+
+    ``described`` are its arguments in each case of their modes.
+    """
+    source, at = operation.source, place / "patterns"
     if table.patterns:
-        patterns = read_patterns(place / "patterns", table.patterns, source, arguments, sides)
+        patterns = read_patterns(at, table.patterns, source, operation.arguments, sides)
     else:
         patterns = tuple(
-            Pattern(
-                text=name_of_cases(cases),
-                arguments=quantities,
-                result=result,
-                opposite=table.opposite,
-                source=f"{source} · {name_of_cases(cases)}",
-                when=cases,
-            )
+            Pattern(name, quantities, operation.result, table.opposite, f"{source} · {name}", when=cases)
             for cases, quantities in described
-            if cases
+            if (name := name_of_cases(cases))
         )
     patterns = tuple(replace(one, when=_rooted(one.when, sides.root)) for one in patterns)
     operation = replace(operation, patterns=patterns)
     operation = replace(
         operation,
-        arguments=() if described and described[0][0] else arguments,
+        arguments=() if described and described[0][0] else operation.arguments,
         command=_is_command(table, operation),
         current=table.current,
         opposite=table.opposite,
         refusals=tuple(table.refusals),
         idle=read_idle(place / "idle", table.idle),
-        refused=_read_refused(place / "refused", table.refused, named),
+        refused=_read_refused(place / "refused", table.refused, operation.named),
         message=_read_message(place, table, sides.root, operation),
         signature=table.signature,
         overrides=table.overrides,
