@@ -34,16 +34,11 @@ _TABLES = {key for one in (CALLABLE, *SIDES.values()) for key in (one.written, o
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
 #: keys of callables, and of those forms alone that write a message
 _OF_COMMANDS = {
-    "command",
-    "opposite",
-    "idle",
-    "message",
-    "patterns",
-    "current",
-    "refusals",
-    "refused",
-    "when",
+    *("command", "opposite", "idle", "message", "patterns", "current"),
+    *("refusals", "refused", "when"),
 }
+#: keys that say something of one name alone
+_ONLY = {"overrides": "call", "direction": "topic"}
 _REFUSED = 'such as refused = { path = "status", values = [5, 6] }'
 
 
@@ -61,25 +56,24 @@ def read_operations(place: Place, raw: Any) -> list[Operation]:
     for index, target in enumerate(table.refusals):
         (place / "refusals" / index).attempt(check_target, target)
     if keys[0] in ("call", "method"):
-        _check_keys(place, table, keys[0], {"overrides"} if keys[0] == "call" else set())
+        _check_keys(place, table, keys[0])
         return [_read_callable(place, table)]
     named = _read_name(place, table, keys[0])
     if named is None:
         return []
     forms = forms_of(keys[0], table.direction)
-    _check_keys(place, table, keys[0], {"direction"} if keys[0] == "topic" else set(), forms)
+    _check_keys(place, table, keys[0], forms)
     names = [replace(named, form=form) for form in forms]
     return [_read_operation(place, table, one.target, one, is_main=one is names[0]) for one in names]
 
 
-def _check_keys(
-    place: Place, table: OperationTable, key: str, own: set[str], forms: Sequence[Form] = ()
-) -> None:
-    """Note keys that say nothing of an operation with such a name. ``own``: those that only it may have."""
+def _check_keys(place: Place, table: OperationTable, key: str, forms: Sequence[Form] = ()) -> None:
+    """Note keys that say nothing of an operation with such a name."""
     sides = [SIDES[form] for form in forms if form in SIDES] if forms else [CALLABLE]
     fitting = {one for side in sides for one in (side.written, side.read) if one}
     writes = not forms or forms[0] in WRITTEN
-    allowed = {key, *own, *fitting, *(("type", "node") if forms else ("signature",))}
+    allowed = {key, *fitting, *(("type", "node") if forms else ("signature",))}
+    allowed |= {other for other, only in _ONLY.items() if only == key}
     allowed |= _OF_COMMANDS if writes else set() if table.command else {"command"}
     if forms:
         allowed.discard("opposite")
@@ -96,6 +90,8 @@ def _check_keys(
             )
         elif other in _OF_COMMANDS:
             text += ", since it sends nothing"
+        elif other in _ONLY:
+            text += f", only {_ONLY[other]} has"
         (place / other).error(text)
 
 
