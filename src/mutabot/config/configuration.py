@@ -331,7 +331,7 @@ def _checked(
         at = place / "vocabulary" if "vocabulary" in raw else place
         at.error(_NO_VOCABULARY.format(others))
     tables = {}
-    for name in models.keys() & raw.keys():
+    for name in sorted(models.keys() & raw.keys()):
         table = (place / name).table(models[name], raw[name])
         if table is not None:
             tables[name] = table

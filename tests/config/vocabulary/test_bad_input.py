@@ -615,7 +615,7 @@ def test_unlike_descriptions_of_a_call_in_two_files_are_refused(tmp_path: Path) 
 def test_two_clocks_are_refused(tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_text("clock = { tick = 'a:b' }")
     (tmp_path / "b.toml").write_text("clock = { tick = 'a:c' }")
-    assert "another clock in a.toml:1" in refused(load, ["a.toml", "b.toml"], tmp_path)
+    assert "described twice, differently: also in a.toml:1" in refused(load, ["a.toml", "b.toml"], tmp_path)
 
 
 def test_two_tolerances_of_one_probe_are_refused(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeVar
 
 from mutabot.config.document import Document
 from mutabot.config.mistakes import Place, raise_errors
@@ -20,7 +19,8 @@ from .operations import read_clock, read_operations, read_probe, read_wait
 from .schema import VocabularyTable, check_target
 from .when import together
 
-S = TypeVar("S", Clock, Wait, Probe)
+#: lists of targets at the top of a file
+_TARGETS = ("refusals", "checks", "failures")
 _SHIPPED = Path(__file__).parent / "shipped"
 
 
@@ -40,14 +40,13 @@ def load(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -
         merged.add(document, is_shipped)
     check_operations(merged.entries, merged.read)
     raise_errors(merged.errors)
+    others = merged.others.values()
     return Vocabulary(
         operations=tuple(operation for operation, _ in merged.read.values()),
-        refusals=tuple(dict.fromkeys(merged.refusals)),
-        checks=tuple(dict.fromkeys(merged.checks)),
-        failures=tuple(dict.fromkeys(merged.failures)),
-        clock=merged.clock,
-        probes=tuple(merged.probes.values()),
-        wait=merged.wait,
+        clock=next((one for one in others if isinstance(one, Clock)), None),
+        probes=tuple(one for one in others if isinstance(one, Probe)),
+        wait=next((one for one in others if isinstance(one, Wait)), None),
+        **{name: tuple(dict.fromkeys(targets)) for name, targets in merged.targets.items()},
     )
 
 
@@ -69,12 +68,8 @@ class _Merged:
     errors: list[ConfigurationError] = field(default_factory=list)
     read: dict[str, Read] = field(default_factory=dict)
     entries: list[Read] = field(default_factory=list)
-    refusals: list[str] = field(default_factory=list)
-    checks: list[str] = field(default_factory=list)
-    failures: list[str] = field(default_factory=list)
-    clock: Clock | None = None
-    wait: Wait | None = None
-    probes: dict[str, Probe] = field(default_factory=dict)
+    targets: dict[str, list[str]] = field(default_factory=lambda: {name: [] for name in _TARGETS})
+    others: dict[str, Clock | Wait | Probe] = field(default_factory=dict)
     own: set[str] = field(default_factory=set)
 
     def add(self, document: Document, is_shipped: bool) -> None:
@@ -89,22 +84,20 @@ class _Merged:
             for operation in read_operations(at, raw):
                 if self._counts(operation.target, is_shipped):
                     self._add_operation(at, operation)
-        for name in ("refusals", "checks", "failures"):
+        for name, targets in self.targets.items():
             for index, target in enumerate(getattr(table, name)):
                 (place / name / index).attempt(check_target, target)
-            getattr(self, name).extend(getattr(table, name))
-        if table.clock is not None and self._counts("clock", is_shipped):
-            clock = read_clock(place / "clock", table.clock)
-            self._add_one(place, "clock", clock, "there is another clock")
-        if table.wait is not None and self._counts("wait", is_shipped):
-            wait = read_wait(place / "wait", table.wait)
-            self._add_one(place, "wait", wait, "another wait is named")
+                targets.append(target)
+        if table.clock is not None:
+            at = place / "clock"
+            self._add_other(at, "clock", read_clock(at, table.clock), is_shipped)
+        if table.wait is not None:
+            at = place / "wait"
+            self._add_other(at, "wait", read_wait(at, table.wait), is_shipped)
         for index, raw in enumerate(table.probe):
             at = place / "probe" / index
             probe = read_probe(at, raw)
-            if probe is not None and self._counts(f"probe {probe.target}", is_shipped):
-                known = self.probes.setdefault(probe.target, probe)
-                self._refuse_other(at, known, probe, "is described twice, differently: also")
+            self._add_other(at, f"probe {probe.target if probe is not None else ''}", probe, is_shipped)
 
     def _counts(self, what: str, is_shipped: bool) -> bool:
         """Whether a description is to be taken: the user's own, read first, go before shipped ones."""
@@ -131,17 +124,15 @@ class _Merged:
             where, what = (place / "call", "") if is_call else (place, f"{operation.target} ")
             where.error(f"{what}is described twice, differently: also in {also}")
 
-    def _add_one(self, place: Place, name: str, found: Clock | Wait | None, also: str) -> None:
-        """Add the clock or the wait, of which there is one; a mistake in it has been noted."""
-        known = getattr(self, name)
-        if found is not None and known is not None:
-            self._refuse_other(place / name, known, found, also)
-        setattr(self, name, known or found)
-
-    def _refuse_other(self, place: Place, known: S, found: S, also: str) -> None:
-        """Note a description that differs from an earlier one."""
+    def _add_other(
+        self, place: Place, key: str, found: Clock | Wait | Probe | None, is_shipped: bool
+    ) -> None:
+        """Add the clock, the wait or a probe, if it has no mistake, and note an earlier one that differs."""
+        if found is None or not self._counts(key, is_shipped):
+            return
+        known = self.others.setdefault(key, found)
         if replace(known, source="") != replace(found, source=""):
-            place.error(f"{also} in {_file_of(known.source)}")
+            place.error(f"is described twice, differently: also in {_file_of(known.source)}")
 
 
 def _find(name: str, root: Path) -> tuple[Document, bool]:

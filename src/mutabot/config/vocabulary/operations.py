@@ -79,7 +79,7 @@ def _check_keys(place: Place, table: OperationTable, key: str, forms: Sequence[F
         allowed.discard("opposite")
     what = f'a topic with direction = "{table.direction}"' if key == "topic" else f"a {key}"
     what = {"action": "an action", "tf": "a transform"}.get(key, what)
-    for other in table.model_fields_set - allowed:
+    for other in sorted(table.model_fields_set - allowed):
         text = f"{what} has no {other}"
         if other in _TABLES and fitting:
             text += f"; its quantities stand in {' and '.join(sorted(fitting))}"

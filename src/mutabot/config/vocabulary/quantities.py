@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -85,7 +85,7 @@ def read_quantity(
     if axes is None or not several:
         yield _quantity(table, path, table.axis, name)
         return
-    parts = (place / "axis").attempt(_spread, path, axes)
+    parts = (place / "axis").attempt(spread, path, axes)
     for axis, part in zip(axes, parts or (), strict=False):
         yield _quantity(table, part, axis, None)
 
@@ -114,15 +114,6 @@ def _path_of(text: str, sides: Sides, is_written: bool) -> Path:
     if any(step.bounds is not None for step in path.steps[:-1]):
         raise ValueError(f"path {str(path)!r}: a slice can only be the last step")
     return path
-
-
-def _spread(path: Path, axes: Sequence[str]) -> list[Path]:
-    if slice_of(path) is None:
-        raise ValueError(
-            f"{''.join(axes)!r} names {len(axes)} axes, for which the path must end with a slice "
-            f'such as "{path}[0:{len(axes)}]"'
-        )
-    return spread(path, tuple(axes))
 
 
 def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:

@@ -46,34 +46,28 @@ def slice_of(path: Path) -> Step | None:
 def spread(path: Path, axes: tuple[str, ...]) -> list[Path]:
     """One path per axis, for a path that ends with a slice.
 
-    Raises ValueError if the slice does not have as many elements as there are axes.
+    Raises ValueError if it ends with none, or with one that does not have as many elements.
     """
-    step = path.steps[-1]
-    assert step.bounds is not None
-    return [
-        replace(path, steps=(*path.steps[:-1], Step(item=index)))
-        for index in _indices(step.bounds, len(axes), f"{step}", axes)
-    ]
-
-
-def _indices(
-    bounds: tuple[int | None, int | None, int | None], count: int, text: str, axes: tuple[str, ...]
-) -> range:
-    start, stop, stride = bounds[0] or 0, bounds[1], bounds[2] or 1
-    if stride < 1:
-        raise ValueError(f"the slice {text} must go forwards to be spread over several axes")
-    if stop is None and start < 0:
-        stop = 0  # counted from the end, this is where the sequence ends
-    if stop is None:
-        return range(start, start + count * stride, stride)
-    if start >= 0 > stop or (start < 0 < stop):
+    step = slice_of(path)
+    if step is None or step.bounds is None:
         raise ValueError(
-            f"the slice {text} must start and stop at the same end of the sequence to be spread over axes"
+            f"{''.join(axes)!r} names {len(axes)} axes, for which the path must end with a slice "
+            f'such as "{path}[0:{len(axes)}]"'
         )
-    found = max(0, -((start - stop) // stride))
-    if found != count:
-        raise ValueError(f"the slice {text} has {found} elements for {count} axes ({', '.join(axes)})")
-    return range(start, stop, stride)
+    start, stop, stride = step.bounds[0] or 0, step.bounds[1], step.bounds[2] or 1
+    if stride < 1:
+        raise ValueError(f"the slice {step} must go forwards to be spread over several axes")
+    if stop is None:  # counted from the end, a sequence ends at 0
+        stop = 0 if start < 0 else start + len(axes) * stride
+    if start >= 0 > stop or start < 0 < stop:
+        raise ValueError(
+            f"the slice {step} must start and stop at the same end of the sequence to be spread over axes"
+        )
+    indices = range(start, stop, stride)
+    if len(indices) != len(axes):
+        text = f"the slice {step} has {len(indices)} elements for {len(axes)} axes ({', '.join(axes)})"
+        raise ValueError(text)
+    return [replace(path, steps=(*path.steps[:-1], Step(item=index))) for index in indices]
 
 
 _MOVED = (Kind.TRANSLATION, Kind.ROTATION)
