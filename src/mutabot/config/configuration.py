@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field, GetJsonSchemaHandler
-from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core import CoreSchema
 
 from mutabot import limits
 from mutabot.errors import ConfigurationError, nearest_name
@@ -47,7 +47,7 @@ def _amount(value: Any, what: str, write: str) -> Any:
         return value
     match = _MEMORY.fullmatch(value)
     if match is None:
-        raise _fault(f"{shortened(value)!r} is no amount of {what}; write it like {write}")
+        raise ValueError(f"{shortened(value)!r} is no amount of {what}; write it like {write}")
     unit = match[2].lower().removesuffix("b")
     base = 1024 if unit.endswith("i") else 1000
     return round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
@@ -57,7 +57,7 @@ def parse_memory(value: Any) -> Any:
     """Bytes of memory, which Python and pytest need some of."""
     value = _amount(value, "memory", "'4 GB'")
     if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
-        raise _fault(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
+        raise ValueError(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
     return value
 
 
@@ -65,18 +65,14 @@ def _parse_size(value: Any) -> Any:
     """Bytes on a disk, of which there may be none at all."""
     value = _amount(value, "room", "'200 MB', or 0 for none")
     if isinstance(value, int) and not isinstance(value, bool) and value < 0:
-        raise _fault(f"{value} bytes are less than nothing; write it like '200 MB', or 0 for none")
+        raise ValueError(f"{value} bytes are less than nothing; write it like '200 MB', or 0 for none")
     return value
-
-
-def _fault(text: str) -> PydanticCustomError:
-    return PydanticCustomError("mutabot", "{text}", {"text": text})
 
 
 def _known_family(name: str) -> str:
     why = why_unknown(name)
     if why is not None:
-        raise _fault(why)
+        raise ValueError(why)
     return name
 
 
@@ -88,16 +84,13 @@ class _FamilyNames:
 
 
 def _moment(text: str) -> str:
-    try:
-        Moment.parse_any(text)
-    except ValueError as error:
-        raise _fault(str(error)) from error
+    Moment.parse_any(text)
     return text
 
 
 def _node_name(name: str) -> str:
     if not name.startswith(("/", "*")):
-        raise _fault(f"{name!r} is not resolved: the name of a node begins with /, such as '/{name}'")
+        raise ValueError(f"{name!r} is not resolved: the name of a node begins with /, such as '/{name}'")
     return name
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from mutabot.errors import unknown_name_text
 from mutabot.model import Kind
@@ -22,13 +22,19 @@ _ANY = (Dimension.TIME, Dimension.RATIO)
 _NUMBERS = re.compile(r"\d+(-\d+)?(,\d+(-\d+)?)*")
 
 
+def _check_kind(kind: Kind | None) -> Kind | None:
+    if kind is not None and kind not in MEASURED:
+        raise ValueError(f"a {kind} has no magnitude; only what is measured has")
+    return kind
+
+
 class DemandTable(Table):
     """One ``[[tool.mutabot.demand]]``."""
 
     notice: str | float
     site: Annotated[str | None, Field(min_length=1)] = None
     quantity: Annotated[str | None, Field(min_length=1)] = None
-    kind: str | None = None
+    kind: Annotated[Kind | None, Field(strict=False), AfterValidator(_check_kind)] = None
     operator: str = OFFSET
     share: Annotated[float | None, Field(gt=0, lt=1)] = None
 
@@ -44,20 +50,19 @@ def _demand(place: Place, raw: Mapping[str, Any]) -> Demand | None:
     table = place.table(DemandTable, raw)
     if table is None:
         return None
-    kind = _kind(place / "kind", table.kind)
     notice, unit = _amount(place / "notice", table.notice)
     if table.operator != OFFSET:
         _check_operator(place / "operator", table.operator)
     if table.site is not None and _NUMBERS.fullmatch(table.site):
         text = f"{table.site!r} is the number of a mutant, which may change; write file:line or an id"
         (place / "site").error(text)
-    if len(place.errors) == mistakes and kind is not None:
-        (place / "notice").attempt(_check_measure, table.operator, kind, unit)
+    if len(place.errors) == mistakes and table.kind is not None:
+        (place / "notice").attempt(_check_measure, table.operator, table.kind, unit)
     if len(place.errors) > mistakes:
         return None
     line = place.document.line(place.path)
     source = f"{place.document.file}:{line}" if line is not None else place.document.file
-    return Demand(notice, unit, table.site, table.quantity, kind, table.operator, table.share, source)
+    return Demand(notice, unit, table.site, table.quantity, table.kind, table.operator, table.share, source)
 
 
 def _amount(place: Place, notice: str | float) -> tuple[float, str | None]:
@@ -69,14 +74,6 @@ def _amount(place: Place, notice: str | float) -> tuple[float, str | None]:
     except ValueError as error:
         place.error(str(error))
     return 0.0, None
-
-
-def _kind(place: Place, text: str | None) -> Kind | None:
-    known = [kind.value for kind in Kind if kind in MEASURED]
-    if text is not None and text not in known:
-        place.unknown("kind", text, known)
-        return None
-    return Kind(text) if text is not None else None
 
 
 def _check_operator(place: Place, name: str) -> None:

@@ -157,7 +157,7 @@ class Place:
                     at.error(f"the key {name!r} is gone: {_GONE[name]}")
                 case "extra_forbidden":
                     at.unknown("key", name, keys)
-                case "enum" if isinstance(detail["input"], str):
+                case "enum" | "literal_error" if isinstance(detail["input"], str):
                     at.unknown(name, detail["input"], re.findall(r"'([^']*)'", detail["ctx"]["expected"]))
                 case "missing" if name not in meant:
                     replace(at, path=at.path[:-1]).error(f"the key {name!r} is missing")
@@ -173,7 +173,7 @@ def known_keys(model: type[BaseModel]) -> list[str]:
 def explained(detail: ErrorDetails) -> str:
     """One sentence for a mistake that pydantic found, in the words of the files' authors."""
     kind, value = detail["type"], detail["input"]
-    if kind == "enum":
+    if kind in ("enum", "literal_error"):
         return f"expected text, got {shown(value)}; known: {detail['ctx']['expected']}"
     if kind in _EXPECTED:
         return f"expected {_EXPECTED[kind]}, got {shown(value)}{_list_hint(detail)}"
@@ -182,8 +182,8 @@ def explained(detail: ErrorDetails) -> str:
         return f"must be {words} {detail['ctx'][bound]}, got {shown(value)}"
     if kind in ("too_short", "too_long"):
         return _length_text(detail)
-    if kind == "mutabot":  # our own validators say it all
-        return detail["msg"]
+    if kind == "value_error":  # our own validators say it all
+        return str(detail["ctx"]["error"])
     return f"{shown(value)} does not fit here"
 
 

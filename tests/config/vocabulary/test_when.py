@@ -100,7 +100,7 @@ def test_a_field_of_a_request_may_decide(tmp_path: Path) -> None:
         (f'{CALL}when = {{ argument = "a[", value = 1 }}', [":3", "makes no sense"]),
         (f'{CALL}when = {{ argument = "self", value = 1 }}', [":3", "self.name"]),
         (f'{CALL}when = {{ argument = "a[0:2]", value = 1 }}', [":3", "not one value"]),
-        (f'{CALL}when = {{ argument = "a", value = [1] }}', [":3", "expected a text", "a list"]),
+        (f'{CALL}when = {{ argument = "a", value = [1] }}', [":3", "must be a text", "a list"]),
         ('call = "robot:f"\nwhen = { argument = "self.x", value = 1 }', [":3", "no self"]),
         (
             f'{CALL}when = [{{ argument = "a", value = 1 }}, {{ argument = "a", value = 2 }}]',

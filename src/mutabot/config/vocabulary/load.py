@@ -16,7 +16,7 @@ from mutabot.model import Clock, Kind, Operation, Probe, Quantity, Vocabulary, W
 from mutabot.model.values.quantity import READING_OF, is_reading_of
 
 from .operations import read_clock, read_operations, read_probe, read_wait
-from .schema import VocabularyTable, check_target
+from .schema import VocabularyTable
 from .when import together
 
 #: lists of targets at the top of a file
@@ -85,9 +85,7 @@ class _Merged:
                 if self._counts(operation.target, is_shipped):
                     self._add_operation(at, operation)
         for name, targets in self.targets.items():
-            for index, target in enumerate(getattr(table, name)):
-                (place / name / index).attempt(check_target, target)
-                targets.append(target)
+            targets.extend(getattr(table, name))
         if table.clock is not None:
             at = place / "clock"
             self._add_other(at, "clock", read_clock(at, table.clock), is_shipped)

@@ -10,9 +10,8 @@ from mutabot.config.mistakes import Place, shown
 from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Probe, Quantity, Wait
 from mutabot.model.named import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.values.signature import parse_signature
-from mutabot.model.values.units import UNITS, Dimension, dimension_of
 
-from .names import CALLABLE, DIRECTIONS, NAMING, SIDES, Sides, forms_of, name_of, type_of
+from .names import CALLABLE, NAMING, SIDES, Sides, forms_of, name_of, type_of
 from .patterns import read_patterns
 from .quantities import bare_path, in_message, read_quantities
 from .schema import (
@@ -21,7 +20,6 @@ from .schema import (
     ProbeTable,
     RefusedTable,
     WaitTable,
-    check_target,
     is_name,
     read_idle,
 )
@@ -53,11 +51,11 @@ def read_operations(place: Place, raw: Any) -> list[Operation]:
         place.error(f"the key 'call' is missing, or another one that names it: {', '.join(NAMING[1:])}")
     if table is None or len(keys) != 1:
         return []
-    for index, target in enumerate(table.refusals):
-        (place / "refusals" / index).attempt(check_target, target)
     if keys[0] in ("call", "method"):
         _check_keys(place, table, keys[0])
         return [_read_callable(place, table)]
+    if keys[0] == "topic" and "direction" not in raw:
+        place.error('a topic needs direction = "publish" or "receive"')
     named = _read_name(place, table, keys[0])
     if named is None:
         return []
@@ -98,26 +96,19 @@ def _check_keys(place: Place, table: OperationTable, key: str, forms: Sequence[F
 def _read_name(place: Place, table: OperationTable, key: str) -> Named | None:
     """The name on a middleware, with the first of its forms; None if it has mistakes, which are noted."""
     mistakes = len(place.errors)
-    if key == "topic" and table.direction is None:
-        place.error('a topic needs direction = "publish" or "receive"')
-    elif key == "topic" and table.direction not in DIRECTIONS:
-        (place / "direction").unknown("direction", str(table.direction), DIRECTIONS)
     name = (place / key).attempt(name_of, key, getattr(table, key))
     node = (place / "node").attempt(name_of, "node", table.node) if table.node is not None else None
     kind = (place / "type").attempt(type_of, table.type) if table.type is not None else None
-    if name is None or len(place.errors) > mistakes:
+    without_forms = key == "topic" and table.direction is None
+    if name is None or without_forms or len(place.errors) > mistakes:
         return None
     return Named(forms_of(key, table.direction)[0], name, node, kind)
 
 
 def _read_callable(place: Place, table: OperationTable) -> Operation:
     target = table.call or ""
-    if table.method is None:
-        (place / "call").attempt(check_target, target)
-    elif is_name(table.method):
+    if table.method is not None:
         target, table = f"{ANY}.{table.method}", table.model_copy(update=_of_any(table))
-    else:
-        (place / "method").error(f"{shown(table.method)} is not the name of a method, such as move_by")
     operation = _read_operation(place, table, target)
     _check_self(place, operation)
     _check_from_self(place / "patterns", operation)
@@ -336,11 +327,6 @@ def _read_refused_table(place: Place, raw: Any, action: str | None, needs_topic:
         topic = (place / "topic").attempt(name_of, "topic", table.topic)
     elif needs_topic:
         place.error('what is published has no answer; name where it is said: topic = "/…"')
-    if not table.values:
-        (place / "values").error("must not be empty: the values that are refusals")
-    for index, value in enumerate(table.values):
-        if not isinstance(value, str | bool | int | float):
-            (place / "values" / index).error(f"must be a text, a number, true or false, not {shown(value)}")
     return Refused(str(path), tuple(table.values), topic)
 
 
@@ -356,8 +342,6 @@ def read_clock(place: Place, raw: dict[str, Any]) -> Clock | None:
     table = place.table(ClockTable, raw)
     if table is None:
         return None
-    (place / "tick").attempt(check_target, table.tick)
-    _check_time(place / "unit", table.unit)
     rooted = table.time != "" and not table.time.startswith((".", "["))
     (place / "time").attempt(Path.parse, table.time, rooted=rooted)
     if table.step is not None and "time" in raw:
@@ -370,15 +354,7 @@ def read_wait(place: Place, raw: dict[str, Any]) -> Wait | None:
     table = place.table(WaitTable, raw)
     if table is None:
         return None
-    (place / "call").attempt(check_target, table.call)
-    _check_time(place / "unit", table.unit)
     return Wait(table.call, table.unit, place.source("wait"))
-
-
-def _check_time(place: Place, unit: str) -> None:
-    times = [name for name in UNITS if dimension_of(name) is Dimension.TIME]
-    if unit not in times:
-        place.unknown("unit", unit, times)
 
 
 def read_probe(place: Place, raw: Any) -> Probe | None:
@@ -386,6 +362,5 @@ def read_probe(place: Place, raw: Any) -> Probe | None:
     table = place.table(ProbeTable, raw)
     if table is None:
         return None
-    (place / "call").attempt(check_target, table.call)
     result = read_quantities(place / "result", table.result)
     return Probe(table.call, table.tolerance, place.source(table.call), result, table.better)

@@ -11,132 +11,13 @@ from __future__ import annotations
 
 import builtins
 import keyword
-from enum import StrEnum
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from mutabot.config.mistakes import Place, shown
 from mutabot.config.table import Table
 from mutabot.model import Kind, Mode
-
-
-class Better(StrEnum):
-    """Which way a probe's number gets better."""
-
-    LESS = "less"
-    MORE = "more"
-
-
-class QuantityTable(Table):
-    """``{ kind = "translation", axis = "x", unit = "m", … }``"""
-
-    kind: Annotated[Kind, Field(strict=False)]
-    axis: str | None = None
-    unit: str | None = None
-    frame: str | None = None
-    mode: Annotated[Mode | None, Field(strict=False)] = None
-    values: list[Any] | None = None
-    range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    clip: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    noise: float | None = None
-    order: str | None = None
-    relative: bool = False
-    ladder: Any = None
-    repeatability: float | None = None
-    missing: str | None = None
-    tcp: float | None = None
-
-
-class PatternTable(Table):
-    """One entry of ``patterns``, without the keys of a quantity that may describe its only field."""
-
-    text: str
-    opposite: str | None = None
-    idle: Any = None
-    arguments: dict[str, Any] = Field(default_factory=dict)
-    result: dict[str, Any] | None = None
-
-
-class OperationTable(Table):
-    """One ``[[operation]]``; ``names.NAMING`` has the keys that name it, of which it has one."""
-
-    call: str | None = None
-    method: str | None = None
-    topic: str | None = None
-    direction: str | None = None
-    service: str | None = None
-    action: str | None = None
-    parameter: str | None = None
-    timer: str | None = None
-    rate: str | None = None
-    tf: str | None = None
-    type: str | None = None
-    node: str | None = None
-    command: bool | None = None
-    current: str | None = None
-    opposite: str | None = None
-    idle: Any = None
-    refusals: list[str] = Field(default_factory=list)
-    message: str | None = None
-    patterns: list[Any] = Field(default_factory=list)
-    when: Any = None
-    refused: Any = None
-    signature: str | None = None
-    overrides: bool = False
-    arguments: dict[str, Any] | None = None
-    fields: dict[str, Any] | None = None
-    request: dict[str, Any] | None = None
-    response: dict[str, Any] | None = None
-    goal: dict[str, Any] | None = None
-    feedback: dict[str, Any] | None = None
-    result: dict[str, Any] | None = None
-    value: dict[str, Any] | None = None
-
-
-class RefusedTable(Table):
-    """``refused = { path = "status", values = [5, 6], topic = "/arm/notification" }``"""
-
-    path: str = ""
-    values: list[Any]
-    topic: str | None = None
-
-
-class ClockTable(Table):
-    """``clock = { tick = "module:qualname", time = "self.time", unit = "s" }``, or with a fixed ``step``"""
-
-    tick: str
-    time: str = ""
-    unit: str = "s"
-    step: Annotated[float | None, Field(gt=0)] = None
-
-
-class WaitTable(Table):
-    """``wait = { call = "module:qualname", unit = "s" }``"""
-
-    call: str
-    unit: str = "s"
-
-
-class ProbeTable(Table):
-    """One ``[[probe]]``."""
-
-    call: str
-    tolerance: Annotated[float, Field(ge=0)] = 1e-6
-    result: dict[str, Any] | None = None
-    better: Annotated[Better | None, Field(strict=False)] = None
-
-
-class VocabularyTable(Table):
-    """The top of a vocabulary file."""
-
-    operation: list[Any] = Field(default_factory=list)
-    refusals: list[str] = Field(default_factory=list)
-    checks: list[str] = Field(default_factory=list)
-    failures: list[str] = Field(default_factory=list)
-    clock: dict[str, Any] | None = None
-    wait: dict[str, Any] | None = None
-    probe: list[Any] = Field(default_factory=list)
 
 
 def is_name(text: str) -> bool:
@@ -184,6 +65,144 @@ def _with_colon(text: str) -> str:
     # robot.Arm.move: by convention a module's name is lower case and a class's is not
     first = next((index for index, part in enumerate(parts) if index and part[:1].isupper()), len(parts) - 1)
     return f"{'.'.join(parts[:first])}:{'.'.join(parts[first:])}"
+
+
+def _check_method(name: str | None) -> str | None:
+    if name is not None and not is_name(name):
+        raise ValueError(f"{shown(name)} is not the name of a method, such as move_by")
+    return name
+
+
+def _check_scalar(value: Any) -> Any:
+    if not isinstance(value, str | bool | int | float):
+        raise ValueError(f"must be a text, a number, true or false, not {shown(value)}")
+    return value
+
+
+#: a callable or an exception, ``module:qualified.name``
+Target = Annotated[str, AfterValidator(check_target)]
+#: the units of time in ``model.values.units``
+TimeUnit = Literal["s", "ms", "us", "min"]
+#: what an argument or a part of an answer can be compared with
+Scalar = Annotated[Any, AfterValidator(_check_scalar)]
+
+
+class QuantityTable(Table):
+    """``{ kind = "translation", axis = "x", unit = "m", … }``"""
+
+    kind: Annotated[Kind, Field(strict=False)]
+    axis: str | None = None
+    unit: str | None = None
+    frame: str | None = None
+    mode: Annotated[Mode | None, Field(strict=False)] = None
+    values: list[Any] | None = None
+    range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
+    clip: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
+    noise: float | None = None
+    order: str | None = None
+    relative: bool = False
+    ladder: Any = None
+    repeatability: float | None = None
+    missing: str | None = None
+    tcp: float | None = None
+
+
+class PatternTable(Table):
+    """One entry of ``patterns``, without the keys of a quantity that may describe its only field."""
+
+    text: str
+    opposite: str | None = None
+    idle: Any = None
+    arguments: dict[str, Any] = Field(default_factory=dict)
+    result: dict[str, Any] | None = None
+
+
+class OperationTable(Table):
+    """One ``[[operation]]``; ``names.NAMING`` has the keys that name it, of which it has one."""
+
+    call: Target | None = None
+    method: Annotated[str | None, AfterValidator(_check_method)] = None
+    topic: str | None = None
+    direction: Literal["publish", "receive"] | None = None
+    service: str | None = None
+    action: str | None = None
+    parameter: str | None = None
+    timer: str | None = None
+    rate: str | None = None
+    tf: str | None = None
+    type: str | None = None
+    node: str | None = None
+    command: bool | None = None
+    current: str | None = None
+    opposite: str | None = None
+    idle: Any = None
+    refusals: list[Target] = Field(default_factory=list)
+    message: str | None = None
+    patterns: list[Any] = Field(default_factory=list)
+    when: Any = None
+    refused: Any = None
+    signature: str | None = None
+    overrides: bool = False
+    arguments: dict[str, Any] | None = None
+    fields: dict[str, Any] | None = None
+    request: dict[str, Any] | None = None
+    response: dict[str, Any] | None = None
+    goal: dict[str, Any] | None = None
+    feedback: dict[str, Any] | None = None
+    result: dict[str, Any] | None = None
+    value: dict[str, Any] | None = None
+
+
+class RefusedTable(Table):
+    """``refused = { path = "status", values = [5, 6], topic = "/arm/notification" }``"""
+
+    path: str = ""
+    values: Annotated[list[Scalar], Field(min_length=1)]
+    topic: str | None = None
+
+
+class CaseTable(Table):
+    """``when = { argument = "type", value = "gripper" }``"""
+
+    argument: str
+    value: Scalar
+
+
+class ClockTable(Table):
+    """``clock = { tick = "module:qualname", time = "self.time", unit = "s" }``, or with a fixed ``step``"""
+
+    tick: Target
+    time: str = ""
+    unit: TimeUnit = "s"
+    step: Annotated[float | None, Field(gt=0)] = None
+
+
+class WaitTable(Table):
+    """``wait = { call = "module:qualname", unit = "s" }``"""
+
+    call: Target
+    unit: TimeUnit = "s"
+
+
+class ProbeTable(Table):
+    """One ``[[probe]]``."""
+
+    call: Target
+    tolerance: Annotated[float, Field(ge=0)] = 1e-6
+    result: dict[str, Any] | None = None
+    better: Literal["less", "more"] | None = None
+
+
+class VocabularyTable(Table):
+    """The top of a vocabulary file."""
+
+    operation: list[Any] = Field(default_factory=list)
+    refusals: list[Target] = Field(default_factory=list)
+    checks: list[Target] = Field(default_factory=list)
+    failures: list[Target] = Field(default_factory=list)
+    clock: dict[str, Any] | None = None
+    wait: dict[str, Any] | None = None
+    probe: list[Any] = Field(default_factory=list)
 
 
 def read_idle(place: Place, raw: Any) -> Any:

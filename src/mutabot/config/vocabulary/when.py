@@ -18,6 +18,8 @@ from typing import Any
 from mutabot.config.mistakes import Place, shown
 from mutabot.model import Case, Mode, Operation, Path, Pattern
 
+from .schema import CaseTable
+
 _MODE = 'such as mode = { argument = "relative", true = "by", false = "to" }'
 _WHEN = 'such as when = { argument = "type", value = "gripper" }'
 
@@ -116,31 +118,21 @@ def read_when(place: Place, raw: Any) -> tuple[Case, ...]:
 
 
 def _read_case(place: Place, raw: Any) -> Case | None:
-    wanted = ("argument", "value")
-    if not isinstance(raw, dict) or set(raw) != set(wanted):
-        odd = next((key for key in raw if key not in wanted), None) if isinstance(raw, dict) else None
-        if odd is not None:
-            (place / odd).unknown("key", odd, wanted)
-        else:
-            place.error(f"needs an argument and its value, {_WHEN}")
+    if not isinstance(raw, dict):
+        place.error(f"needs an argument and its value, {_WHEN}")
         return None
-    argument, value = raw["argument"], raw["value"]
-    if (place / "argument").attempt(_check_argument, argument) is None:
+    table = place.table(CaseTable, raw)
+    if table is None or (place / "argument").attempt(_check_argument, table.argument) is None:
         return None
-    if not isinstance(value, str | bool | int | float):
-        (place / "value").error(f"expected a text, a number, true or false, got {shown(value)}")
-        return None
-    return Case(argument, _text(value), "when")
+    return Case(table.argument, _text(table.value), "when")
 
 
-def _check_argument(argument: Any) -> Path:
-    if not isinstance(argument, str):
-        raise ValueError(f"expected text, got {shown(argument)}")
-    path = Path.parse(argument, rooted=True)
-    if argument == "self":
+def _check_argument(text: str) -> Path:
+    path = Path.parse(text, rooted=True)
+    if text == "self":
         raise ValueError('self is the object itself; name what lies in it, such as "self.name"')
     if any(step.bounds is not None for step in path.steps):
-        raise ValueError(f"{argument!r} is not one value")
+        raise ValueError(f"{text!r} is not one value")
     return path
 
 
