@@ -140,6 +140,18 @@ class Part:
             raise ExtensionError(f"{self.words} is not a subclass of {base.__module__}.{base.__qualname__}")
         return found
 
+    def make(self, base: type[T]) -> T:
+        """An object of that class. Raises ExtensionError also if its ``name`` is another one."""
+        kind = self.load_class(base)
+        try:
+            made = kind()
+        except Exception as error:  # as above
+            raise ExtensionError(f"{self.words} cannot be made: {error!r}") from error
+        name = getattr(made, "name", None)
+        if name != self.name:
+            raise ExtensionError(f"{self.words} calls itself {name!r}; extension and class must agree")
+        return made
+
     @property
     def words(self) -> str:
         """It in a message."""

@@ -22,8 +22,8 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from mutabot.border.job import InProcess
-from mutabot.errors import ExtensionError, UsageError, unknown_name_text
-from mutabot.extensions import Part, brought
+from mutabot.errors import UsageError, unknown_name_text
+from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
 from mutabot.frozen import frozen
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
@@ -191,19 +191,7 @@ class FaultProvider(ABC):
 @cache
 def brought_providers() -> tuple[FaultProvider, ...]:
     """The providers of packages. Raises ExtensionError for one that is of no use."""
-    return tuple(_made(part) for part in brought("faults").values())
-
-
-def _made(part: Part) -> FaultProvider:
-    kind = part.load_class(FaultProvider)  # type: ignore[type-abstract]
-    try:
-        made = kind()
-    except Exception as error:  # a package of others may fail in any way
-        raise ExtensionError(f"{part.words} cannot be made: {error!r}") from error
-    if getattr(made, "name", None) != part.name:
-        name = getattr(made, "name", None)
-        raise ExtensionError(f"{part.words} calls itself {name!r}; the extension and the class must agree")
-    return made
+    return tuple(part.make(FaultProvider) for part in brought("faults").values())  # type: ignore[type-abstract]
 
 
 def families_brought(*, without_vocabulary: bool = False) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.errors import ExtensionError, OperatorError, unknown_name_text
-from mutabot.extensions import Part, brought
+from mutabot.extensions import brought
 
 from .command import CONTROLS
 from .operator import Operator, in_order
@@ -77,7 +77,10 @@ def operator(name: str) -> Operator:
                 return rule
     part = brought("operators").get(name)
     if part is not None:
-        return _loaded(part)
+        try:
+            return part.make(Operator)  # type: ignore[type-abstract]
+        except ExtensionError as error:
+            raise OperatorError(f"operator {error}", operator=name) from error
     raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
 
 
@@ -97,26 +100,6 @@ def _modules() -> dict[str, str]:
 def _of_module(module: str) -> list[Operator]:
     """The operators that a module holds."""
     return [kind() for kind in classes_in(import_module(module), Operator)]
-
-
-def _loaded(part: Part) -> Operator:
-    where = f"operator {part.name!r} of package {part.owner!r} ({part.reference})"
-    try:
-        made = part.load()()
-    except ExtensionError as error:
-        raise OperatorError(f"operator {error}", operator=part.name) from error
-    except Exception as error:  # a package of others may fail in any way
-        raise OperatorError(f"{where} cannot be loaded: {error!r}", operator=part.name) from error
-    if not isinstance(made, Operator):
-        raise OperatorError(
-            f"{where} is {type(made).__name__}, not a subclass of mutabot.Operator", operator=part.name
-        )
-    if getattr(made, "name", None) != part.name:
-        raise OperatorError(
-            f"{where} calls itself {getattr(made, 'name', None)!r}; extension and class must agree",
-            operator=part.name,
-        )
-    return made
 
 
 def modules_in(folder: Path) -> list[str]:
