@@ -137,7 +137,7 @@ class Place:
             return model.model_validate(raw)
         except ValidationError as error:
             details = error.errors(include_url=False)
-        self._explain(details, [*known_keys(model), *also])
+        self._explain(details, [*model.model_fields, *also])
         bad = {detail["loc"][0] for detail in details if detail["loc"]}
         if not salvage or not isinstance(raw, dict):
             return None
@@ -163,11 +163,6 @@ class Place:
                     replace(at, path=at.path[:-1]).error(f"the key {name!r} is missing")
                 case other if other != "missing":
                     at.error(explained(detail))
-
-
-def known_keys(model: type[BaseModel]) -> list[str]:
-    """The keys a table may have."""
-    return [info.alias or name for name, info in model.model_fields.items()]
 
 
 def explained(detail: ErrorDetails) -> str:
