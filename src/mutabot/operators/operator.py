@@ -373,7 +373,7 @@ class Context:
     def by_chance(self) -> None:
         """Raises Unchanged unless chance wants this call; the option is how likely that is."""
         if self.draw().random() >= self.option:
-            raise Unchanged("chance spares it")
+            raise Unchanged("not drawn for this call")
 
 
 def quantity_of(subject: Subject) -> Quantity:

@@ -26,7 +26,7 @@ _NAMES = re.compile(r"[._]")
 NOT_PASSED = "the call does not pass this argument"
 NOT_RETURNED = "the call does not return this value"
 #: why an operator that asks where the robot is leaves a call alone
-NOT_TOLD = "nothing has told yet where the robot is"
+NOT_TOLD = "the position of the robot is not known yet"
 SAME = "the value would stay the same"
 
 
@@ -154,10 +154,10 @@ def given(values: Mapping[str, Value], name: str, subject: Subject) -> Value:
 def why_unchanged(quantity: Quantity, before: Value, after: Value | None) -> str:
     """Why a new value is not put in place of another one; empty if it can be."""
     if after is None:
-        return "its value is none that can be changed"
+        return "a value of this type cannot be changed"
     if not _allowed(quantity, after):
         if quantity.range is None:
-            return "the value would be none of those that the vocabulary allows"
+            return "the vocabulary does not allow the new value"
         return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
     if is_same(quantity, before, after):
         return SAME
@@ -269,7 +269,7 @@ def next_of(value: Value, quantity: Quantity, by: int = 1) -> Value:
     """The value that comes so many places after another one. Raises Unchanged if it is none of the values."""
     values = quantity.values or ()
     if value not in values:
-        raise Unchanged("it is none of those that are known")
+        raise Unchanged("it is not one of the known values")
     return values[(values.index(value) + by) % len(values)]
 
 

@@ -86,7 +86,7 @@ def test_a_pose_that_another_file_receives_is_known_as_well(stage: ClientStage) 
 def test_nothing_is_mirrored_as_long_as_nothing_has_told_where_it_is(stage: ClientStage) -> None:
     _, client, activation = stage.mutated(program(PUBLISH, "hear(Message(x=500))"), "reverse", quantity="x")
     assert [message.x for _, _, message in client.log] == [0.75]
-    assert activation.evidence.away == {"nothing has told yet where the robot is": 1}
+    assert activation.evidence.away == {"the position of the robot is not known yet": 1}
     assert activation.evidence.failure is None
 
 

@@ -217,7 +217,7 @@ class BaseForTool(ValuesOperator):
         try:
             tool = await _orientation(context.call)
         except NotToldError:
-            raise Unchanged("nothing tells how the tool is turned") from None
+            raise Unchanged("the orientation of the tool is not known") from None
         return _turned(before, tool if context.quantity.frame == _BASE else inverse(tool))
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:

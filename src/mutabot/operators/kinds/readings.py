@@ -275,7 +275,7 @@ class WrongObject(ValueOperator):
     of_read = False
     examples = (
         changed(_FIND, "washer", "nut", replied={"result": 0.3}),
-        unchanged(_FIND, "screw", "it is none of those that are known"),
+        unchanged(_FIND, "screw", "it is not one of the known values"),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
