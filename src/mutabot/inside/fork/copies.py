@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
+import resource
 import select
 import signal
 import socket
@@ -57,18 +58,21 @@ class CopyServer:
     log_file: str
     is_private: bool
     _known: frozenset[tuple[int, str]] = field(default_factory=open_now)
+    #: memory of the largest child process that has ended so far, KiB
+    _children: int = field(default_factory=lambda: resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
     _copies: dict[int, int] = field(default_factory=dict)
 
-    def serve(self, has_started: bool) -> Commission | None:
+    def serve(self) -> Commission | None:
         """Fork a copy for each job that comes, until no more can come.
 
-        ``has_started``: whether processes of the program were started meanwhile, of which no job would know.
         Returns what to do in a copy; None in the server when it is done.
         """
-        is_private = self.is_private and may_be_private()
-        reason = why_not((), self._known) if is_private else "its files are not private"
-        if has_started:
-            reason = STARTED
+        if resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss != self._children:
+            reason: str | None = STARTED  # no job would know of what they did
+        elif self.is_private and may_be_private():  # asking that starts a process as well
+            reason = why_not((), self._known)
+        else:
+            reason = "its files are not private"
         if reason is not None:
             self.pipe.send(Serving(reason))
             return None

@@ -110,8 +110,6 @@ class Conductor:
         conductor.look_at_checks()
         if job.serving is None:
             conductor._begin(home)
-        else:
-            conductor._watch_processes(home)
         return conductor
 
     def _make_private(self, job: Job, home: str) -> None:
@@ -125,15 +123,10 @@ class Conductor:
                 _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
             die_with_parent()  # a process that changes its rights loses that wish
 
-    def _watch_processes(self, home: str) -> Members:
-        """Processes that are started from now on tell in this home what they do."""
-        members = self.running.members = Members(home, self.session)
-        watch_forks(members.folder, self.session)
-        return members
-
     def _begin(self, home: str) -> None:
         has_nodes = prepare(self.job.root, home, self.job.vocabulary)
-        members = self._watch_processes(home)
+        members = self.running.members = Members(home, self.session)
+        watch_forks(members.folder, self.session)
         if self.job.mutant is not None:
             self.running.branch.left_out.become(self.job, [self.job.mutant.id])
         if self.job.branching is not None:
@@ -244,11 +237,9 @@ class Conductor:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
         """All tests are collected: run them, or fork a copy of this process for every job."""
-        members = self.running.members
-        if self._server is not None and members is not None:
-            commission = self._server.serve(members.have_begun())
-            if commission is not None:
-                self._take_on(session, commission)
+        commission = self._server.serve() if self._server is not None else None
+        if commission is not None:
+            self._take_on(session, commission)
         if self._server is not None:
             session.items.clear()
             return (yield)
