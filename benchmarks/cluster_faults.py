@@ -27,8 +27,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.codec import to_data
 from mutabot.journal.journal import Journal
+from mutabot.model.codec import to_data
 
 PAPER = Path(__file__).parents[1] / "examples" / "paper"
 #: what differs between equal runs

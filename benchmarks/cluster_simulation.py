@@ -164,7 +164,7 @@ def units_of(costs: Costs, way: Way, workers: int, mutants: int = MUTANTS) -> li
 
 
 def _cut(costs: Costs, drawn: Sequence[float], way: Way, workers: int) -> Iterator[Unit]:
-    """The trunk of a round in parts: as ``campaign.engines.trunk`` cuts it."""
+    """The trunk of a round in parts: as ``campaign.engines.fork_parent`` cuts it."""
     count = math.ceil(way.parts * workers / ROUNDS) if workers > 1 and way.parts else 1
     count = max(1, min(count, len(drawn) // LEAST))
     bounds = [round(len(drawn) * number / count) for number in range(count + 1)]

@@ -24,7 +24,6 @@ from pathlib import Path
 from statistics import median
 from textwrap import dedent
 
-from mutabot.analysis.results import read_results
 from mutabot.campaign.engines import confirmation
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
@@ -32,6 +31,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
+from mutabot.results.results import read_results
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 NAMES = ("many", "scales", "paper")

@@ -32,8 +32,19 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.codec import to_data
-from mutabot.border.events import (
+from mutabot.campaign.campaign import Campaign, Sink
+from mutabot.campaign.engines.choice import run_trials
+from mutabot.campaign.evidence import Evidence, recorded, without_recording
+from mutabot.campaign.request import Request
+from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.campaign.reuse.snapshot import Snapshot, State
+from mutabot.campaign.run import begin, open_executor, plan_of, selected
+from mutabot.cli.request import request_of
+from mutabot.execution.task import Executor, Result, Task
+from mutabot.journal.journal import Journal
+from mutabot.model import Mutant, Outcome
+from mutabot.model.codec import to_data
+from mutabot.model.events import (
     BranchDied,
     BranchEnd,
     Event,
@@ -42,18 +53,7 @@ from mutabot.border.events import (
     event_from_data,
     event_to_data,
 )
-from mutabot.border.job import Branching
-from mutabot.campaign.beginning import begin, open_executor, plan_of, selected
-from mutabot.campaign.campaign import Campaign, Sink
-from mutabot.campaign.engines.choice import run_trials
-from mutabot.campaign.evidence import Evidence, recorded, without_recording
-from mutabot.campaign.request import Request
-from mutabot.campaign.reuse.keys import Dependencies
-from mutabot.campaign.reuse.snapshot import Snapshot, State
-from mutabot.campaign.workers.task import Executor, Result, Task
-from mutabot.cli.request import request_of
-from mutabot.journal.journal import Journal
-from mutabot.model import Mutant, Outcome
+from mutabot.model.job import Branching
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 WORKERS = 100

@@ -41,16 +41,16 @@ from rich.console import Console
 from rich.table import Table
 
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.beginning import selected
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import Remainder, Trial
+from mutabot.campaign.engines.fork_parent import Trunks
 from mutabot.campaign.engines.fresh import replay
-from mutabot.campaign.engines.trunk import Trunks
-from mutabot.campaign.plan.plan import make_plan
+from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
-from mutabot.campaign.workers.workers import Workers
+from mutabot.campaign.run import selected
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
+from mutabot.execution.workers import Workers
 from mutabot.model import Outcome
 
 ROOT = Path(__file__).resolve().parent.parent

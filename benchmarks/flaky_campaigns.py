@@ -21,8 +21,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from textwrap import dedent
 
-from mutabot.analysis.chance import Estimate, false_kills, false_survivors
-from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
@@ -30,6 +28,8 @@ from mutabot.config.vocabulary import load
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
+from mutabot.results.results import Results, read_results
+from mutabot.results.statistics import Estimate, false_kills, false_survivors
 
 _FILES = {
     "robot.py": """

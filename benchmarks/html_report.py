@@ -23,15 +23,15 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from mutabot.analysis.stored import StoredEvidence
-from mutabot.border.events import TestEnd
 from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
+from mutabot.model.events import TestEnd
 from mutabot.model.outcome import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.texts import portable
+from mutabot.results.stored import StoredEvidence
 
 FILES, LINES, TESTS = 8, 400, 40
 #: s, and moments per s

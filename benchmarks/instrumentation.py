@@ -17,10 +17,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from mutabot.inside.text.import_hook import ImportHook
-from mutabot.inside.text.instrument import instrumented
-from mutabot.inside.text.loading import compile_tree
 from mutabot.model import Instrumentation, ProgramText
+from mutabot.runtime.program_text.import_hook import ImportHook
+from mutabot.runtime.program_text.instrument import instrumented
+from mutabot.runtime.program_text.loading import compile_tree
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
 

@@ -13,11 +13,11 @@ import timeit
 from pathlib import Path
 from unittest.mock import Mock
 
-from mutabot.border.events import Event
-from mutabot.border.job import Job
 from mutabot.config.vocabulary import load
-from mutabot.inside.calls.locate import Locator
-from mutabot.inside.session import Session
+from mutabot.model.events import Event
+from mutabot.model.job import Job
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.session import Session
 
 CALLS = 200_000
 ROBOT = "class Arm:\n    def move_by(self, dx):\n        return None\n"
@@ -30,7 +30,7 @@ arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
 IMPORT = """
 import pytest, time
 start = time.process_time()
-import mutabot.inside.suite.conductor
+import mutabot.runtime.conductor
 print((time.process_time() - start) * 1e3)
 """
 

@@ -18,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from mutabot.analysis.statistics import Interval, crossed
+from mutabot.results.statistics import Interval, crossed
 
 Values = NDArray[np.float64]
 Draw = Callable[[np.random.Generator, int], Values]

@@ -24,9 +24,9 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
-from mutabot.analysis.results import read_results
-from mutabot.border.codec import to_data
 from mutabot.journal.journal import Journal
+from mutabot.model.codec import to_data
+from mutabot.results.results import read_results
 
 FILES = {
     "mutabot.toml": """

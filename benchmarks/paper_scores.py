@@ -11,9 +11,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from mutabot.analysis.results import Results, read_results
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
+from mutabot.results.results import Results, read_results
 
 #: killed of 26 per round, from the paper's table; its text says 77 to 81 % of the same runs
 PAPER_TABLE = (24, 22, 24, 23, 23)

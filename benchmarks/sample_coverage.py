@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mutabot.analysis.statistics import sampled
+from mutabot.results.statistics import sampled
 
 CAMPAIGNS = 2000
 SCORES = (0.2, 0.5, 0.8, 0.95)

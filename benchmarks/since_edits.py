@@ -20,8 +20,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.codec import to_data
 from mutabot.journal.reader import JournalReader
+from mutabot.model.codec import to_data
 from random_edits import EDITS, SUBJECTS, NotPossibleError, Subject
 
 #: how often an edit of a kind is tried: many are not possible, or make the tests fail

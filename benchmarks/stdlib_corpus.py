@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.model import Instrumentation
+from mutabot.model.codec import from_data, to_data
 
 #: module -> test module, relative to ``test``
 CORPUS = {
@@ -169,7 +169,7 @@ def _inside(job: dict[str, Any]) -> None:
     answer = Path.cwd() / "answer.json"
     hook = None
     if job["instrumentation"] is not None:
-        from mutabot.inside.text.import_hook import ImportHook  # noqa: PLC0415  # only where it is needed
+        from mutabot.runtime.program_text.import_hook import ImportHook  # noqa: PLC0415  # only where it is needed
 
         hook = ImportHook(job["root"], from_data(Instrumentation, job["instrumentation"]))
     for name in list(sys.modules):

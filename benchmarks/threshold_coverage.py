@@ -18,9 +18,9 @@ from statistics import NormalDist, median
 
 import numpy as np
 
-from mutabot.analysis.thresholds.ladders import median_between
-from mutabot.campaign.search.search import LadderSearch
+from mutabot.campaign.search import LadderSearch
 from mutabot.model.graded import Bracket, Seen, bracket_of
+from mutabot.results.ladders import median_between
 
 CAMPAIGNS = 2000
 ROUNDS = (3, 5, 10, 20)

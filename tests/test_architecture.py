@@ -10,7 +10,7 @@ from pkgutil import resolve_name
 
 import pytest
 
-from rooms import SOURCE, files, imports, levels, name_of, rooms
+from rooms import SOURCE, files, gathered, imports, levels, name_of, rooms
 
 #: package -> packages of ours it may import, beside ``frozen`` and ``lazy``
 ALLOWED = {
@@ -18,28 +18,28 @@ ALLOWED = {
     "errors": {"limits"},
     "extensions": {"errors"},
     "families": set(),
-    "faults": {"errors", "extensions", "families", "model", "border", "operators"},
+    "faults": {"errors", "extensions", "families", "model", "operators"},
     "repository": set(),
     "model": {"errors", "extensions", "families", "limits"},
     "languages": {"model"},
-    "border": {"errors", "model"},
     "operators": {"errors", "extensions", "families", "model"},
-    "config": {"errors", "extensions", "families", "limits", "model", "border", "operators", "faults"},
+    "config": {"errors", "extensions", "families", "limits", "model", "operators", "faults"},
     "evidence": {"model"},
-    "inside": {"errors", "extensions", "model", "languages", "border", "operators", "evidence"},
-    "journal": {"errors", "model", "border", "repository"},
+    "runtime": {"errors", "extensions", "model", "languages", "operators", "evidence"},
+    "execution": {"errors", "model"},
+    "journal": {"errors", "model", "repository"},
     "campaign": {
         "errors", "extensions", "families", "faults", "model", "languages", "border", "config",
         "operators", "journal", "evidence", "repository",
     },
-    "proposal": {"errors", "extensions", "model", "border", "config", "campaign"},
-    "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
+    "proposal": {"errors", "extensions", "model", "execution", "config", "campaign"},
+    "suggestion": {"errors", "model", "journal", "campaign", "execution", "results"},
     "analysis": {"errors", "families", "model", "border", "journal", "evidence"},
     "report": {"errors", "extensions", "model", "border", "journal", "analysis", "evidence"},
     "__main__": {"cli"},
     "cli": {
         "errors", "extensions", "families", "faults", "limits", "model", "border", "config",
-        "journal", "campaign", "proposal", "suggestion", "analysis", "report",
+        "journal", "campaign", "proposal", "suggestion", "results", "report",
     },
 }  # fmt: skip
 FILES = files()
@@ -112,21 +112,21 @@ def test_no_module_imports_itself_in_a_circle() -> None:
         visit(module, ())
 
 
-def test_no_room_leads_back_to_itself() -> None:
-    levels(rooms())
+def test_no_top_folder_leads_back_to_itself() -> None:
+    levels(gathered(rooms()))
 
 
-def test_the_inside_imports_the_standard_library_wrapt_and_pytest_only() -> None:
+def test_the_runtime_imports_the_standard_library_wrapt_and_pytest_only() -> None:
     allowed = {"wrapt", "pytest", "_pytest", "mutabot", *sys.stdlib_module_names}
-    for file in (SOURCE / "inside").rglob("*.py"):
+    for file in (SOURCE / "runtime").rglob("*.py"):
         for module in imports(file):
             assert module.partition(".")[0] in allowed, f"{file.name} imports {module}"
 
 
 def test_the_sleeping_plugin_loads_neither_operators_nor_wrapt() -> None:
     code = (
-        "import sys, pytest, mutabot.inside.pytest_plugin\n"
-        "heavy = {'wrapt', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'mutabot.inside.session'}\n"
+        "import sys, pytest, mutabot.runtime.pytest_plugin\n"
+        "heavy = {'wrapt', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'mutabot.runtime.session'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -135,7 +135,7 @@ def test_the_sleeping_plugin_loads_neither_operators_nor_wrapt() -> None:
 
 def test_processes_below_the_tests_need_no_pytest() -> None:
     code = (
-        "import sys, mutabot.inside.processes.member, mutabot.inside.watching.elsewhere\n"
+        "import sys, mutabot.runtime.processes.member, mutabot.runtime.watching.elsewhere\n"
         "heavy = {'pytest', '_pytest', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'libcst'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )

@@ -22,16 +22,16 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.events import Problem
-from mutabot.border.job import Job
 from mutabot.config.vocabulary import load
 from mutabot.config.vocabulary.load import shipped
-from mutabot.inside.calls.locate import Locator
-from mutabot.inside.event_file import Held
-from mutabot.inside.session import Session
-from mutabot.inside.targets.callables import Callables
 from mutabot.model import Operation, Vocabulary
-from mutabot.model.values.signature import parse_signature, signature_of
+from mutabot.model.events import Problem
+from mutabot.model.job import Job
+from mutabot.model.signature import parse_signature, signature_of
+from mutabot.runtime.event_file import Held
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.session import Session
+from mutabot.runtime.targets.callables import Callables
 
 #: a member of an enumeration, as pybind11 writes one that is a default
 _DEFAULT_MEMBER = re.compile(r"<[^<>]*>")

@@ -16,7 +16,7 @@ from rooms import SOURCE, Graph, among, direct, gathered, levels, rooms
 PAGE = Path(__file__).parents[1] / "docs" / "design.md"
 BEGIN, END = "<!-- rooms: written by tools/make_design_page.py from the imports -->", "<!-- end of rooms -->"
 #: packages whose rooms are drawn as well
-_OPENED = ("campaign", "inside")
+_OPENED = ("campaign", "runtime")
 #: files that belong to no room: plug-ins and `python -m mutabot` begin there
 _DOORS = ("__init__", "__main__")
 
@@ -27,10 +27,16 @@ def picture() -> str:
     whole = gathered(graph)
     lines = ["", "```text", *_drawn(among(whole, (room for room in whole if room not in _DOORS))), "```", ""]
     for package in _OPENED:
-        inside = (room for room in graph if room.startswith(f"{package}/"))
-        inner = among(graph, (room for room in inside if Path(room).name not in _DOORS))
-        lines += [f"Inside `{package}/`:", "", "```text", *_drawn(inner), "```", ""]
+        lines += [f"Inside `{package}/`:", "", "```text", *_listed(SOURCE / package), "```", ""]
     return "\n".join(lines)
+
+
+def _listed(folder: Path) -> Iterator[str]:
+    """One line for each module of a package: its name and what it is."""
+    modules = [file for file in sorted(folder.rglob("*.py")) if file.stem not in _DOORS]
+    names = [str(file.relative_to(folder).with_suffix("")) for file in modules]
+    for name, file in zip(names, modules, strict=True):
+        yield f"{name:<{max(map(len, names))}}  {_summary(str(file.relative_to(SOURCE)))}"
 
 
 def _drawn(graph: Graph) -> Iterator[str]:

@@ -15,7 +15,7 @@ from typing import Any
 import configuration_page
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE
 from mutabot.model import Mishap, Quantity
-from mutabot.model.values.notation import Notation
+from mutabot.model.notation import Notation
 from mutabot.operators import Example, Need, Operator, Subject, operator
 from mutabot.operators.registry import built_in
 

@@ -10,11 +10,11 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import RoundScores
-from mutabot.analysis.statistics import Interval, crossed, wilson
 from mutabot.journal.records import Drawing
 from mutabot.model import Outcome, Role
+from mutabot.results.results import MutantResult, Results
+from mutabot.results.score import RoundScores
+from mutabot.results.statistics import Interval, crossed, wilson
 
 from .ends import End, Properties, end_of, properties_of
 from .subsumption import Redundancy

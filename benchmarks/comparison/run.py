@@ -19,7 +19,6 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_of
@@ -30,6 +29,7 @@ from mutabot.journal.reader import JournalReader
 from mutabot.report.document import dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.progress import make_progress
+from mutabot.results.results import Results, read_results
 
 from . import without_checks
 from .data import comparison_data

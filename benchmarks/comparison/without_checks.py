@@ -20,10 +20,10 @@ from typing import Any
 import pytest
 import wrapt
 
-from mutabot.inside.calls.locate import Locator
-from mutabot.inside.targets.target import is_named
-from mutabot.inside.text import loading
 from mutabot.model import Role
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.program_text import loading
+from mutabot.runtime.targets.target import is_named
 
 #: variable with JSON: root, program, oracle, and checks (exceptions that are verdicts of a check)
 ENVIRONMENT = "COMPARISON_WITHOUT_CHECKS"

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from .lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.analysis.stored import StoredCampaign as StoredCampaign
-    from mutabot.analysis.stored import open as open
+    from mutabot.results.stored import StoredCampaign as StoredCampaign
+    from mutabot.results.stored import open as open
 
     from .errors import MutabotError as MutabotError
     from .model import Call as Call
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
-    "analysis.stored": ("StoredCampaign", "open"),
+    "results.stored": ("StoredCampaign", "open"),
     "errors": ("MutabotError",),
     "model": ("Call", "Kind", "Middleware", "Mode", "Operation", "Pattern", "Proceed", "Quantity", "Reply"),
     "operators": ("Example", "Need", "Operator", "Subject"),

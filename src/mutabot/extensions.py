@@ -59,9 +59,9 @@ class Extension:
     Attributes:
         interface: the version of this interface that the package was written for.
         operators: subclasses of ``mutabot.Operator``, by the operators' names.
-        middlewares: modules that keep ``inside.targets.middleware.Middleware``, by the name of the module of
+        middlewares: modules that keep ``runtime.targets.target.Middleware``, by the name of the module of
             the client library whose import puts their hooks in place.
-        environments: modules that keep ``inside.targets.middleware.Environment``, by any name.
+        environments: modules that keep ``runtime.targets.target.Environment``, by any name.
         futures: classes of futures, by the name under which recorded answers keep them: one that is made
             without arguments is not done until somebody completes it.
         libraries: client libraries, by the name of the top-level package, in which ``*`` stands for any
@@ -74,7 +74,7 @@ class Extension:
         tables: subclasses of ``mutabot.config.table.Table``, by the table's name in the configuration.
         commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.commands``).
         formats: a ``mutabot.report.format.Format`` each, by its name.
-        sections: functions of ``mutabot.analysis.results.Results`` that make a section of the results
+        sections: functions of ``mutabot.results.results.Results`` that make a section of the results
             document each, of plain data, by its name.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
     """

@@ -3,10 +3,10 @@
 A provider has two halves. The one here works in the controller: it says what it needs of the baseline, and
 makes the mutants of it. The other lives in the processes of the tests, and is one of three:
 
-- operators change **calls** where these are intercepted (``mutabot/inside/calls``): the core's own providers;
-- an alternative is switched on in the **program text** (``Planted.choice``, ``mutabot/inside/text``);
+- operators change intercepted **calls** (``mutabot/runtime/interception``): the core's own providers;
+- an alternative is switched on in the **program text** (``Planted.choice``, ``runtime.program_text``);
 - anything else is put in place by **code of the provider's own** before each test (``Planted.in_process``,
-  ``mutabot/inside/process_fault.py``).
+  ``mutabot/runtime/process_fault.py``).
 
 A package names its provider under ``faults`` of its ``Extension`` (``mutabot/extensions.py``). Nothing that a
 campaign without its mutants has no use for is to be imported with it.
@@ -21,13 +21,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
-from mutabot.border.job import InProcess
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
 from mutabot.frozen import frozen
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
 from mutabot.model.graded import Demand
+from mutabot.model.job import InProcess
 from mutabot.model.mutant import Place
 from mutabot.operators.operator import Rule
 

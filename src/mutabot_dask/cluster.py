@@ -16,14 +16,14 @@ from itertools import chain
 from pathlib import Path
 from types import TracebackType
 
-from mutabot.border.events import Event
-from mutabot.campaign.local import on_this_machine
+from mutabot.campaign.campaign import on_this_machine
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import versions
-from mutabot.campaign.workers.interruption import interruptible
-from mutabot.campaign.workers.task import Result, Task
-from mutabot.campaign.workers.workers import Workers
 from mutabot.errors import ClusterError
+from mutabot.execution.interruption import interruptible
+from mutabot.execution.task import Result, Task
+from mutabot.execution.workers import Workers
+from mutabot.model.events import Event
 
 from .bundle import Bundle, explained, summary, warnings
 from .dispatch import Dispatch, is_for_home

@@ -14,9 +14,9 @@ from dataclasses import dataclass, field, replace
 from secrets import token_hex
 from typing import TYPE_CHECKING
 
-from mutabot.border.events import BranchDied, Event
-from mutabot.campaign.workers.interruption import interruptible
-from mutabot.campaign.workers.task import Result, Task
+from mutabot.execution.interruption import interruptible
+from mutabot.execution.task import Result, Task
+from mutabot.model.events import BranchDied, Event
 
 from . import far
 from .link import News, shown

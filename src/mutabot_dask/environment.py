@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from mutabot.campaign.workers.processes import usual_environment
+from mutabot.execution.processes import usual_environment
 
 #: variables that say how Python, pytest and numbers behave, each by its whole name: a prefix would also take
 #: what somebody else keeps under such a name, as a key. Those that name places stay with their machine.

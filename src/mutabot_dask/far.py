@@ -26,12 +26,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.events import Event
 from mutabot.campaign.reuse.keys import versions
-from mutabot.campaign.workers.remains import OWNER, end_abandoned
-from mutabot.campaign.workers.task import Result, Task, death
-from mutabot.campaign.workers.workers import Workers
 from mutabot.errors import JournalError
+from mutabot.execution.remains import OWNER, end_abandoned
+from mutabot.execution.task import Result, Task, death
+from mutabot.execution.workers import Workers
+from mutabot.model.events import Event
 
 from .environment import apply
 from .unit import Answer, Ground, Introduction, Misfit, Unit

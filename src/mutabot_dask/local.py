@@ -16,15 +16,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from mutabot.campaign.workers.interruption import interruptible
-from mutabot.campaign.workers.remains import end_below
-from mutabot.campaign.workers.task import last_line
 from mutabot.errors import ClusterError
+from mutabot.execution.interruption import interruptible
+from mutabot.execution.remains import end_below
+from mutabot.execution.task import last_line
 
 #: what the processes run; nothing outlives whoever started it
 _CODE = (
     "import sys\n"
-    "from mutabot.inside.fork.lifeline import die_with_parent\n"
+    "from mutabot.runtime.isolation.lifeline import die_with_parent\n"
     "die_with_parent(int(sys.argv[1]))\n"
     "from distributed.cli.dask_{what} import main\n"
     "sys.argv[:] = ['dask-{what}', *sys.argv[2:]]\n"

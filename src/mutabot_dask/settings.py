@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from mutabot.campaign.request import ExecutorChoice, Request
-from mutabot.campaign.workers.task import Executor
 from mutabot.config.table import ProjectFiles, Table
 from mutabot.errors import UsageError
+from mutabot.execution.task import Executor
 
 if TYPE_CHECKING:
     from mutabot.config.configuration import Configuration

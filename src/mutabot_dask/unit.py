@@ -18,8 +18,10 @@ from functools import cache
 from pathlib import PurePosixPath
 from typing import Any, TypeVar, get_type_hints
 
-from mutabot.border.codec import from_data, to_data
-from mutabot.border.events import (
+from mutabot.evidence.recording import bytes_of, from_bytes
+from mutabot.execution.task import Result, Task
+from mutabot.model.codec import from_data, to_data
+from mutabot.model.events import (
     EVENTS,
     Acted,
     BranchDied,
@@ -37,9 +39,7 @@ from mutabot.border.events import (
     Watched,
     event_to_data,
 )
-from mutabot.border.job import Job
-from mutabot.campaign.workers.task import Result, Task
-from mutabot.evidence.recording import bytes_of, from_bytes
+from mutabot.model.job import Job
 
 #: bytes of an answer, levels of lists in it, and the size of counts: none that makes sense comes near
 MOST_BYTES, _DEEPEST, _MOST = 64 << 20, 64, 10**15

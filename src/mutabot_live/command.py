@@ -18,11 +18,11 @@ import typer
 
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.interruption import Pause
 from mutabot.cli import options
 from mutabot.cli.campaign import show_end
 from mutabot.cli.output import tell
 from mutabot.cli.request import request_of
+from mutabot.execution.interruption import Pause
 from mutabot.report.terminal.progress import Pace
 from mutabot.report.texts import legible
 

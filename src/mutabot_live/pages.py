@@ -15,12 +15,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.results import MutantResult, Results, results_at
-from mutabot.analysis.stored import StoredEvidence
 from mutabot.errors import JournalError
 from mutabot.report.html.folder import campaign_data, script_of
 from mutabot.report.html.mutant import Recorded, mutant_page
 from mutabot.report.texts import Cleaner, portable
+from mutabot.results.results import MutantResult, Results, results_at
+from mutabot.results.stored import StoredEvidence
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes
 _LEAST, _TIMES = 1.0, 20.0

@@ -15,9 +15,6 @@ from typing import Annotated
 
 import typer
 
-from mutabot.analysis.results import MutantResult, Results, find_mutant, read_results
-from mutabot.analysis.stored import StoredEvidence
-from mutabot.border.codec import from_data
 from mutabot.campaign.again import anew
 from mutabot.campaign.request import Progress, Request
 from mutabot.cli import options
@@ -29,6 +26,9 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import REACHING, Reaching
 from mutabot.model import Diverged, Mutant, Outcome
+from mutabot.model.codec import from_data
+from mutabot.results.results import MutantResult, Results, find_mutant, read_results
+from mutabot.results.stored import StoredEvidence
 
 from .filming import choose_graphics, film
 from .shown import Shown

@@ -10,7 +10,7 @@ from collections.abc import Awaitable, Callable
 from types import CodeType
 from typing import Any
 
-from mutabot.inside.targets.target import Means, Where
+from mutabot.runtime.targets.target import Means, Where
 
 from ._patches import Patches
 

@@ -11,9 +11,9 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any, ClassVar
 
-from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation, Path
-from mutabot.model.named import WRITTEN, Form, Named, Refused
+from mutabot.model.operation import WRITTEN, Form, Named, Refused
+from mutabot.runtime.targets.target import Finding
 
 #: the tables of the vocabulary in which the fields are described of what is written, and of what is read
 _TABLES: Mapping[Form, tuple[str, str]] = {

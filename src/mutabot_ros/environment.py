@@ -9,7 +9,7 @@ from ._speech import speaks_of
 
 
 def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> bool:
-    """Set up what nodes will find in the environment; see ``mutabot.inside.targets.middleware``.
+    """Set up what nodes will find in the environment; see ``mutabot.runtime.targets.target``.
 
     Raises ``_master.MasterError`` if there is to be a master and none comes up.
     """

@@ -14,13 +14,12 @@ from collections.abc import Callable, Iterator
 from contextvars import Context
 from typing import Any
 
-from mutabot.inside.calls.passing import is_under_way
-from mutabot.inside.processes.member import note_node
-from mutabot.inside.targets.delivery import anew, deliver, wait_for
-from mutabot.inside.targets.middleware import Names
-from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
+from mutabot.runtime.interception.dispatcher import is_under_way
+from mutabot.runtime.processes.member import note_node
+from mutabot.runtime.targets.messages import anew, deliver, wait_for
+from mutabot.runtime.targets.target import Finding, Names
 
 from . import _ros1_node as node
 from ._patches import Patches, code_of

@@ -10,9 +10,9 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from mutabot.inside.targets.delivery import deliver
-from mutabot.inside.targets.middleware import Names
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
+from mutabot.runtime.targets.messages import deliver
+from mutabot.runtime.targets.target import Names
 
 from . import _ros1_node as node
 from ._patches import Patches, code_of

@@ -6,9 +6,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from mutabot.inside.targets.middleware import Names
-from mutabot.inside.targets.target import Means, Where
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
+from mutabot.runtime.targets.target import Means, Names, Where
 
 from ._patches import Patches
 

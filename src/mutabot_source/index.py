@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from mutabot.languages.python import extent_of
-from mutabot.model.alternative import Extent
+from mutabot.model.mutant import Extent
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 Start = tuple[int, int]

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 import libcst as cst
 from libcst.metadata import CodeRange
 
-from mutabot.model.alternative import Extent, kept_name
+from mutabot.model.mutant import Extent, kept_name
 
 from .operator import Surroundings
 

@@ -15,14 +15,14 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot.model.alternative import Alternative
+from mutabot.model.mutant import Alternative
 from mutabot.operators.operator import Rule
 
 from .extension import CLASSICAL
 
 #: what the helper object is called in templates; an operator may call, and names what it raises by itself:
 #: ``absolute(value)``, whatever the program calls ``abs``; ``fail(name, text)``, which raises; and
-#: ``fail_if(value, wrong, name, text)``, which is the value or raises (``mutabot/inside/text/switches.py``)
+#: ``fail_if(value, wrong, name, text)``, which is the value or raises (``switches.py``)
 HELPER = "__mutabot__[0]"
 
 

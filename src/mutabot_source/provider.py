@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.faults import FaultProvider, Original, Planned, Preparation, Project, TextSeen
 from mutabot.languages.registry import program_files
-from mutabot.model.alternative import ProgramText
-from mutabot.model.mutant import Place
+from mutabot.model.mutant import Place, ProgramText
 
 from .extension import OF_TEXT, PROVIDER
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from mutabot.border.codec import to_data
 from mutabot.faults import Planted
 from mutabot.model import Mutant
-from mutabot.model.alternative import Alternative, Choice, ProgramText, Sighting, TextPlace
+from mutabot.model.codec import to_data
+from mutabot.model.mutant import Alternative, Choice, ProgramText, Sighting, TextPlace
 
 from . import registry
 from .extension import PROVIDER

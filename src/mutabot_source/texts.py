@@ -17,8 +17,7 @@ from libcst.metadata import MetadataWrapper, ParentNodeProvider, PositionProvide
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
 from mutabot.languages.registry import front_end_of
-from mutabot.model.alternative import Alternative, Extent, ProgramText, TextPlace
-from mutabot.model.mutant import Span
+from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPlace
 
 from . import registry
 from .extension import CLASSICAL

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path as File
 from typing import Any
 
-from analysis import samples
-from mutabot.analysis.results import Results, read_results
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Kill, Mutant, Outcome, Role, Verdict
+from mutabot.results.results import Results, read_results
+from results import samples
 
 TESTS = tuple(f"tests/test_mission.py::test_{letter}" for letter in "abc")
 #: family and role -> number of mutants, and weights of: killed by check, by exception, by exception before

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
 from comparison.ends import End, end_of
 from comparison.families import WEAKNESSES, FamilyComparison, Share, compare_families
-from mutabot.analysis.results import Results
-from mutabot.analysis.statistics import crossed, wilson
+from mutabot.results.results import Results
+from mutabot.results.statistics import crossed, wilson
+from results import samples
 
 from . import campaigns
 

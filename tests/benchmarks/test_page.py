@@ -16,8 +16,8 @@ from comparison import page as tool
 from comparison.claims import CLAIMS, Stance, decide, difference, difference_text, finding, further
 from comparison.data import comparison_data
 from comparison.families import WEAKNESSES, compare_families
-from mutabot.analysis.statistics import wilson
 from mutabot.report.document import dumps
+from mutabot.results.statistics import wilson
 
 from . import campaigns
 

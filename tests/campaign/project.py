@@ -137,7 +137,7 @@ def write_project(
 @cache
 def no_private_files() -> str | None:
     """Why this system lets no process keep its files to itself, so that none is forked; None if it does."""
-    code = "from mutabot.inside.fork.private_files import _enter_namespace; _enter_namespace()"
+    code = "from mutabot.runtime.isolation.files import _enter_namespace; _enter_namespace()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     return done.stderr.strip().splitlines()[-1] if done.returncode else None
 

@@ -16,7 +16,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.events import (
+from mutabot.campaign.request import Request
+from mutabot.execution.task import Executor, Result, Task
+from mutabot.families import CONTROL
+from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
+from mutabot.model.events import (
     Acted,
     BranchDied,
     BranchEnd,
@@ -29,12 +33,8 @@ from mutabot.border.events import (
     TestStart,
     TextsSeen,
 )
-from mutabot.border.job import Job
-from mutabot.campaign.request import Request
-from mutabot.campaign.workers.task import Executor, Result, Task
-from mutabot.families import CONTROL
-from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
-from mutabot.model.alternative import Sighting
+from mutabot.model.job import Job
+from mutabot.model.mutant import Sighting
 from mutabot.operators.command import Fatal
 
 #: what a robot answers that is asked for a number

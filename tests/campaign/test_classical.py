@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import TestEnd
 from mutabot.campaign.check import check
-from mutabot.campaign.engines.judge import Run, _ruling
 from mutabot.campaign.run import plan_only, run_campaign
+from mutabot.campaign.verdict import Run, _ruling
 from mutabot.errors import NothingToDoError
 from mutabot.model import By, LeftOut, Mutant, Outcome, Role, Site, Span, Verdict
+from mutabot.model.events import TestEnd
 from mutabot.model.outcome import same_end
 from tests.campaign.project import (
     CONFIGURATION,
@@ -161,7 +161,7 @@ def test_a_check_kills(ends: dict[str, Outcome]) -> None:
 def test_a_bomb_kills_by_exception_before_any_command(ends: dict[str, Outcome]) -> None:
     found = end(ends, "far:arm.move_by(0.5 * factor)#1:BSR")
     assert (found.verdict, found.by, found.commands) == (Verdict.KILLED, By.EXCEPTION, 0)
-    assert found.exception == "mutabot.inside.alternatives:Bomb"
+    assert found.exception == "mutabot.runtime.alternatives:Bomb"
 
 
 def test_what_nothing_notices_survives(ends: dict[str, Outcome]) -> None:
@@ -288,7 +288,7 @@ def test_values_computed_at_import_are_mutated_in_processes_of_their_own(
 def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, Outcome]) -> None:
     found = end(ends, "<module>:STEP = 0.4#1:BSR")
     assert (found.verdict, found.by) == (Verdict.KILLED, By.EXCEPTION)
-    assert found.exception == "mutabot.inside.alternatives:Bomb"
+    assert found.exception == "mutabot.runtime.alternatives:Bomb"
     assert found.commands == 0
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.analysis.stored import StoredEvidence
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import recordings_path
 from mutabot.model import Outcome, Verdict
+from mutabot.results.stored import StoredEvidence
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 
 #: an arm that moves at 1 m/s and carries a part, and tells of both

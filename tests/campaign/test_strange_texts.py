@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from campaign.project import Quiet, outcomes, request_for, write_project
-from mutabot.analysis.gate import decide
-from mutabot.analysis.results import read_results
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
+from mutabot.results.gate import decide
+from mutabot.results.results import read_results
 
 MISSION = """
     def approach(arm):

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.analysis.gate import decide
-from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ExitCode
 from mutabot.journal.reader import JournalReader
 from mutabot.model import Verdict
+from mutabot.results.gate import decide
+from mutabot.results.results import Results, read_results
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 
 MISSION = """

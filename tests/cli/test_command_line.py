@@ -14,12 +14,12 @@ import pytest
 import typer
 
 import mutabot
-from analysis import samples
 from mutabot.campaign import run as campaign
 from mutabot.cli.app import _OPTIONS, app, main
 from mutabot.cli.request import request_of
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
+from results import samples
 from tests.processor_time import used
 
 COMMANDS = ("init", "check", "list", "run", "results", "show", "report", "replay")

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
-from analysis.thresholds import journals
 from mutabot.cli.report import FORMATS
+from results import samples
+from results.thresholds import journals
 
 #: what runs a campaign, and what that needs
 NOT_FOR_LOOKING = (
-    "mutabot.border.job", "mutabot.campaign", "mutabot_source", "mutabot.inside",
+    "mutabot.model.job", "mutabot.campaign", "mutabot_source", "mutabot.runtime",
     "mutabot.operators", "mutabot.proposal", "mutabot.config", "mutabot.config.vocabulary", "libcst", "numpy",
     "scipy", "tomllib", "wrapt",
 )  # fmt: skip
@@ -53,7 +53,7 @@ def test_a_report_loads_nothing_that_runs_a_campaign_and_no_other_format(tmp_pat
 
 
 def assert_light(loaded: str) -> None:
-    assert "mutabot.analysis.results" in loaded.split()
+    assert "mutabot.results.results" in loaded.split()
     heavy = {name for name in loaded.split() if name.startswith(NOT_FOR_LOOKING)}
     assert heavy <= DECLARING
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
 from mutabot.cli.app import main
+from results import samples
 
 
 @pytest.mark.parametrize(

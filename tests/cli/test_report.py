@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
 from mutabot.cli.app import main
 from mutabot.cli.report import FORMATS
 from mutabot.report.format import names
+from results import samples
 
 JOURNAL = Path(".mutabot", "journal.sqlite")
 

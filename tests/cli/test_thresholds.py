@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from analysis.thresholds import journals
-from analysis.thresholds.journals import Rungs
-from mutabot.analysis.gate import decide
 from mutabot.cli.app import main
 from mutabot.errors import ExitCode
 from mutabot.model.outcome import Figure
 from mutabot.report.terminal.campaign import print_summary
 from mutabot.report.terminal.console import make_console
+from mutabot.results.gate import decide
+from results.thresholds import journals
+from results.thresholds.journals import Rungs
 
 LADDERS = (Rungs(["SSSSCCC"] * 5), Rungs(["SSSCCCC"] * 5, direction="-"))
 

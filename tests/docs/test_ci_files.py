@@ -16,9 +16,9 @@ import typer.main
 from tests.campaign.project import write_project
 
 import pages
-from mutabot.analysis.results import read_results
 from mutabot.cli.app import app
 from mutabot.journal.journal import Journal
+from mutabot.results.results import read_results
 
 yaml: Any = pytest.importorskip("yaml")
 

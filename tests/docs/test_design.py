@@ -79,17 +79,17 @@ CONFIGURED = """
     vocabulary = ["robot.toml"]
     pytest_args = ["-p", "telling", "-o", "pythonpath=."]
 """
-REPORT, PLAN = "inside.suite.branch.BranchOfSession._report", "journal.journal.Journal.set_plan"
+REPORT, PLAN = "runtime.isolation.fork.BranchOfSession._report", "journal.journal.Journal.set_plan"
 #: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
-    "A call through a mutant": ("replay", ["inside.calls.activation.Activation.perform"]),
-    "A branch": ("branch", [REPORT, "inside.fork.trunk.Trunk._take_token"]),
+    "A call through a mutant": ("replay", ["runtime.interception.active_mutant.Activation.perform"]),
+    "A branch": ("branch", [REPORT, "runtime.isolation.fork_parent.Trunk._take_token"]),
     "An outcome on its way to the screen": ("branch", [REPORT, PLAN]),
     "From a vocabulary's line to a mutant": ("branch", [PLAN]),
 }
 #: steps that are on other ways as well: to be called after the step before is all that is asked of them
 ON_MANY_WAYS = {
-    "border.event_file.unsealed", "inside.event_file.EventFile.send",
+    "model.event_file.unsealed", "runtime.event_file.EventFile.send",
     "report.terminal.progress.Lines.advance",
     "config.document.Document.read",
 }  # fmt: skip

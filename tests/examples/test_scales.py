@@ -11,7 +11,6 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from mutabot.analysis.results import read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
@@ -20,6 +19,7 @@ from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.report.document import document, dumps
+from mutabot.results.results import read_results
 from pages import blocks
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "scales"

@@ -15,12 +15,6 @@ from typing import Any
 
 import pytest
 
-from analysis import samples
-from mutabot.analysis.gate import decide
-from mutabot.analysis.results import find_mutant, read_results
-from mutabot.analysis.stored import open as open_campaign
-from mutabot.analysis.thresholds.thresholds import thresholds_of
-from mutabot.border.events import TestEnd
 from mutabot.cli.app import main
 from mutabot.cli.report import FORMATS
 from mutabot.errors import ExitCode, JournalError
@@ -30,11 +24,17 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.marks import mark_of
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import REACHING
+from mutabot.model.events import TestEnd
 from mutabot.report.format import Material, format_of
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import portable
+from mutabot.results.gate import decide
+from mutabot.results.results import find_mutant, read_results
+from mutabot.results.stored import open as open_campaign
+from mutabot.results.thresholds import thresholds_of
+from results import samples
 
 TIMES, SEED = 1000, 24
 OTHER = replace(samples.SKIP, number=9, site=replace(samples.SKIP.site, occurrence=2))

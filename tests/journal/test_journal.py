@@ -15,8 +15,6 @@ from typing import Any
 
 import pytest
 
-from analysis import samples
-from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import SCHEMA_VERSION, connect, guarded
 from mutabot.journal.files import previous_of
@@ -25,6 +23,8 @@ from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
 from mutabot.journal.store import Store
 from mutabot.model import By, Outcome, Verdict
+from mutabot.model.events import TestEnd
+from results import samples
 
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t", example=(1, -1), divergence=("a", "b"))
 

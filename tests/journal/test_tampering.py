@@ -12,12 +12,12 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
 from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Outcome, Verdict
+from results import samples
 
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t")
 SURVIVED = Outcome("m", 1, Verdict.SURVIVED)

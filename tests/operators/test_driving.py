@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mutabot.model.values.quantity import same
+from mutabot.model.quantity import same
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Reply
-from mutabot.model.values.sameness import changes
+from mutabot.model.quantity import changes
 from mutabot.operators import Example, names, operator
 from mutabot.operators.command import CONTROLS
 from mutabot.operators.passage import Passage, rehearse

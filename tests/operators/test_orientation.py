@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.values.rotation import distance, inverse
+from mutabot.model.units import distance, inverse
 from mutabot.operators import operator
 from mutabot.operators.value import disturbed, the_other_way
 

@@ -47,7 +47,7 @@ ENDS = {
 }
 PACKAGE = {
     "toy_world.py": """
-        from mutabot.border.job import InProcess
+        from mutabot.model.job import InProcess
         from mutabot.extensions import INTERFACE, Extension
         from mutabot.faults import FaultProvider, Planned, Planted
         from mutabot.model import Mutant, Site
@@ -88,7 +88,7 @@ PACKAGE = {
     "toy_world_inside.py": """
         from importlib import import_module
 
-        from mutabot.inside.process_fault import ProcessFault
+        from mutabot.runtime.process_fault import ProcessFault
 
         class Parameter(ProcessFault):
             def start_test(self, test, random):

@@ -52,10 +52,10 @@ SITE = {
         import sys
         from functools import partial
 
-        from mutabot.inside.targets.delivery import deliver
-        from mutabot.inside.targets.target import Means
-        from mutabot.inside.targets.target import Where
-        from mutabot.model.named import Form
+        from mutabot.runtime.targets.messages import deliver
+        from mutabot.runtime.targets.target import Means
+        from mutabot.runtime.targets.target import Where
+        from mutabot.model.operation import Form
 
         assert "toybus" in sys.modules, "hooks are imported before what they hook"
 

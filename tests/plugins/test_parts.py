@@ -45,7 +45,7 @@ PARTS = '''
 
     import typer
 
-    from mutabot.campaign.local import on_this_machine
+    from mutabot.campaign.campaign import on_this_machine
     from mutabot.campaign.request import ExecutorChoice
     from mutabot.cli import options
     from mutabot.cli.request import request_of

@@ -10,9 +10,9 @@ import pytest
 
 from mutabot.campaign.check import check
 from mutabot.config.vocabulary import load
-from mutabot.inside.watching.described import ToldApart
 from mutabot.model import Kind
 from mutabot.proposal import propose
+from mutabot.runtime.watching.described import ToldApart
 from tests.campaign.project import Quiet, request_for
 
 FIELDBUS = """

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from analysis import samples
-from mutabot.analysis.results import MutantResult
-from mutabot.border.codec import to_data
 from mutabot.journal.records import Reaching
 from mutabot.model import LeftOut
+from mutabot.model.codec import to_data
 from mutabot.report.format import Material, format_of
 from mutabot.report.texts import portable
+from mutabot.results.results import MutantResult
+from results import samples
 
 #: where the campaign of the samples says that it ran
 ROOT = "/nowhere"

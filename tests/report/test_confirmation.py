@@ -8,8 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from analysis import samples
-from mutabot.analysis.results import find_mutant
 from mutabot.model import Verdict
 from mutabot.report.document import document
 from mutabot.report.html.folder import campaign_data
@@ -17,7 +15,9 @@ from mutabot.report.html.mutant import mutant_page
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
+from mutabot.results.results import find_mutant
 from report.material import made, stored
+from results import samples
 
 SURVIVORS = [one for one in samples.OUTCOMES if one.verdict is Verdict.SURVIVED]
 TEXT = (

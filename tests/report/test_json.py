@@ -12,8 +12,6 @@ from typing import Any
 import jsonschema
 import pytest
 
-from analysis import samples
-from mutabot.analysis.results import Results, read_results
 from mutabot.errors import ExtensionError
 from mutabot.extensions import Part
 from mutabot.journal.journal import Journal
@@ -21,6 +19,8 @@ from mutabot.model import Diverged, Outcome, Verdict
 from mutabot.model.outcome import Apart, Near
 from mutabot.report.document import document, dumps
 from mutabot.report.terminal.listing import plan_data
+from mutabot.results.results import Results, read_results
+from results import samples
 
 SECOND_LOOK: dict[str, Any] = {
     "verification": {

@@ -12,15 +12,15 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.results import read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import plan_only, run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import MutabotError
-from mutabot.inside.seeds import derive
 from mutabot.journal.journal import Journal
 from mutabot.report.document import data_of, document
+from mutabot.results.results import read_results
+from mutabot.runtime.seeds import derive
 
 from .editor import Facts
 from .graded_editor import OPERATORS as GRADED_OPERATORS

@@ -8,18 +8,17 @@ from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.second_look import Looker
+from mutabot.campaign.engines.repeats import Looker
 from mutabot.campaign.faults.providers import prepare
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.run import open_executor, plan_of
 from mutabot.errors import SelectionError
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Replayed
 from mutabot.model import Mutant
 from mutabot.model.mutant import Place
-
-from .beginning import open_executor, plan_of
-from .campaign import Campaign
-from .request import Progress, Request
 
 
 def replay_one(

@@ -2,6 +2,8 @@
 
 It is made once the baseline is taken, and goes as one to all that give mutants their outcomes. These go into
 the journal, each with the key of what it depends on.
+
+Worker processes on this machine.
 """
 
 from __future__ import annotations
@@ -11,14 +13,14 @@ from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.site_names import Sources
-from mutabot.campaign.workers.task import Executor
+from mutabot.campaign.evidence import Evidence
+from mutabot.campaign.request import Progress, Request
+from mutabot.execution.task import Executor
+from mutabot.execution.workers import Workers
 from mutabot.families import CONTROL
 from mutabot.frozen import frozen
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Outcome
-
-from .evidence import Evidence
-from .request import Progress, Request
 
 
 @dataclass(frozen=True)
@@ -86,3 +88,16 @@ class Sink:
     def add_outcome(self, outcome: Outcome) -> None:
         """Add one outcome; a later one of the same mutant and round takes its place."""
         self.journal.add_outcome(outcome, key=self.key_of(outcome))
+
+
+def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:
+    """As many processes as the request has ``jobs``. Raises JournalError where it cannot write."""
+
+    def unshared(reason: str) -> None:
+        tell(f"each run starts anew, imports and collection included: {reason}")
+
+    def left(processes: list[str]) -> None:
+        more = f" and {len(processes) - 1} more" if len(processes) > 1 else ""
+        tell(f"tests leave processes running, which are ended with them: {processes[0]}{more}")
+
+    return Workers(request.root, request.arguments, request.jobs, unshared, request.pause, left)

@@ -5,24 +5,23 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 
-from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
-from mutabot.campaign.plan.plan import Plan
+from mutabot.campaign.plan import Plan
+from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.opened import OpenedFiles
+from mutabot.campaign.run import at_it, begin, plan_of, selected
 from mutabot.config.configuration import Configuration
 from mutabot.config.vocabulary.load import shipped
 from mutabot.extensions import brought
 from mutabot.families import CATALOGUE
 from mutabot.journal.lock import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
-from mutabot.model.named import MAIN
+from mutabot.model.codec import to_data
+from mutabot.model.operation import MAIN
 from mutabot.operators import load_all
-
-from .beginning import at_it, begin, plan_of, selected
-from .campaign import Campaign
-from .request import CheckReport, ExecutorChoice, Preview, Progress, Request
 
 
 def check(request: Request, progress: Progress) -> CheckReport:

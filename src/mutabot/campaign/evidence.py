@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from mutabot.border.events import TestEnd
+from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
 from mutabot.evidence.story import diverged, noise_between
@@ -15,8 +15,7 @@ from mutabot.evidence.tracks import Seen
 from mutabot.journal.fitting import UNFIT
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import Diverged, Mutant
-
-from .request import Progress, Request
+from mutabot.model.events import TestEnd
 
 #: recordings of the original that are held to compare with
 _HELD = 64

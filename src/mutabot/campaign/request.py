@@ -10,17 +10,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, Self
 
-from mutabot.border.job import Job
-from mutabot.campaign.workers.interruption import Pause
-from mutabot.campaign.workers.task import Executor
 from mutabot.config.configuration import Configuration
 from mutabot.config.options import Sample, Shard
+from mutabot.execution.interruption import Pause
+from mutabot.execution.task import Executor
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
 from mutabot.faults import Project
 from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
+from mutabot.model.job import Job
 
 
 class Preview(Protocol):

@@ -20,10 +20,10 @@ from mutabot.errors import ExitCode
 from mutabot.journal.files import HOME, JOURNAL
 
 if TYPE_CHECKING:
-    from mutabot.analysis.gate import Decision
-    from mutabot.analysis.results import Results
     from mutabot.campaign.request import Progress, Request
     from mutabot.config.configuration import Configuration
+    from mutabot.results.gate import Decision
+    from mutabot.results.results import Results
 
 
 def init(
@@ -42,7 +42,7 @@ def init(
 
 def operators(family: options.Families = None, json: options.Json = False) -> None:
     """List the operators: what each plants, where it applies, and which bugs it stands for."""
-    from mutabot.campaign.plan.plan import listed_rules
+    from mutabot.campaign.plan import listed_rules
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.listing import print_rules
 
@@ -137,7 +137,7 @@ def merge(
 def _decision(
     configuration: Configuration, results: Results, min_score: float | None, missing: list[str]
 ) -> Decision:
-    from mutabot.analysis.gate import Decision
+    from mutabot.results.gate import Decision
 
     if missing:
         return Decision(ExitCode.UNRELIABLE, tuple(missing))

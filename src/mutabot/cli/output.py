@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
-    from mutabot.analysis.gate import Decision
-    from mutabot.analysis.results import Results
     from mutabot.config.configuration import Configuration
     from mutabot.report.terminal.progress import Bar, Lines
+    from mutabot.results.gate import Decision
+    from mutabot.results.results import Results
 
 
 def echo(text: str) -> None:
@@ -57,9 +57,9 @@ def show_results(
     ``everything``: also what the plan left out. ``earlier``: also what earlier campaigns found. ``summary``:
     without the table of mutants.
     """
-    from mutabot.analysis.results import results_at
     from mutabot.report.terminal.campaign import print_results, print_summary
     from mutabot.report.terminal.console import make_console
+    from mutabot.results.results import results_at
 
     found = results_at(path, earlier=earlier)
     if json:
@@ -79,7 +79,7 @@ def decided(configuration: Configuration, results: Results, min_score: float | N
     Args:
         min_score: in percent, in the place of the configured one.
     """
-    from mutabot.analysis.gate import decide
+    from mutabot.results.gate import decide
 
     limit = min_score if min_score is not None else configuration.min_score
     return decide(

@@ -21,9 +21,9 @@ from . import options
 from .output import print_json, tell
 
 if TYPE_CHECKING:
-    from mutabot.analysis.results import Results
-    from mutabot.analysis.stored import Changes
     from mutabot.report.format import Format, Material
+    from mutabot.results.results import Results
+    from mutabot.results.stored import Changes
 
 _FOLDER = Path(__file__).parent.parent / "report" / "formats"
 #: a format is a file; its name is told without loading it, so that `--help` is fast
@@ -72,11 +72,11 @@ def report(
 
     It reads the journal alone, also that of a campaign that was interrupted or still runs.
     """
-    from mutabot.analysis.results import results_at
     from mutabot.report.changes import print_changes
     from mutabot.report.format import Material
     from mutabot.report.terminal.console import make_console
     from mutabot.report.texts import portable
+    from mutabot.results.results import results_at
 
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
@@ -146,10 +146,10 @@ def _check_folder(folder: Path, *, with_changes: bool) -> None:
 
 
 def _write_pages(folder: Path, campaign: Results, journal: Path, root: str | None) -> None:
-    from mutabot.analysis.stored import StoredEvidence
-    from mutabot.analysis.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
     from mutabot.report.texts import Cleaner
+    from mutabot.results.stored import StoredEvidence
+    from mutabot.results.suggested import kept_suggestions
 
     name = Path(root).name if root else ""
     with closing(StoredEvidence(journal)) as evidence:
@@ -172,10 +172,10 @@ def _folder(prefix: str) -> str:
 
 
 def _changes(campaign: Results, journal: Path, old: Path) -> Changes:
-    from mutabot.analysis.results import results_at
-    from mutabot.analysis.stored import changes, journal_at
     from mutabot.journal.files import previous_of
     from mutabot.report.texts import portable
+    from mutabot.results.results import results_at
+    from mutabot.results.stored import changes, journal_at
 
     other = journal_at(old)
     if other.exists() and journal.exists() and other.samefile(journal):

@@ -15,10 +15,10 @@ from mutabot.errors import UsageError, unknown_name_text
 from .options import ENGINES, Running
 
 if TYPE_CHECKING:
-    from mutabot.analysis.results import Results
     from mutabot.campaign.request import ExecutorChoice, Request
     from mutabot.config.configuration import Configuration
     from mutabot.model import Moment
+    from mutabot.results.results import Results
 
 
 def request_of(

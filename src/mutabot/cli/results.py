@@ -20,7 +20,7 @@ from mutabot.journal.files import find_journal
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mutabot.analysis.results import MutantResult, Results
+    from mutabot.results.results import MutantResult, Results
 
 Seeds = Annotated[
     int,
@@ -45,11 +45,11 @@ def show(
     json: options.Json = False,
 ) -> None:
     """Show everything about one mutant."""
-    from mutabot.analysis.results import find_mutant, results_at
-    from mutabot.analysis.stored import StoredEvidence
-    from mutabot.analysis.suggested import kept_suggestions
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.mutant import print_mutant
+    from mutabot.results.results import find_mutant, results_at
+    from mutabot.results.stored import StoredEvidence
+    from mutabot.results.suggested import kept_suggestions
 
     path = find_journal(context.obj)
     found = results_at(path, earlier=True)
@@ -72,12 +72,12 @@ def replay(
     json: options.Json = False,
 ) -> None:
     """Run one mutant of the last campaign again in fresh processes; exit with 4 if it ends otherwise."""
-    from mutabot.analysis.results import find_mutant, read_results
     from mutabot.campaign.again import replay_one
     from mutabot.journal.reader import JournalReader
     from mutabot.report.document import replayed as replayed_data
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.mutant import print_replayed
+    from mutabot.results.results import find_mutant, read_results
 
     path = find_journal(context.obj)
     with JournalReader.open(path) as journal:
@@ -109,10 +109,10 @@ def suggest(
     json: options.Json = False,
 ) -> None:
     """Suggest checks that kill survivors of the last campaign, each proven by running it."""
-    from mutabot.analysis.results import results_at
-    from mutabot.analysis.suggested import keep_suggestions
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.suggested import print_suggestions
+    from mutabot.results.results import results_at
+    from mutabot.results.suggested import keep_suggestions
     from mutabot.suggestion import suggest as find_checks
 
     path = find_journal(context.obj)
@@ -127,7 +127,7 @@ def suggest(
 
 def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:
     """The survivors that were asked for. Raises NothingToDoError if there is none, saying why."""
-    from mutabot.campaign.plan.selection import select
+    from mutabot.campaign.selection import select
 
     if results.graded and not results.mutants:
         raise NothingToDoError("graded mutants have no survivors but thresholds: `mutabot thresholds`")

@@ -17,10 +17,10 @@ from . import options
 from .output import echo, print_json
 
 if TYPE_CHECKING:
-    from mutabot.analysis.results import Results
-    from mutabot.analysis.thresholds.thresholds import Thresholds
+    from mutabot.results.results import Results
+    from mutabot.results.thresholds import Thresholds
 
-#: of ``analysis.thresholds.thresholds``; told without loading it, so that `--help` is fast
+#: of ``results.thresholds``; told without loading it, so that `--help` is fast
 _SORTS = ("loosest", "place", "operator")
 _OWN = "mutabot.toml"
 
@@ -49,10 +49,10 @@ def thresholds(
     json: options.Json = False,
 ) -> None:
     """Show from which magnitude on the tests notice graded faults, the loosest first."""
-    from mutabot.analysis.thresholds.thresholds import thresholds_of
     from mutabot.report.terminal.console import make_console
     from mutabot.report.thresholds.picture import check_picture
     from mutabot.report.thresholds.text import print_thresholds
+    from mutabot.results.thresholds import thresholds_of
 
     if sort not in _SORTS:
         raise UsageError(unknown_name_text("order", sort, _SORTS))
@@ -80,7 +80,7 @@ def thresholds(
 
 def _read(journal: Path) -> Results:
     """What a journal holds. Raises JournalError if that are no graded mutants."""
-    from mutabot.analysis.results import results_at
+    from mutabot.results.results import results_at
 
     found = results_at(journal)
     if not found.ladders:
@@ -92,10 +92,10 @@ def _read(journal: Path) -> Results:
 
 
 def _compare(results: Results, journal: Path, old: Path, *, json: bool) -> None:
-    from mutabot.analysis.stored import journal_at
-    from mutabot.analysis.thresholds.thresholds import compare
     from mutabot.report.terminal.console import make_console
     from mutabot.report.thresholds.text import print_compared
+    from mutabot.results.stored import journal_at
+    from mutabot.results.thresholds import compare
 
     other = journal_at(old)
     if other.exists() and other.samefile(journal):

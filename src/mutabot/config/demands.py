@@ -11,8 +11,8 @@ from pydantic import AfterValidator, Field
 from mutabot.errors import unknown_name_text
 from mutabot.model import Kind
 from mutabot.model.graded import OFFSET, Demand, parse_amount
-from mutabot.model.values.quantity import DIMENSIONS, MEASURED, WHOLE
-from mutabot.model.values.units import UNITS, Dimension, dimension_of
+from mutabot.model.quantity import DIMENSIONS, MEASURED, WHOLE
+from mutabot.model.units import UNITS, Dimension, dimension_of
 
 from .mistakes import Place
 from .table import Table

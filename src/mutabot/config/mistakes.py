@@ -10,9 +10,9 @@ from typing import Any, ParamSpec, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from mutabot.border.events import Problem
 from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, unknown_name_text
 from mutabot.limits import shortened
+from mutabot.model.events import Problem
 
 from .document import Document
 from .toml_lines import KeyPath

@@ -14,7 +14,7 @@ from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model.outcome import Apart, Diverged, Near
-from mutabot.model.values.quantity import is_number, told_apart, value_text
+from mutabot.model.quantity import is_number, told_apart, value_text
 
 from .recording import Block, Moment, Recording, Told
 from .tracks import TURNED, Seen, approaches, differences, noise_of

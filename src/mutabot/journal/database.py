@@ -10,8 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from mutabot.border.storable import printable
 from mutabot.errors import JournalError
+from mutabot.model.codec import printable
 
 SCHEMA_VERSION = 5
 

@@ -7,9 +7,9 @@ import math
 import zlib
 from typing import Any, TypeVar
 
-from mutabot.border.codec import from_data
-from mutabot.border.events import TestEnd
 from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict
+from mutabot.model.codec import from_data
+from mutabot.model.events import TestEnd
 
 from .records import FACTS, BaselineTest, Budgeted, ControlEnd, Reaching, ShardOf
 

@@ -17,9 +17,9 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.events import TestEnd
 from mutabot.journal.lock import WriterLock, refuse_tracked
 from mutabot.model import LeftOut, Mutant, Outcome
+from mutabot.model.events import TestEnd
 
 from .database import (
     ADOPT,

@@ -10,8 +10,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 
-from mutabot.border.codec import from_data
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.model.codec import from_data
 
 from .database import ATTEMPT_KEY, FINISHED_KEY, LAST
 from .fitting import (

@@ -7,9 +7,9 @@ from dataclasses import field
 from hashlib import blake2b
 from typing import Any
 
-from mutabot.border.events import TestEnd
 from mutabot.frozen import frozen
 from mutabot.model import Outcome, Verdict, Vocabulary
+from mutabot.model.events import TestEnd
 from mutabot.model.outcome import same_end
 
 #: keys of the journal's meta

@@ -16,11 +16,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from mutabot.border.codec import to_data
-from mutabot.border.storable import storable
 from mutabot.errors import JournalError
 from mutabot.journal.files import previous_of
 from mutabot.journal.lock import WriterLock, refuse_tracked
+from mutabot.model.codec import storable, to_data
 
 from .database import (
     OF_ONE_ROW,

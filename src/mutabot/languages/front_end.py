@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from types import FrameType
 from typing import NamedTuple, Protocol
 
-from mutabot.model.alternative import Extent
+from mutabot.model.mutant import Extent
 
 
 class Position(NamedTuple):

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Mapping
 from types import CodeType, FrameType
 
-from mutabot.model.alternative import Extent
+from mutabot.model.mutant import Extent
 
 from .front_end import Name, Position
 

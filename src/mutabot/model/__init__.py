@@ -10,38 +10,38 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.model.values.path import Path as Path
-    from mutabot.model.values.quantity import Kind as Kind
-    from mutabot.model.values.quantity import Mode as Mode
-    from mutabot.model.values.quantity import Quantity as Quantity
+    from mutabot.model.call import Call as Call
+    from mutabot.model.call import Middleware as Middleware
+    from mutabot.model.call import Mishap as Mishap
+    from mutabot.model.call import NotToldError as NotToldError
+    from mutabot.model.call import Proceed as Proceed
+    from mutabot.model.call import Reply as Reply
+    from mutabot.model.mutant import FATAL as FATAL
+    from mutabot.model.mutant import IDENTITY as IDENTITY
+    from mutabot.model.mutant import Alternative as Alternative
+    from mutabot.model.mutant import Choice as Choice
+    from mutabot.model.mutant import Instrumentation as Instrumentation
+    from mutabot.model.mutant import Moment as Moment
+    from mutabot.model.mutant import Mutant as Mutant
+    from mutabot.model.mutant import ProgramText as ProgramText
+    from mutabot.model.mutant import Role as Role
+    from mutabot.model.mutant import Sighting as Sighting
+    from mutabot.model.mutant import Site as Site
+    from mutabot.model.mutant import Span as Span
+    from mutabot.model.mutant import TextPlace as TextPlace
+    from mutabot.model.operation import ANY as ANY
+    from mutabot.model.operation import Case as Case
+    from mutabot.model.operation import Clock as Clock
+    from mutabot.model.operation import Operation as Operation
+    from mutabot.model.operation import Pattern as Pattern
+    from mutabot.model.operation import Probe as Probe
+    from mutabot.model.operation import Vocabulary as Vocabulary
+    from mutabot.model.operation import Wait as Wait
+    from mutabot.model.path import Path as Path
+    from mutabot.model.quantity import Kind as Kind
+    from mutabot.model.quantity import Mode as Mode
+    from mutabot.model.quantity import Quantity as Quantity
 
-    from .alternative import FATAL as FATAL
-    from .alternative import IDENTITY as IDENTITY
-    from .alternative import Alternative as Alternative
-    from .alternative import Choice as Choice
-    from .alternative import Instrumentation as Instrumentation
-    from .alternative import ProgramText as ProgramText
-    from .alternative import Sighting as Sighting
-    from .alternative import TextPlace as TextPlace
-    from .call import Call as Call
-    from .call import Middleware as Middleware
-    from .call import Mishap as Mishap
-    from .call import NotToldError as NotToldError
-    from .call import Proceed as Proceed
-    from .call import Reply as Reply
-    from .mutant import Moment as Moment
-    from .mutant import Mutant as Mutant
-    from .mutant import Role as Role
-    from .mutant import Site as Site
-    from .mutant import Span as Span
-    from .operation import ANY as ANY
-    from .operation import Case as Case
-    from .operation import Clock as Clock
-    from .operation import Operation as Operation
-    from .operation import Pattern as Pattern
-    from .operation import Probe as Probe
-    from .operation import Vocabulary as Vocabulary
-    from .operation import Wait as Wait
     from .outcome import By as By
     from .outcome import Check as Check
     from .outcome import Compared as Compared
@@ -53,9 +53,10 @@ if TYPE_CHECKING:
     from .outcome import Verdict as Verdict
 
 _HOMES = {
-    "values.path": ("Path",),
-    "values.quantity": ("Kind", "Mode", "Quantity"),
-    "alternative": (
+    "path": ("Path",),
+    "quantity": ("Kind", "Mode", "Quantity"),
+    "call": ("Call", "Middleware", "Mishap", "NotToldError", "Proceed", "Reply"),
+    "mutant": (
         "FATAL",
         "IDENTITY",
         "Alternative",
@@ -64,9 +65,12 @@ _HOMES = {
         "ProgramText",
         "Sighting",
         "TextPlace",
+        "Moment",
+        "Mutant",
+        "Role",
+        "Site",
+        "Span",
     ),
-    "call": ("Call", "Middleware", "Mishap", "NotToldError", "Proceed", "Reply"),
-    "mutant": ("Moment", "Mutant", "Role", "Site", "Span"),
     "operation": ("ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait"),
     "outcome": ("By", "Check", "Compared", "Diverged", "Kill", "LeftOut", "Looked", "Outcome", "Verdict"),
 }

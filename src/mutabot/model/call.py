@@ -1,15 +1,18 @@
-"""Calls and replies as operators see them: quantities and their values, nothing of Python syntax."""
+"""Calls and replies as operators see them: quantities and their values, nothing of Python syntax.
+
+Where randomness starts: every (campaign seed, round, test) has a seed of its own.
+"""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
-from mutabot.model.values.quantity import Quantity, Value
-
-from .operation import Operation, Pattern
+from mutabot.model.operation import Operation, Pattern
+from mutabot.model.quantity import Quantity, Value
 
 
 class Mishap(StrEnum):
@@ -67,8 +70,8 @@ def _no_refusal(error: BaseException) -> bool:
 class Reply:
     """What an operation answered, with the values it reads.
 
-    What comes by itself (a message to a callback, see ``model.named.COMING``) may also come later, several
-    times or not at all. An answer that the program waits for may come later or not at all.
+    A message to a callback (see ``model.operation.COMING``) may also come later, several times or not at all.
+    An answer that the program waits for may come later or not at all.
 
     Attributes:
         values: value of each read quantity by name, in the quantity's unit.
@@ -196,3 +199,18 @@ Proceed = Callable[[Call], Awaitable[Reply]]
 #: A mutant at work: ``mutated(call, proceed) -> reply``. It is a coroutine function so that one text
 #: serves plain and async operations alike.
 Middleware = Callable[[Call, Proceed], Awaitable[Reply]]
+
+
+#: environment variables for tests that run without a campaign: the seed of every test alike; or the number of
+#: a round, from 1 as they are printed, and the campaign's seed, which give every test its seed in that round
+SEED_VARIABLE, ROUND_VARIABLE, CAMPAIGN_SEED_VARIABLE = (
+    "MUTABOT_SEED", "MUTABOT_ROUND", "MUTABOT_CAMPAIGN_SEED",
+)  # fmt: skip
+#: the campaign's seed unless configuration or command line say otherwise
+DEFAULT_SEED = 1
+
+
+def derive(*parts: object) -> int:
+    """A whole number of 32 bits that depends on all parts and on nothing else."""
+    text = "\x1f".join(str(part) for part in parts)
+    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=4).digest(), "big")

@@ -14,10 +14,10 @@ from enum import StrEnum
 
 from mutabot.frozen import frozen
 from mutabot.limits import shortened
-from mutabot.model.values.quantity import Kind
-from mutabot.model.values.units import UNITS, convert_difference, dimension_of
+from mutabot.model.mutant import Mutant, fits, is_like
+from mutabot.model.quantity import Kind
+from mutabot.model.units import UNITS, convert_difference, dimension_of
 
-from .mutant import Mutant, fits, is_like
 from .outcome import Outcome, Verdict
 
 #: the operator that is meant if a demand names none: a value is off by the magnitude

@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 
 from mutabot.families import CONTROL
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
-from mutabot.model.named import COMING, Form
-from mutabot.model.values.quantity import Value
+from mutabot.model.operation import COMING, Form
+from mutabot.model.quantity import Value
 
 from .magnitudes import Ladder, sized
 from .operator import Context, Example, Operator, Subject, Unchanged

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.values.quantity import Value
+from mutabot.model.quantity import Value
 
 from .magnitudes import Ladder, sized
 from .operator import Example, Subject, quantity_of

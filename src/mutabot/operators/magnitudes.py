@@ -16,7 +16,7 @@ from dataclasses import replace
 
 from mutabot.frozen import frozen
 from mutabot.model import Kind, Quantity
-from mutabot.model.values.units import Dimension, dimension_of
+from mutabot.model.units import Dimension, dimension_of
 
 from .operator import Subject
 

@@ -32,7 +32,7 @@ from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from mutabot.families import ROBOT
 from mutabot.model import Call, Middleware, Operation, Pattern, Quantity
-from mutabot.model.values.quantity import Value
+from mutabot.model.quantity import Value
 
 
 class Published(NamedTuple):

@@ -12,8 +12,7 @@ from typing import Any, TypeVar
 
 from mutabot.errors import OperatorError
 from mutabot.model import Call, Middleware, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value, same
-from mutabot.model.values.sameness import are_same
+from mutabot.model.quantity import Value, are_same, same
 
 T = TypeVar("T")
 

@@ -12,10 +12,8 @@ from typing import Any, ClassVar, TypeVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.rotation import Quaternion, distance, from_rotation_vector, inverse, product
-from mutabot.model.values.sameness import SAME_ORIENTATION, TURNED_ROUND, is_same
-from mutabot.model.values.units import convert
+from mutabot.model.quantity import SAME_ORIENTATION, TURNED_ROUND, Value, is_same
+from mutabot.model.units import Quaternion, convert, distance, from_rotation_vector, inverse, product
 
 from .magnitudes import Ladder, sized
 from .operator import Context, Operator, Subject, Unchanged, quantity_of

@@ -14,9 +14,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from mutabot.border.watch import WATCH_VARIABLE
-from mutabot.campaign.workers.processes import command, kill_group
+from mutabot.execution.processes import command, kill_group
 from mutabot.extensions import libraries, told_to_processes
+from mutabot.model.job import WATCH_VARIABLE
 
 from .layout import Layout
 from .named.seen import Use, is_finite, uses
@@ -143,7 +143,7 @@ def _run(layout: Layout, extra: list[str], limit: float) -> Observed:
         folder = Path(name)
         order, output, log = folder / "watch.json", folder / "seen.json", folder / "log.txt"
         order.write_text(json.dumps(_order(layout, output)), encoding="utf-8")
-        own = ["-p", "mutabot.inside.watching.plugin", "--assert=plain"]
+        own = ["-p", "mutabot.runtime.watching.plugin", "--assert=plain"]
         words = [*command([*layout.arguments, *extra], folder), *own]
         overdue = _wait(words, layout.root, order, log, limit)
         said = log.read_text(encoding="utf-8", errors="replace")

@@ -9,9 +9,6 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.score import Group
-from mutabot.analysis.stored import Changes, Ends
 from mutabot.report.terminal.campaign import WIDE
 from mutabot.report.terminal.console import (
     add_row,
@@ -23,6 +20,9 @@ from mutabot.report.terminal.console import (
     short_place,
 )
 from mutabot.report.texts import escaped, table
+from mutabot.results.results import MutantResult
+from mutabot.results.score import Group
+from mutabot.results.stored import Changes, Ends
 
 from .texts import rounds_text
 

@@ -1,6 +1,6 @@
 """The results document: all facts of a campaign as JSON; docs/results.schema.json says what is in it.
 
-Reports are functions of ``analysis.results.Results``, which holds the same facts.
+Reports are functions of ``results.results.Results``, which holds the same facts.
 """
 
 from __future__ import annotations
@@ -10,20 +10,19 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from mutabot.analysis.chance import Confirmed, Estimate, false_kills, false_survivors
-from mutabot.analysis.facts import Encoder
-from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import Group, RoundScores, Score
-from mutabot.analysis.stored import Changes, Ends
-from mutabot.analysis.suggested import Suggestion, Suggestions
-from mutabot.analysis.thresholds import ladders, thresholds
-from mutabot.analysis.thresholds.words import line_of
 from mutabot.errors import ExtensionError
 from mutabot.extensions import Part, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Figure
 from mutabot.report.texts import status_of
+from mutabot.results import ladders, thresholds
+from mutabot.results.results import Encoder, MutantResult, Results
+from mutabot.results.score import Group, RoundScores, Score
+from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
+from mutabot.results.stored import Changes, Ends
+from mutabot.results.suggested import Suggestion, Suggestions
+from mutabot.results.thresholds import line_of
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1

@@ -14,12 +14,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.results import Results
-from mutabot.analysis.stored import Changes
 from mutabot.errors import ExtensionError, UsageError, unknown_name_text
 from mutabot.extensions import Part, brought
 from mutabot.frozen import frozen
 from mutabot.model import Span
+from mutabot.results.results import Results
+from mutabot.results.stored import Changes
 
 
 @frozen

@@ -13,10 +13,10 @@ from enum import Enum
 from itertools import groupby
 from typing import Any, TypeVar
 
-from mutabot.analysis.divergence import first_line
-from mutabot.analysis.results import MutantResult, Results
 from mutabot.journal.records import Reaching
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
+from mutabot.results.divergence import first_line
+from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from mutabot.model.values.steps import step_of
+from mutabot.model.quantity import step_of
 from mutabot.suggestion.checks import Band, Check, Expected, band_of, is_number, rounded
 from mutabot.suggestion.measure import Measured, Read
 from mutabot.suggestion.project import Project

@@ -23,8 +23,8 @@ from dataclasses import dataclass, field
 from statistics import NormalDist, fmean
 from typing import Any, TypeGuard
 
-from mutabot.analysis.thresholds.ladders import lower_limit
 from mutabot.frozen import frozen
+from mutabot.results.ladders import lower_limit
 from mutabot.suggestion.measure import Read
 from mutabot.suggestion.readings import WAY, Reading
 from mutabot.suggestion.style import Addition, Place, equal, within

@@ -12,7 +12,7 @@ from mutabot.suggestion.project import Project
 from mutabot.suggestion.readings import fixture, helper, watcher
 from mutabot.suggestion.style import OTHER, UNITTEST, Addition, Place
 
-_AT_END = "from mutabot.inside.readings.noted import at_end as _mutabot_at_end"
+_AT_END = "from mutabot.runtime.observation.noted import at_end as _mutabot_at_end"
 
 
 def edited(

@@ -6,16 +6,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.events import TestEnd
 from mutabot.campaign.again import as_it_is_now
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.beginning import open_executor
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import first_engine
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.run import open_executor
 from mutabot.model import Mutant, Probe
+from mutabot.model.events import TestEnd
 from mutabot.suggestion.edits import edited
 from mutabot.suggestion.project import Project
 from mutabot.suggestion.readings import ORACLE, PROBE, Reading, of_objects, readings_at
@@ -25,7 +25,7 @@ from .project import copy_of
 from .readings import Command, commands_of
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
-_NOTED = "mutabot.inside.readings.noted"
+_NOTED = "mutabot.runtime.observation.noted"
 _PROBE = f"{_NOTED}:values"
 
 #: what was read at the end of one test: expression to number, text or truth value

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.events import TestEnd
-from mutabot.campaign.beginning import open_executor
 from mutabot.campaign.engines.choice import first_engine
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.task import Task, death
+from mutabot.campaign.run import open_executor, run_campaign
 from mutabot.errors import MutabotError
+from mutabot.execution.task import Task, death
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
+from mutabot.model.events import TestEnd
 from mutabot.suggestion.checks import Check
 from mutabot.suggestion.edits import edited
 from mutabot.suggestion.project import Project

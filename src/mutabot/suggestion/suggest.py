@@ -12,12 +12,12 @@ from itertools import combinations
 from math import comb
 from typing import TypeVar
 
-from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions, Unsolved
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import NothingToDoError
 from mutabot.frozen import frozen
 from mutabot.model import Mutant
+from mutabot.results.results import MutantResult, Results
+from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
 
 from .candidates import candidates, part_of_way, tolerance_of
 from .checks import Check, decimal, is_number, unseen

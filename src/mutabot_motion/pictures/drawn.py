@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw
 
 from mutabot.evidence.recording import Kind, Recording
 from mutabot.evidence.tracks import Path
-from mutabot.model.values import rotation
+from mutabot.model import units
 from mutabot_motion.shown import end_of, things_in
 
 from .lettering import letters
@@ -134,7 +134,7 @@ def _draw_thing(draw: ImageDraw.ImageDraw, view: _View, path: Path, row: int, co
     turn, corners = (w, x, y, z), {}
     for signs in product((-0.5, 0.5), repeat=3):
         a, b, c = (part * edge for part, edge in zip(signs, size, strict=True))
-        _, *offset = rotation.product(rotation.product(turn, (0.0, a, b, c)), rotation.inverse(turn))
+        _, *offset = units.product(units.product(turn, (0.0, a, b, c)), units.inverse(turn))
         corners[signs] = view.pixel([one + other for one, other in zip(place, offset, strict=True)])
     for one, other in combinations(corners, 2):
         if sum(map(ne, one, other)) == 1:  # they differ along one edge

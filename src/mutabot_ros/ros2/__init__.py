@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from mutabot.inside.targets.middleware import Names
-from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation
+from mutabot.runtime.targets.target import Finding, Names
 from mutabot_ros._patches import Patches
 
 from ._actions import hook as hook_actions

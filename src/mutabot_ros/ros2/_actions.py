@@ -8,9 +8,9 @@ from typing import Any
 
 import wrapt
 
-from mutabot.inside.targets.delivery import deliver
-from mutabot.inside.targets.middleware import Names
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
+from mutabot.runtime.targets.messages import deliver
+from mutabot.runtime.targets.target import Names
 from mutabot_ros._patches import Patches, code_of
 
 from . import _nodes

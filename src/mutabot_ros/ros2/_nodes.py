@@ -9,9 +9,8 @@ from importlib import import_module
 from types import CodeType
 from typing import Any
 
-from mutabot.inside.processes.member import note_node
-from mutabot.inside.targets.middleware import Names
-from mutabot.inside.targets.target import Means, Where
+from mutabot.runtime.processes.member import note_node
+from mutabot.runtime.targets.target import Means, Names, Where
 from mutabot_ros._patches import Patches
 
 from . import _clock

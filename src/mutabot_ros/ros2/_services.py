@@ -7,8 +7,8 @@ from collections.abc import Awaitable, Callable
 from importlib import import_module
 from typing import Any
 
-from mutabot.inside.targets.middleware import Names
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
+from mutabot.runtime.targets.target import Names
 from mutabot_ros._patches import Patches
 
 from . import _nodes

@@ -5,9 +5,9 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from mutabot.inside.targets.delivery import deliver
-from mutabot.inside.targets.middleware import Names
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
+from mutabot.runtime.targets.messages import deliver
+from mutabot.runtime.targets.target import Names
 from mutabot_ros._patches import Patches, code_of
 
 from . import _nodes

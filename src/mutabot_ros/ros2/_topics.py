@@ -10,10 +10,9 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from mutabot.inside.targets.delivery import anew, deliver, wait_for
-from mutabot.inside.targets.middleware import Names
-from mutabot.inside.targets.target import Handler
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
+from mutabot.runtime.targets.messages import anew, deliver, wait_for
+from mutabot.runtime.targets.target import Handler, Names
 from mutabot_ros._patches import Patches, code_of
 from mutabot_ros.ros2 import _nodes
 

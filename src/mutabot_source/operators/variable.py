@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot.model.alternative import Alternative
+from mutabot.model.mutant import Alternative
 from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
 
 

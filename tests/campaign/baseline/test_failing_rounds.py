@@ -12,10 +12,10 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError, UnstableError
-from mutabot.inside.suite.plain_round import PlainRound
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
-from mutabot.model.seed import derive
+from mutabot.model.call import derive
+from mutabot.runtime.plain_round import PlainRound
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, request_for, write_project
 from tests.campaign.scripted import CHECKED, Script
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.comparing.observation import Event, Observation, compare, strides_of
+from mutabot.campaign.comparison import Event, Observation, compare, strides_of
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.forkserver import _template
+from mutabot.execution.forkserver import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary
+from mutabot.model.events import TestEnd
 from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_branches, outcomes, request_for, write_project
 
 MISSION = """

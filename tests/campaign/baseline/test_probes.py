@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.beginning import at_it, begin
 from mutabot.campaign.check import check
-from mutabot.campaign.run import run_campaign
+from mutabot.campaign.run import at_it, begin, run_campaign
 from mutabot.errors import ConfigurationError
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_branches, request_for, write_project

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.run import run_campaign
-from mutabot.inside.seeds import derive
 from mutabot.model import Verdict
+from mutabot.runtime.seeds import derive
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 
 MISSION = """

@@ -8,17 +8,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.analysis.results import read_results
-from mutabot.campaign.budget.budget import Batches, in_order, run_in_batches
+from mutabot.campaign.budget import Batches, in_order, run_in_batches
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.interruption import (
-    OutOfTimeError,
-    interruptible,
-    interruptions_kept,
-    limited,
-)
+from mutabot.execution.interruption import OutOfTimeError, interruptible, interruptions_kept, limited
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Role, Site, Span, Verdict
+from mutabot.results.results import read_results
 from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.campaign.comparing.observation import Observation, compare
+from mutabot.campaign.comparison import Observation, compare
 from mutabot.model import Probe
 from mutabot.model.outcome import Figure, improvement
 

@@ -7,14 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.comparing.observation import (
-    OTHER_WORLD,
-    Difference,
-    Event,
-    Observation,
-    compare,
-    farthest,
-)
+from mutabot.campaign.comparison import OTHER_WORLD, Difference, Event, Observation, compare, farthest
 from mutabot.model import Probe
 
 BOX = Probe("scene:box", tolerance=0.001)

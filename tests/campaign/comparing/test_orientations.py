@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.unfit import refuse_unfit
-from mutabot.campaign.comparing.observation import OTHER_WORLD, Difference, Event, Observation, compare
+from mutabot.campaign.comparison import OTHER_WORLD, Difference, Event, Observation, compare
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Mode, Operation, Path, Probe, Quantity, Role, Site, Span, Vocabulary
+from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Place
 from tests.campaign.project import CONFIGURATION, REPLAY, run, write_project
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import BranchEnd
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.workers import Workers
+from mutabot.execution.workers import Workers
 from mutabot.model import Outcome, Verdict
+from mutabot.model.events import BranchEnd
 from tests.campaign.engines.test_branching import facts
 from tests.campaign.project import Quiet, outcomes, request_for, run, write_project
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.border import stack
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.task import Task
 from mutabot.errors import BaselineError, ControlError
+from mutabot.execution.task import Task
+from mutabot.model import process_time
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 from tests.campaign.scripted import Died, Script
 
@@ -88,10 +88,10 @@ Current thread 0x00007f0000000002 (most recent call first):
   File "/venv/site-packages/_pytest/python.py", line 159 in pytest_pyfunc_call
   File "/venv/site-packages/pluggy/_callers.py", line 121 in _multicall
 """
-    assert stack.calls_in_words(text, "/home/me/cell") == (
+    assert process_time.calls_in_words(text, "/home/me/cell") == (
         "robot.py:7 wait, called from contextlib.py:81 inner, called from tests/test_a.py:3 test_it"
     )
-    assert stack.calls_in_words("", "/home/me/cell") is None
+    assert process_time.calls_in_words("", "/home/me/cell") is None
 
 
 def test_a_baseline_that_hangs_says_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

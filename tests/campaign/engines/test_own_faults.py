@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.engines import fresh, judge, trunk
+from mutabot.campaign import verdict
+from mutabot.campaign.engines import fork_parent, fresh
 from mutabot.errors import JournalError
 from mutabot.model import Verdict
 from tests.campaign.project import run, write_project
@@ -36,14 +37,14 @@ def project(tmp_path: Path, script: Script) -> Path:
 def test_a_mutant_that_cannot_be_judged_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch, engine: str
 ) -> None:
-    judged = judge.judge
+    judged = verdict.judge
 
     def broken(campaign: Any, one: Any) -> Any:
         if one.mutant.id == CHOSEN:
             raise RuntimeError("broken")
         return judged(campaign, one)
 
-    monkeypatch.setattr(judge, "judge", broken)
+    monkeypatch.setattr(verdict, "judge", broken)
     found = run(project, engine=engine)
     assert found[CHOSEN].verdict is Verdict.ERROR
     assert "mutabot could not judge what it saw of it: RuntimeError: broken" in (found[CHOSEN].message or "")
@@ -69,14 +70,14 @@ def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
 def test_a_report_of_a_branch_that_cannot_be_used_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = trunk._Trunk._branch_ended
+    ended = fork_parent._Trunk._branch_ended
 
     def broken(self: Any, line: Any) -> Any:
         if line.mutant == CHOSEN:
             raise RuntimeError("broken")
         return ended(self, line)
 
-    monkeypatch.setattr(trunk._Trunk, "_branch_ended", broken)
+    monkeypatch.setattr(fork_parent._Trunk, "_branch_ended", broken)
     found = run(project, engine="branch")
     assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
 
@@ -87,7 +88,7 @@ def test_a_test_of_the_trunk_that_cannot_be_used_is_left_to_replay(
     def broken(self: Any, end: Any) -> Any:
         raise RuntimeError("broken")
 
-    monkeypatch.setattr(trunk._Trunk, "_test_ended", broken)
+    monkeypatch.setattr(fork_parent._Trunk, "_test_ended", broken)
     found = run(project, engine="auto")
     assert {one.engine for one in found.values()} == {"replay"}
     assert {one.verdict for one in found.values()} == {Verdict.KILLED, Verdict.SURVIVED}
@@ -97,6 +98,6 @@ def test_an_error_of_the_disk_is_none_of_the_mutant(project: Path, monkeypatch: 
     def full(campaign: Any, one: Any) -> Any:
         raise JournalError("the disk is full", path="journal")
 
-    monkeypatch.setattr(judge, "judge", full)
+    monkeypatch.setattr(verdict, "judge", full)
     with pytest.raises(JournalError):
         run(project, engine="branch")

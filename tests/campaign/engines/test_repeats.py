@@ -9,18 +9,18 @@ from typing import Any
 
 import pytest
 
-from mutabot.analysis.chance import false_kills
-from mutabot.analysis.results import Results, read_results
-from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines import repeats
-from mutabot.campaign.engines.doubt import Doubts
+from mutabot.campaign.engines.repeats import Doubts
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Repeated
 from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
+from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Place
+from mutabot.results.results import Results, read_results
+from mutabot.results.statistics import false_kills
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
 from tests.campaign.scripted import CHECKED, End, Run, Script
 

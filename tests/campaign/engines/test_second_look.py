@@ -8,15 +8,15 @@ from typing import Any
 
 import pytest
 
-from mutabot.analysis.gate import decide
-from mutabot.analysis.results import Results, read_results
-from mutabot.campaign.engines.second_look import choose, unconfirmed
+from mutabot.campaign.engines.repeats import choose, unconfirmed
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.errors import UnstableError
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Verdict
 from mutabot.model.outcome import same_end
+from mutabot.results.gate import decide
+from mutabot.results.results import Results, read_results
 from tests.campaign.project import CONFIGURATION, DEPENDENT, Quiet, outcomes, request_for, write_project
 from tests.campaign.scripted import CHECKED, CRASHED, Script
 

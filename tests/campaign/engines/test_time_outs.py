@@ -12,13 +12,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.border import time_used
-from mutabot.border.time_used import TimeUsed
-from mutabot.campaign.engines.judge import Death, Run, _ruling
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers import workers
-from mutabot.campaign.workers.workers import Workers
-from mutabot.model import Outcome, Verdict
+from mutabot.campaign.verdict import Death, Run, _ruling
+from mutabot.execution import workers
+from mutabot.execution.workers import Workers
+from mutabot.model import Outcome, Verdict, process_time
+from mutabot.model.process_time import TimeUsed
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 
 PROCESSOR = min(os.sched_getaffinity(0))
@@ -162,7 +161,7 @@ def test_on_a_quiet_machine_a_time_out_is_one(
 def test_a_mutant_that_never_gets_its_time_is_no_time_out(
     tmp_path: Path, begun: list[tuple[bool, int]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(time_used, "MOST", 1.2)
+    monkeypatch.setattr(process_time, "MOST", 1.2)
     monkeypatch.setattr(workers, "MOST", 1.2)
     with loops(16):
         found, _ = campaign(tmp_path, "compute(1000)", "replay")
@@ -186,21 +185,21 @@ def test_time_in_the_queue_is_not_used() -> None:
         used = TimeUsed.from_now([one])
         while used.left(1.0, [one]) > 0:  # until it has been on the processor for that long
             pass
-        passed = time_used.monotonic() - used.began
+        passed = process_time.monotonic() - used.began
         assert passed > 2.0
         assert used.hindrance([one]) is not None
         assert used.left(2 * passed, [one]) > 0
-        assert used.left(passed / time_used.MOST, [one]) <= 0  # whatever it had
+        assert used.left(passed / process_time.MOST, [one]) <= 0  # whatever it had
 
 
 def test_time_asleep_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(time_used, "MOST", 1e9)  # whatever else would end the loop
+    monkeypatch.setattr(process_time, "MOST", 1e9)  # whatever else would end the loop
     process = subprocess.Popen(["sleep", "600"])
     try:
         used = TimeUsed.from_now([process.pid])
         while used.left(0.5, [process.pid]) > 0:
             pass
-        assert time_used.monotonic() - used.began >= 0.5
+        assert process_time.monotonic() - used.began >= 0.5
     finally:
         process.kill()
         process.wait()

@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis import samples
-from mutabot.border.codec import from_data
-from mutabot.campaign.plan.plan import draw
+from mutabot.campaign.plan import draw
 from mutabot.campaign.run import run_campaign
 from mutabot.config.options import Sample
 from mutabot.errors import UsageError
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import DRAWING, Drawing
 from mutabot.model import Mutant, Role
+from mutabot.model.codec import from_data
+from results import samples
 from tests.campaign.project import Quiet, request_for, write_project
 
 SIZES = ("10%", "33 %", "0.01%", "100%", "1", "7", "50", "100000")

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.plan.selection import select
+from mutabot.campaign.selection import select
 from mutabot.errors import SelectionError
 from mutabot.faults import brought_providers
 from mutabot.model.mutant import is_like
 from mutabot.operators import registry
-from tests.analysis.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP
+from tests.results.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP
 
 
 @pytest.mark.parametrize(

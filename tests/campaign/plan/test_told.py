@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from mutabot import operators
-from mutabot.analysis.stored import StoredCampaign
-from mutabot.analysis.stored import open as open_campaign
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.run import run_campaign
 from mutabot.families import ROBOT
 from mutabot.report.document import document
+from mutabot.results.stored import StoredCampaign
+from mutabot.results.stored import open as open_campaign
 from tests.campaign.project import Quiet, request_for, write_project
 
 pytestmark = pytest.mark.needs("source")

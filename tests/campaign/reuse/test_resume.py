@@ -16,7 +16,6 @@ from typing import Any
 import pytest
 
 import mutabot
-from mutabot.analysis.results import Results, read_results
 from mutabot.campaign import run as campaign
 from mutabot.campaign.reuse.keys import changes
 from mutabot.campaign.reuse.snapshot import Snapshot
@@ -24,6 +23,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError, JournalError, NothingToDoError, SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
+from mutabot.results.results import Results, read_results
 from tests.campaign.project import Quiet, request_for, write_project
 from tests.campaign.scripted import CHECKED, End, Run, Script
 from tests.journal.edited import edited

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.analysis.results import read_results
 from mutabot.campaign.run import plan_only, run_campaign
 from mutabot.campaign.sharding.merge import merge
 from mutabot.config.options import Shard
@@ -17,6 +16,7 @@ from mutabot.errors import MergeError, UsageError
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import Recordings, recordings_path
 from mutabot.model import Outcome
+from mutabot.results.results import read_results
 from tests.campaign.project import Quiet, request_for, write_project
 from tests.campaign.test_evidence import MISSION, ROBOT, TESTS, VOCABULARY
 from tests.journal.edited import edited

@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.analysis.gate import decide
-from mutabot.analysis.results import read_results
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.since.since import Revision
 from mutabot.errors import ExitCode, UsageError
 from mutabot.journal.journal import Journal
+from mutabot.results.gate import decide
+from mutabot.results.results import read_results
 from tests.campaign.project import Quiet, fingerprint, request_for, write_project
 from tests.campaign.scripted import CHECKED, End, Run, Script
 

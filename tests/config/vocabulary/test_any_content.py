@@ -10,11 +10,11 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.config.configuration import Settings, load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import ConfigurationError
 from mutabot.model import Vocabulary
+from mutabot.model.codec import from_data, to_data
 
 COMMON = settings(
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]

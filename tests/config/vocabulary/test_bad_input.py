@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import Problem
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load, problem_error
 from mutabot.errors import ConfigurationError, UnknownNameError, VocabularyError
+from mutabot.model.events import Problem
 
 MOVE = 'call = "robot:Arm.move"\n'
 GOOD_OPERATION = "[[operation]]\n" + MOVE

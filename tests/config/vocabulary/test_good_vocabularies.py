@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.config.vocabulary import load
 from mutabot.config.vocabulary.load import shipped
 from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary
-from mutabot.model.values.answer import restore
+from mutabot.model.answer import restore
+from mutabot.model.codec import from_data, to_data
 from pages import blocks
 
 PAGE = Path(__file__).parents[3] / "docs" / "vocabulary.md"

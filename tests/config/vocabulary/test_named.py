@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.config.vocabulary import load
 from mutabot.errors import ConfigurationError
 from mutabot.model import Mode, Operation, Vocabulary
-from mutabot.model.named import Form, Named, settings_of
+from mutabot.model.codec import from_data, to_data
+from mutabot.model.operation import Form, Named, settings_of
 from mutabot.operators.operator import with_operation
 from pages import blocks
 

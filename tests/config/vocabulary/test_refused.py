@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.model.named import Refused
+from mutabot.model.operation import Refused
 from tests.config.vocabulary.test_named import loaded, refused
 
 CALL = 'call = "robot:Arm.move"\n'

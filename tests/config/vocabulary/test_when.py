@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.config.vocabulary import load
 from mutabot.model import Operation, Vocabulary
+from mutabot.model.codec import from_data, to_data
 from tests.config.vocabulary.test_named import loaded, refused
 
 CALL = 'call = "robot:Arm.send"\n'

@@ -19,7 +19,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mutabot.model.values.answer import LIMIT, NotKeptError, keep, restore
+from mutabot.model.answer import LIMIT, NotKeptError, keep, restore
 
 Stamped = namedtuple("Stamped", "time pose")  # as users write them
 

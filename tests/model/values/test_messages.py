@@ -17,7 +17,7 @@ import pytest
 import mutabot
 from mutabot.errors import PathError
 from mutabot.model import Call, Kind, Operation, Path, Quantity, Reply
-from mutabot.model.values.quantity import same
+from mutabot.model.quantity import same
 from mutabot.operators.operator import Subject
 from mutabot.operators.passage import rehearse
 from mutabot.operators.registry import operator

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.model.values.notation import Notation
+from mutabot.model.notation import Notation
 
 numbers = st.integers(-(10**12), 10**12) | st.floats(-1e12, 1e12)
 words = st.text("abcXYZ09_", min_size=1, max_size=8)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from mutabot.errors import PathError
 from mutabot.model import Path
-from mutabot.model.values.path import Step
+from mutabot.model.path import Step
 
 Point = namedtuple("Point", ["x", "y"])
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from mutabot.model.values.rotation import apart, distance, inverse, is_euler_order, to_quaternion, to_values
+from mutabot.model.units import apart, distance, inverse, is_euler_order, to_quaternion, to_values
 
 ORDERS = [
     "".join(axes) for axes in combinations("xyz", repeat=3) if axes[0] != axes[1] and axes[1] != axes[2]

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from mutabot.model import Kind, Mode, Path, Quantity
-from mutabot.model.values.rotation import from_rotation_vector, to_euler
-from mutabot.model.values.sameness import are_same, changes, is_same
+from mutabot.model.quantity import are_same, changes, is_same
+from mutabot.model.units import from_rotation_vector, to_euler
 
 YAW_TO = Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", mode=Mode.TO)
 YAW_BY = replace(YAW_TO, mode=Mode.BY)

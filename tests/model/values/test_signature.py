@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.model.values.signature import described_in, parse_signature, spell_signature, takes_anything
+from mutabot.model.signature import described_in, parse_signature, spell_signature, takes_anything
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mutabot.model import Kind, Path, Quantity
-from mutabot.model.values.quantity import seconds_of, with_seconds
+from mutabot.model.quantity import seconds_of, with_seconds
 
 STAMPS = [SimpleNamespace(sec=12, nanosec=250_000_000), SimpleNamespace(secs=12, nsecs=250_000_000)]
 STAMP = Quantity("stamp", Path.parse(".header.stamp", rooted=False), Kind.STAMP, unit="s")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.model.values.units import UNITS, Dimension, convert, convert_difference, dimension_of
+from mutabot.model.units import UNITS, Dimension, convert, convert_difference, dimension_of
 
 values = st.floats(-1e9, 1e9)
 pairs = st.sampled_from([(a, b) for a in UNITS for b in UNITS if dimension_of(a) is dimension_of(b)])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mutabot.model import Call, Kind, Mode, Operation, Path, Quantity
-from mutabot.model.values.quantity import Value
+from mutabot.model.quantity import Value
 from mutabot.operators import Subject, operator
 from mutabot.operators.passage import rehearse
 from mutabot_cell.geometry import rotation_from_euler

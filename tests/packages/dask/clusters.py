@@ -13,9 +13,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.codec import to_data
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.model.codec import to_data
 from mutabot_dask.link import Link
 from mutabot_dask.local import LocalCluster
 from mutabot_dask.settings import ClusterSettings

@@ -105,11 +105,11 @@ ATTACKS = (
 #: a worker that says of every unit that mutants were killed which it was not asked for
 FORGER = """
 from dataclasses import replace
-from mutabot.border.events import BranchEnd, SessionEnd
-from mutabot.border.events import TestEnd
+from mutabot.model.events import BranchEnd, SessionEnd
+from mutabot.model.events import TestEnd
 from mutabot_dask import far
 from mutabot_dask.unit import Answer, Unit
-from mutabot.campaign.workers.task import Result
+from mutabot.execution.task import Result
 
 honest = far.run_unit
 

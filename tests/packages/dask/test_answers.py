@@ -14,8 +14,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.codec import to_data
-from mutabot.border.events import (
+from mutabot.campaign.baseline.baseline import observation
+from mutabot.campaign.comparison import compare
+from mutabot.execution.task import Result, Task
+from mutabot.model import Mutant, Role, Site, Span, Vocabulary
+from mutabot.model.codec import to_data
+from mutabot.model.events import (
     Acted,
     BranchEnd,
     Called,
@@ -26,11 +30,7 @@ from mutabot.border.events import (
     TestStart,
     event_to_data,
 )
-from mutabot.border.job import Branching, Job
-from mutabot.campaign.baseline.observed import observation
-from mutabot.campaign.comparing.observation import compare
-from mutabot.campaign.workers.task import Result, Task
-from mutabot.model import Mutant, Role, Site, Span, Vocabulary
+from mutabot.model.job import Branching, Job
 from mutabot.model.mutant import Place
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.dispatch import Dispatch

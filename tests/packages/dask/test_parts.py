@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.workers.workers import Workers
+from mutabot.execution.workers import Workers
 from tests.campaign.project import Quiet, request_for, run_campaign
 from tests.packages.dask.clusters import ends, write
 

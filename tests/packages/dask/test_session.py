@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mutabot.border.job import Job
-from mutabot.campaign.workers.task import Task
+from mutabot.execution.task import Task
 from mutabot.model import Vocabulary
+from mutabot.model.job import Job
 from mutabot_dask.far import Session
 from mutabot_dask.unit import Answer, Ground, Unit
 

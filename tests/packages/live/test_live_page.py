@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from analysis import samples
 from mutabot.journal.journal import Journal
 from mutabot_live.pages import Pages
 from mutabot_live.server import Feed, Server
+from results import samples
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="requirements-reports.lock is not installed")
 

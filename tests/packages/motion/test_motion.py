@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
 from mutabot.cli.app import main
 from mutabot.evidence.recording import to_bytes
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from packages.motion.sample import recording
+from results import samples
 
 JOURNAL = Path(".mutabot", "journal.sqlite")
 SURVIVOR = samples.MUTANTS[1]

@@ -1,3 +1,3 @@
-from tests.inside.conftest import make_stage
+from tests.runtime.conftest import make_stage
 
 __all__ = ["make_stage"]

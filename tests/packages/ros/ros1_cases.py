@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import Problem
-from mutabot.model.values.answer import keep, restore
+from mutabot.model.answer import keep, restore
+from mutabot.model.events import Problem
 from mutabot_ros import _master
-from tests.inside.stage import Make, Stage
+from tests.runtime.stage import Make, Stage
 
 rospy = pytest.importorskip("rospy")
 std_srvs = pytest.importorskip("std_srvs.srv")

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import Problem
-from mutabot.border.job import Idle
-from mutabot.inside.calls.answers import LOST
-from mutabot.model.values.answer import keep, restore
-from tests.inside.stage import Make, Stage
+from mutabot.model.answer import keep, restore
+from mutabot.model.events import Problem
+from mutabot.model.job import Idle
+from mutabot.runtime.interception.adapter import LOST
+from tests.runtime.stage import Make, Stage
 
 rclpy = pytest.importorskip("rclpy")
 std_srvs = pytest.importorskip("std_srvs.srv")

@@ -12,8 +12,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from mutabot.inside.text.import_hook import ImportHook
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
+from mutabot.runtime.program_text.import_hook import ImportHook
 from mutabot_source.nodes import same_program
 from mutabot_source.operator import Example
 from mutabot_source.refine import refine

@@ -15,12 +15,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.codec import from_data, to_data
-from mutabot.inside.text.import_hook import ImportHook
-from mutabot.inside.text.instrument import instrumented
-from mutabot.inside.text.loading import compile_tree
-from mutabot.inside.text.switches import Alternatives, error_of
 from mutabot.model import Instrumentation
+from mutabot.model.codec import from_data, to_data
+from mutabot.runtime.program_text.import_hook import ImportHook
+from mutabot.runtime.program_text.instrument import instrumented
+from mutabot.runtime.program_text.loading import compile_tree
+from mutabot.runtime.program_text.switches import Alternatives, error_of
 from mutabot_source.refine import merge, refine
 from mutabot_source.texts import find_texts
 from tests.packages.source.build import choices, imported, load, spliced, text_of

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
-from mutabot.analysis.stored import Changes, changes
 from mutabot.model import By, Outcome, Verdict
 from mutabot.report.changes import change_lines, print_changes
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.texts import portable
+from mutabot.results.stored import Changes, changes
 from report.formats.test_markdown import cells
 from report.material import HOSTILE, made, shown, stored, with_text
+from results import samples
 
 PAGE = Path(__file__).parents[3] / "docs" / "reports.md"
 GONE = samples.mutant(6, "misread", samples.READ, ".x", "tracker.box_position: reads another")

@@ -12,11 +12,11 @@ from xml.etree import ElementTree as Xml
 import pytest
 
 import schemas
-from analysis import samples
 from mutabot.errors import UsageError
 from mutabot.report.format import Material, format_of, names
 from mutabot.report.texts import portable
 from report.material import HOSTILE, ROOT, made, stored, with_text
+from results import samples
 
 validators = pytest.importorskip("jsonschema.validators", reason="requirements-reports.lock is not installed")
 

@@ -10,10 +10,10 @@ from urllib.parse import unquote
 import pytest
 
 import mutabot
-from analysis import samples
 from mutabot.model import By, Outcome, Verdict
 from mutabot.report.texts import portable
 from report.material import HOSTILE, made, stored, with_text
+from results import samples
 
 _COMMAND = re.compile(r"::(warning|notice) ([^:]*)::(.*)")
 

@@ -8,9 +8,9 @@ from xml.etree import ElementTree as Xml
 import pytest
 
 import mutabot
-from analysis import samples
 from mutabot.model import Outcome, Verdict
 from report.material import made, stored
+from results import samples
 
 
 def xml(campaign: mutabot.StoredCampaign) -> Xml.Element:

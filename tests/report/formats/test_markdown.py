@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from markdown_it import MarkdownIt
 
-from analysis import samples
 from mutabot.model import LeftOut, Outcome, Verdict
 from mutabot.report.texts import portable
 from report.material import HOSTILE, made, shown, stored, with_text
+from results import samples
 
 
 def cells(text: str) -> list[list[str]]:

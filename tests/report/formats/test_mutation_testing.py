@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 import mutabot
-from analysis import samples
 from mutabot.model import By, Mutant, Outcome, Verdict
 from report.material import made, stored
+from results import samples
 
 
 @pytest.fixture

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 import mutabot
-from analysis import samples
 from mutabot.model import Outcome, Verdict
 from report.material import made, stored, with_text
+from results import samples
 
 
 @pytest.fixture

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
-from mutabot.analysis.stored import COLUMNS, rows
 from mutabot.report.texts import portable
+from mutabot.results.stored import COLUMNS, rows
 from report.material import HOSTILE, made, stored, with_text
+from results import samples
 
 
 def read_csv(text: str) -> list[dict[str, str]]:

@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from analysis import samples
-from mutabot.analysis.stored import StoredEvidence
 from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model.outcome import Apart, Diverged, Near
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.texts import Cleaner, portable
+from mutabot.results.stored import StoredEvidence
 from report.material import with_text
+from results import samples
 
 #: what a source file, a message or a name may hold to harm whoever opens the report
 EVIL = (

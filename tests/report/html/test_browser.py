@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 import schemas
-from analysis import samples
 from report.html import reports
+from results import samples
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="requirements-reports.lock is not installed")
 

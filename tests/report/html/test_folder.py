@@ -10,15 +10,15 @@ import pytest
 from hatchling.builders.wheel import WheelBuilder
 
 import mutabot
-from analysis import samples
 from mutabot import operators
-from mutabot.analysis.suggested import Suggestions
 from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html import folder as folders
 from mutabot.report.html.folder import Rows, check_folder
+from mutabot.results.suggested import Suggestions
 from report.html import reports
 from report.terminal.test_suggested import CHECK
+from results import samples
 
 ROOT = Path(__file__).parents[3]
 

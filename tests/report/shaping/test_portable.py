@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
 from mutabot.journal.records import Disagreement, Reaching, Verification
 from mutabot.report.texts import portable
 from report.material import HOSTILE, stored, with_text
+from results import samples
 
 
 @pytest.mark.parametrize("text", [*HOSTILE, "'/home/me/arm.urdf'", "\x1b[1mbold"])

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from analysis import samples
-from mutabot.analysis.results import MutantResult
 from mutabot.model import By, Outcome, Verdict
 from mutabot.report.texts import rounds_text, status_of
+from mutabot.results.results import MutantResult
+from results import samples
 
 K, T, S, N = Verdict.KILLED, Verdict.TIMEOUT, Verdict.SURVIVED, Verdict.NOT_COVERED
 R, I, O, U, E = Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT, Verdict.UNSTABLE, Verdict.ERROR  # noqa: E741

@@ -12,8 +12,6 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console
 
-from analysis import samples
-from mutabot.analysis.results import Results, find_mutant, read_results
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Span, Verdict
@@ -21,6 +19,8 @@ from mutabot.report.terminal.campaign import print_results, print_summary
 from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
 from mutabot.report.terminal.listing import print_plan
 from mutabot.report.terminal.mutant import print_mutant
+from mutabot.results.results import Results, find_mutant, read_results
+from results import samples
 
 WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
-from mutabot.analysis.results import find_mutant, read_results
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
+from mutabot.results.results import find_mutant, read_results
+from results import samples
 
 
 def shown(folder: Path, mutant: Mutant, width: int = 120) -> str:

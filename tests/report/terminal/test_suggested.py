@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
-from mutabot.analysis.results import MutantResult, find_mutant, read_results
-from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.terminal.suggested import check_on_page
+from mutabot.results.results import MutantResult, find_mutant, read_results
+from mutabot.results.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
+from results import samples
 
 CHECK = Suggestion(
     test="tests/test_box.py::test_arrives",

@@ -12,10 +12,6 @@ from xml.etree import ElementTree
 
 import pytest
 
-from analysis import samples
-from analysis.thresholds import journals
-from analysis.thresholds.journals import Rungs
-from mutabot.analysis.thresholds.thresholds import SORTS, Thresholds, compare, thresholds_of
 from mutabot.cli.thresholds import _SORTS
 from mutabot.model import Operation, Role, Vocabulary
 from mutabot.model.outcome import Figure
@@ -23,6 +19,10 @@ from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.thresholds.picture import picture_of, svg
 from mutabot.report.thresholds.text import print_compared, print_thresholds, suggested_toml
+from mutabot.results.thresholds import SORTS, Thresholds, compare, thresholds_of
+from results import samples
+from results.thresholds import journals
+from results.thresholds.journals import Rungs
 
 FIVE = 5
 NOISY = Vocabulary(

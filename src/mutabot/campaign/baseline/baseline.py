@@ -3,6 +3,8 @@
 It tells which tests reach which site with which values, how long they take, and whether they can be
 relied on. What differs between the two runs of a round is flaky, and is set aside before any mutant runs.
 What calls of one place returned says what a mutant that leaves them out answers.
+
+What workers saw of tests, with the places of their calls, as it is compared.
 """
 
 from __future__ import annotations
@@ -12,10 +14,10 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.events import Remark, TestEnd
-from mutabot.border.job import Budget, Idle, InProcess, RefusedAt
-from mutabot.campaign.comparing.observation import Observation, as_steady
+from mutabot.campaign.baseline.site_names import Sources
+from mutabot.campaign.comparison import Event, Observation, as_steady
 from mutabot.errors import MutabotError
+from mutabot.execution.task import Result
 from mutabot.families import CALLS, CONTROL, MESSAGES
 from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
@@ -31,12 +33,14 @@ from mutabot.model import (
     Span,
     Vocabulary,
 )
+from mutabot.model.answer import is_plain
+from mutabot.model.events import Remark, SiteSeen, TestEnd
+from mutabot.model.job import Budget, Idle, InProcess, RefusedAt
 from mutabot.model.mutant import Place
-from mutabot.model.values.answer import is_plain
 from mutabot.operators.command import Identity
 
 #: what a control is at a place of a fault that is put in place by its provider's own code
-_CONTROLS = "mutabot.inside.process_fault"
+_CONTROLS = "mutabot.runtime.process_fault"
 
 
 @dataclass(slots=True)
@@ -128,7 +132,7 @@ class NoAnswerError(MutabotError):
 
 @dataclass(slots=True)
 class RecordedAnswers:
-    """The notes of what calls of one place returned, as ``inside.calls.answers`` writes them.
+    """The notes of what calls of one place returned, as ``runtime.interception.adapter`` writes them.
 
     Attributes:
         first: note of the first call that returned, by test (``Idle.key``).
@@ -404,3 +408,49 @@ class Baseline(Original):
 def cost(end: TestEnd) -> tuple[float, int]:
     """What a test costs, in a measure that is the same in every run: wall clocks are not."""
     return (end.simulated or 0.0, end.operations)
+
+
+def places_of(result: Result, sources: Sources) -> dict[int, Place]:
+    """The places a worker reported, by their index in its traces."""
+    return {seen.index: place_of(seen, sources) for seen in result.sites}
+
+
+def place_of(seen: SiteSeen, sources: Sources) -> Place:
+    """The place at which something was seen."""
+    return Place(sources.site(seen), seen.operation, seen.pattern)
+
+
+def observations_of(result: Result, sources: Sources) -> dict[str, Observation]:
+    """What is compared of each test of a run."""
+    places = places_of(result, sources)
+    return {end.test: observation(end, places) for end in result.ends}
+
+
+def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
+    """What is compared of a test."""
+    events = []
+    for index, written, read, _ in end.trace:
+        place = places[index]
+        events.append(Event(place.key, written, read, (place.operation, place.pattern)))
+    prepared, called = end.returned[: end.prepared], end.returned[end.prepared :]
+    return Observation(
+        events, end.probes, end.truncated, end.unread, end.outcome, prepared, called, end.moments
+    )
+
+
+def refused_of(result: Result) -> dict[str, tuple[RefusedAt, ...]]:
+    """The calls that the robot refused in a run, by test."""
+    sites = {seen.index: seen for seen in result.sites}
+    found: dict[str, tuple[RefusedAt, ...]] = {}
+    for end in result.ends:
+        numbers: dict[int, set[int]] = {}
+        for index, number in end.refused_calls:
+            numbers.setdefault(index, set()).add(number)
+        if numbers:
+            found[end.test] = tuple(
+                RefusedAt(
+                    sites[index].span, sites[index].operation, sites[index].pattern, tuple(sorted(those))
+                )
+                for index, those in numbers.items()
+            )
+    return found

@@ -12,23 +12,30 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.events import Event, Problem, Remark, TestEnd
-from mutabot.border.job import Job
-from mutabot.campaign.comparing.observation import moments_in, note_moments, strides_of
+from mutabot.campaign.baseline.baseline import (
+    Baseline,
+    Hit,
+    RecordedAnswers,
+    cost,
+    observations_of,
+    places_of,
+    refused_of,
+)
+from mutabot.campaign.comparison import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.workers.task import ABNORMAL, Executor, Result, Task, at, death, said_in
 from mutabot.config.vocabulary import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
+from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
 from mutabot.frozen import frozen
 from mutabot.model import Instrumentation, Probe, ProgramText, Span, Vocabulary
+from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
+from mutabot.model.events import Event, Problem, Remark, TestEnd
+from mutabot.model.job import Job
 from mutabot.model.mutant import Place
-from mutabot.model.seed import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.operators import load_all
 
-from .baseline import Baseline, Hit, RecordedAnswers, cost
-from .observed import observations_of, places_of, refused_of
 from .site_names import Sources
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance

@@ -6,15 +6,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.border.events import Problem, Remark
-from mutabot.campaign.comparing.orientations import parts_of, readings_of
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.comparison import parts_of, readings_of
 from mutabot.campaign.request import Progress
 from mutabot.config.vocabulary import problem_error
 from mutabot.extensions import brought
 from mutabot.model import Operation, Pattern, Quantity, Vocabulary
-from mutabot.model.values.quantity import is_number, value_text
-
-from .baseline import Baseline
+from mutabot.model.events import Problem, Remark
+from mutabot.model.quantity import is_number, value_text
 
 
 @dataclass(slots=True)

@@ -13,12 +13,12 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import accumulate
 
-from mutabot.border.codec import from_data, to_data
 from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.faults.demanded import apart
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import CONFIRMATION, LET_THROUGH, Confirmation, is_wrong, run_short
 from mutabot.model import Mutant, Outcome
+from mutabot.model.codec import from_data, to_data
 
 from .choice import first_engine, repetitions_for, run_trials
 from .fresh import REPLAY

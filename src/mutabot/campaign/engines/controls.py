@@ -18,8 +18,9 @@ from dataclasses import dataclass, replace
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.faults.providers import provider
-from mutabot.campaign.workers.task import Task
+from mutabot.campaign.verdict import judge
 from mutabot.errors import ControlError
+from mutabot.execution.task import Task
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
@@ -27,7 +28,6 @@ from mutabot.model.mutant import Place
 from mutabot.operators.command import Fatal, Identity
 
 from .fresh import REPLAY, run_of, task
-from .judge import judge
 
 IDENTITY, FATAL = Identity.name, Fatal.name
 #: what a control is run for that is forked before any test

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.events import TestEnd
-from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.observed import observation, places_of
+from mutabot.campaign.baseline.baseline import Baseline, observation, places_of
 from mutabot.campaign.baseline.site_names import Sources
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.comparing.observation import moments_in
-from mutabot.campaign.workers.task import Result, Task, death
+from mutabot.campaign.comparison import moments_in
+from mutabot.campaign.verdict import Death, Run, judged, not_judged
+from mutabot.execution.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.events import TestEnd
 from mutabot.model.outcome import in_words
 
 from .engine import Trial
-from .judge import Death, Run, judged, not_judged
 
 #: the engine that is the reference
 REPLAY = "replay"

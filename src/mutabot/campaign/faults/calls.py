@@ -18,7 +18,7 @@ from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparatio
 from mutabot.frozen import frozen
 from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Site, Vocabulary
 from mutabot.model.mutant import Place, When
-from mutabot.model.values.quantity import is_number, is_reading_of
+from mutabot.model.quantity import is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all, operator
 from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
@@ -101,7 +101,7 @@ TRIED = 200
 
 
 class CallFaults(FaultProvider):
-    """Operators on calls, which act where a call is intercepted (``mutabot/inside/calls``)."""
+    """Operators on calls, which act where a call is intercepted (``mutabot/runtime/calls``)."""
 
     name = CALLS
     families: ClassVar[tuple[str, ...]] = (ROBOT, GRADED, CATALOGUE)

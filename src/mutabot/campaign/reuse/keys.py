@@ -24,14 +24,14 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from mutabot.border.codec import to_data
-from mutabot.border.job import Idle
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.pieces.project import Project
 from mutabot.campaign.pieces.reach import Reach, Reached
 from mutabot.campaign.request import Request
 from mutabot.model import Mutant, Outcome, Vocabulary
+from mutabot.model.codec import to_data
+from mutabot.model.job import Idle
 
 from .snapshot import _HASH, State, _digest_of, read
 
@@ -382,6 +382,6 @@ def versions() -> dict[str, str]:
 def _own_code() -> str:
     """Of a mutabot that is being worked on, the version alone does not tell what it does."""
     home = Path(mutabot.__file__).parent
-    core = (home / part for part in ("model", "operators", "inside", "campaign"))
+    core = (home / part for part in ("model", "operators", "runtime", "campaign", "execution"))
     files = sorted(file for one in (*core, *home.parent.glob("mutabot_*")) for file in one.rglob("*.py"))
     return _digest([(file.relative_to(home.parent).as_posix(), _digest_of(file)) for file in files])

@@ -7,8 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.codec import from_data, to_data
-from mutabot.campaign.plan.plan import renumbered
+from mutabot.campaign.plan import renumbered
 from mutabot.campaign.reuse.keys import changes
 from mutabot.errors import MergeError
 from mutabot.frozen import frozen
@@ -29,6 +28,7 @@ from mutabot.journal.records import (
     ShardOf,
 )
 from mutabot.model import Mutant
+from mutabot.model.codec import from_data, to_data
 
 #: facts of a campaign that decide which outcomes it has, and their names on the command line
 _FACTS = {

@@ -16,10 +16,9 @@ from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 
-from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.plan.plan import Plan
+from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, says_same
 from mutabot.campaign.reuse.reuse import GONE, Earlier, Pair, Reused
@@ -34,6 +33,7 @@ from mutabot.journal.lock import refuse_tracked
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import SINCE, Since
 from mutabot.model import Mutant
+from mutabot.model.codec import to_data
 
 _OPTION = "--since"
 

@@ -13,7 +13,7 @@ from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
 from mutabot.faults import need_vocabulary
 from mutabot.model import Clock, Kind, Operation, Probe, Quantity, Vocabulary, Wait
-from mutabot.model.values.quantity import READING_OF, is_reading_of
+from mutabot.model.quantity import READING_OF, is_reading_of
 
 from .operations import read_clock, read_operations, read_probe, read_wait
 from .schema import VocabularyTable

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from mutabot.model.named import WRITTEN, Form
+from mutabot.model.operation import WRITTEN, Form
 
 #: the keys that name an operation on a middleware, each with the forms that it stands for, the main one
 #: first; a topic's depend on its ``direction``

@@ -8,8 +8,8 @@ from typing import Any
 
 from mutabot.config.mistakes import Place, shown
 from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Probe, Quantity, Wait
-from mutabot.model.named import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
-from mutabot.model.values.signature import parse_signature
+from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
+from mutabot.model.signature import parse_signature
 
 from .names import CALLABLE, NAMING, SIDES, Sides, forms_of, name_of, type_of
 from .patterns import read_patterns

@@ -8,7 +8,7 @@ from typing import Any
 from mutabot.config.mistakes import Place
 from mutabot.errors import nearest_name
 from mutabot.model import Path, Pattern, Quantity
-from mutabot.model.values.notation import Field, Notation
+from mutabot.model.notation import Field, Notation
 
 from .names import CALLABLE, Sides
 from .quantities import read_quantities, read_quantity

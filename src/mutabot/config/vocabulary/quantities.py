@@ -8,7 +8,7 @@ from typing import Any
 
 from mutabot.config.mistakes import Place, shown
 from mutabot.model import Kind, Path, Quantity
-from mutabot.model.values.path import Step
+from mutabot.model.path import Step
 
 from .names import CALLABLE, Sides
 from .rules import default_unit, default_values, faults, slice_of, split_axes, spread, steps_of

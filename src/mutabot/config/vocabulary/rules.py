@@ -12,10 +12,9 @@ from typing import Any
 from mutabot.config.mistakes import shown
 from mutabot.errors import nearest_name
 from mutabot.model import Kind, Mode, Path
-from mutabot.model.values.path import Step
-from mutabot.model.values.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
-from mutabot.model.values.rotation import QUATERNION_ORDERS, is_euler_order
-from mutabot.model.values.units import UNITS, Dimension, dimension_of
+from mutabot.model.path import Step
+from mutabot.model.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
+from mutabot.model.units import QUATERNION_ORDERS, UNITS, Dimension, dimension_of, is_euler_order
 
 from .schema import QuantityTable, is_target
 

@@ -3,8 +3,8 @@
 What the values mean together is checked where the tables are turned into operations. An operation that is no
 Python callable, which is named ``module:qualified.name``, has a key of its own in place of ``call``, as those
 with a name on a middleware have (``vocabulary.named``), and the kind that finds it at run time in
-``Operation.kind`` (see ``inside.targets.target``). What a command answers while the robot does nothing may be
-made by a callable.
+``Operation.kind`` (see ``runtime.targets.target``). A callable may make what a command answers while the
+robot does nothing.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def _check_scalar(value: Any) -> Any:
 
 #: a callable or an exception, ``module:qualified.name``
 Target = Annotated[str, AfterValidator(check_target)]
-#: the units of time in ``model.values.units``
+#: the units of time in ``model.units``
 TimeUnit = Literal["s", "ms", "us", "min"]
 #: what an argument or a part of an answer can be compared with
 Scalar = Annotated[Any, AfterValidator(_check_scalar)]
@@ -206,7 +206,7 @@ class VocabularyTable(Table):
 
 
 def read_idle(place: Place, raw: Any) -> Any:
-    """``idle = …`` as data that ``model.values.answer.restore`` understands; mistakes are noted.
+    """``idle = …`` as data that ``model.answer.restore`` understands; mistakes are noted.
 
     A TOML value is the answer itself; ``{ call = "module:name" }`` names a function that makes it.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.named import Form, Named, settings_of
+from mutabot.model.operation import Form, Named, settings_of
 
 X = Quantity("x", Path.parse("message.x", rooted=True), Kind.TRANSLATION, "x", "m", mode=Mode.TO)
 #: the same, as it is read

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.units import convert
+from mutabot.model.quantity import Value
+from mutabot.model.units import convert
 from mutabot.operators.examples import COMMANDS, PARAMETERS, UNITS, changed, reading, unchanged, writing
 from mutabot.operators.operator import Context, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, like, map_numbers, middle_of, within

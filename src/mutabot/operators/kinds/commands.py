@@ -8,9 +8,8 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.notation import Notation
-from mutabot.model.values.quantity import WHOLE, Value
-from mutabot.model.values.sameness import are_same
+from mutabot.model.notation import Notation
+from mutabot.model.quantity import WHOLE, Value, are_same
 from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.examples import (
     CLOSE,

@@ -11,10 +11,8 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
-from mutabot.model.values.sameness import is_same
-from mutabot.model.values.units import convert
+from mutabot.model.quantity import Value, is_same
+from mutabot.model.units import Quaternion, convert, from_euler, inverse, product
 from mutabot.operators.examples import FRAMES, MOVE_TO, SIGNS, changed, reading, unchanged, writing
 from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (

@@ -14,9 +14,8 @@ from typing import ClassVar
 
 from mutabot.families import GRADED
 from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.rotation import from_rotation_vector, product
-from mutabot.model.values.units import Dimension, convert, convert_difference
+from mutabot.model.quantity import Value
+from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
 from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import (
     LOCATE,

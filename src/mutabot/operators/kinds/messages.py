@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 from mutabot.families import MIDDLEWARE
 from mutabot.model import Call, Mishap, Proceed, Reply
-from mutabot.model.named import COMING, WRITTEN, Form
-from mutabot.model.values.quantity import Value
+from mutabot.model.operation import COMING, WRITTEN, Form
+from mutabot.model.quantity import Value
 from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
 from mutabot.operators.magnitudes import Ladder
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
-from mutabot.model.values.quantity import READING_OF, Value
+from mutabot.model.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
 from mutabot.operators.operator import Context, Need, Published, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (

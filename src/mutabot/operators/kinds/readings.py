@@ -12,7 +12,7 @@ from typing import ClassVar
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import MEASURED, PLAIN, WHOLE, Value
+from mutabot.model.quantity import MEASURED, PLAIN, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
 from mutabot.operators.examples import LOCATE, SENSORS, TIMING, X, changed, reading, unchanged
 from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of

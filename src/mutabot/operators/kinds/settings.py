@@ -7,9 +7,8 @@ from typing import ClassVar
 
 from mutabot.families import MIDDLEWARE
 from mutabot.model import Kind, Quantity
-from mutabot.model.named import DEFAULT, Form
-from mutabot.model.values.quantity import Value
-from mutabot.model.values.sameness import is_same
+from mutabot.model.operation import DEFAULT, Form
+from mutabot.model.quantity import Value, is_same
 from mutabot.operators.command import form_of
 from mutabot.operators.examples import changed, unchanged
 from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
 from mutabot.proposal.compared import Unreached
 from mutabot.proposal.guess import Guess
 from mutabot.proposal.named.meanings import Place, is_nothing, meaning

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
 from mutabot.proposal.guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
 from mutabot.proposal.named.seen import Part, Use
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.model.named import Form
+from mutabot.model.operation import Form
 
 #: different values that are kept of each part
 _MOST_VALUES = 8

@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 
-from mutabot.analysis.stored import COLUMNS, rows
 from mutabot.report.format import Format, Material
+from mutabot.results.stored import COLUMNS, rows
 
 
 def make(material: Material) -> str:

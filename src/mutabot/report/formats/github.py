@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mutabot.analysis.results import MutantResult
 from mutabot.report.format import Format, Material
 from mutabot.report.texts import survivor_text
+from mutabot.results.results import MutantResult
 
 #: annotations of each level; the tenth notice says what is not shown
 _LIMITS = {"warning": 10, "notice": 9}

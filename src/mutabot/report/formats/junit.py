@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from xml.etree import ElementTree as Xml
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.score import Group, groups_of
 from mutabot.model import Verdict
 from mutabot.report.format import Format, Material
 from mutabot.report.texts import one_line, reason_of, rounds_text, short_reason, status_of, why_alone
+from mutabot.results.results import MutantResult
+from mutabot.results.score import Group, groups_of
 
 #: state to the element that says so; states that are not here passed
 _ELEMENT: Mapping[Verdict | None, str] = {

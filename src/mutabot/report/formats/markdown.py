@@ -6,16 +6,15 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.score import Group
-from mutabot.analysis.statistics import Interval
-from mutabot.analysis.thresholds.thresholds import thresholds_of
-from mutabot.analysis.thresholds.words import line_of
 from mutabot.model import Verdict
 from mutabot.report.changes import change_lines
 from mutabot.report.format import Format, Material
 from mutabot.report.terminal.console import between, percent
 from mutabot.report.texts import OUTSIDE, escaped, rounds_text, short_reason, status_of, table, why_alone
+from mutabot.results.results import MutantResult
+from mutabot.results.score import Group
+from mutabot.results.statistics import Interval
+from mutabot.results.thresholds import line_of, thresholds_of
 
 #: rows of a table of mutants; GitHub takes no summary of more than a megabyte
 _ROWS = 100

@@ -10,11 +10,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from mutabot.analysis.results import MutantResult, killers
 from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
 from mutabot.report.format import Format, Material, utf16
 from mutabot.report.texts import reason_of, status_of
+from mutabot.results.results import MutantResult, killers
 
 _SCHEMA_VERSION = "2.0"
 #: in percent; what the page paints green and red. They are the schema's customary ones, and no limit of ours

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 from urllib.parse import quote
 
-from mutabot.analysis.results import MutantResult
 from mutabot.model import Mutant, Span
 from mutabot.report.document import dumps
 from mutabot.report.format import Format, Material, utf16
 from mutabot.report.texts import is_divergent, status_of, survivor_text
+from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 #: paths are relative to this; whoever reads the file knows where it is

@@ -11,11 +11,6 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.results import MutantResult, Results, killers, unlooked
-from mutabot.analysis.stored import StoredEvidence
-from mutabot.analysis.suggested import Suggestions
-from mutabot.analysis.thresholds.thresholds import thresholds_of
-from mutabot.analysis.thresholds.words import line_of
 from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
@@ -25,6 +20,10 @@ from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
 from mutabot.report.texts import status_of, why_alone
+from mutabot.results.results import MutantResult, Results, killers, unlooked
+from mutabot.results.stored import StoredEvidence
+from mutabot.results.suggested import Suggestions
+from mutabot.results.thresholds import line_of, thresholds_of
 
 from .mutant import Recorded, mutant_page
 

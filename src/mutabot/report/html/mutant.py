@@ -12,14 +12,14 @@ from itertools import pairwise
 from math import isnan
 from typing import Any
 
-from mutabot.analysis.divergence import worst_of
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.stored import StoredEvidence
 from mutabot.evidence.recording import Kind, Recording, Told, Track
 from mutabot.model import Looked, Outcome
-from mutabot.model.values.quantity import value_text
+from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of
 from mutabot.report.texts import mapped, rounds_text
+from mutabot.results.divergence import worst_of
+from mutabot.results.results import MutantResult
+from mutabot.results.stored import StoredEvidence
 
 #: what one step of the whole numbers is, and by how many steps a line may miss: m; quaternions without unit
 _LENGTH, _TURN = 1e-4, 1e-3

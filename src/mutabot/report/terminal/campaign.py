@@ -11,10 +11,6 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.divergence import first_line
-from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import Group, RoundScores, Score
-from mutabot.analysis.statistics import Interval
 from mutabot.model import LeftOut, Outcome, Verdict
 from mutabot.report.terminal.console import (
     add_row,
@@ -31,6 +27,10 @@ from mutabot.report.terminal.console import (
     short_place,
 )
 from mutabot.report.texts import OUTSIDE
+from mutabot.results.divergence import first_line
+from mutabot.results.results import MutantResult, Results
+from mutabot.results.score import Group, RoundScores, Score
+from mutabot.results.statistics import Interval
 
 from .mutant import unlooked_lines
 from .trust import budget_lines, control_lines, error_lines, since_lines, trust_lines

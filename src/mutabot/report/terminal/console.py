@@ -13,9 +13,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.statistics import Interval
 from mutabot.frozen import frozen
 from mutabot.model import By, Outcome, Span, Verdict
+from mutabot.results.statistics import Interval
 
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")

@@ -12,16 +12,16 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.divergence import worst_of
-from mutabot.analysis.results import MutantResult, Results, unlooked
-from mutabot.analysis.score import Score
-from mutabot.analysis.stored import StoredEvidence
-from mutabot.analysis.suggested import Suggestions
 from mutabot.evidence.recording import Recording
 from mutabot.evidence.story import Entry, Row, amount, around, timeline
 from mutabot.journal.records import Replayed
 from mutabot.model import Check, Diverged, Kind, Looked, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Apart, end_in_words
+from mutabot.results.divergence import worst_of
+from mutabot.results.results import MutantResult, Results, unlooked
+from mutabot.results.score import Score
+from mutabot.results.stored import StoredEvidence
+from mutabot.results.suggested import Suggestions
 
 from .console import between, heading, make_table, mark_of, percent, plain
 from .suggested import suggested_parts

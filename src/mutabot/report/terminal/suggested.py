@@ -9,8 +9,8 @@ from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.results.results import MutantResult
+from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
 
 from .console import heading, plain, plural
 

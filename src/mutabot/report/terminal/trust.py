@@ -8,12 +8,12 @@ from rich.console import RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from mutabot.analysis.chance import Estimate, false_kills, false_survivors
-from mutabot.analysis.divergence import first_line
-from mutabot.analysis.results import Results
 from mutabot.journal.records import REMARKS, Repeated, Repeats
 from mutabot.model import Verdict
 from mutabot.report.terminal.console import heading, plain, plural
+from mutabot.results.divergence import first_line
+from mutabot.results.results import Results
+from mutabot.results.statistics import Estimate, false_kills, false_survivors
 
 #: numbers of mutants that a line gives, and lines for different messages
 _NUMBERS, _MESSAGES = 10, 8

@@ -13,12 +13,11 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
 
-from mutabot.analysis.thresholds.ladders import Above, Ladder, LadderRound
-from mutabot.analysis.thresholds.thresholds import Thresholds
-from mutabot.analysis.thresholds.words import amount
 from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.report.terminal.console import plural
+from mutabot.results.ladders import Above, Ladder, LadderRound
+from mutabot.results.thresholds import Thresholds, amount
 
 INK, FAINT, PAPER = "#222222", "#767676", "#ffffff"
 

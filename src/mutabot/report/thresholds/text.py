@@ -11,12 +11,21 @@ from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from mutabot.analysis.thresholds.demands import suggested
-from mutabot.analysis.thresholds.ladders import Between, Ladder, Step
-from mutabot.analysis.thresholds.thresholds import Change, Compared, Comparison, Floor, Thresholds
-from mutabot.analysis.thresholds.words import amount, line_of, rounds_left_out, violations_in_words
 from mutabot.model.graded import OFFSET
 from mutabot.report.terminal.console import heading, make_table, percent, plain, plural
+from mutabot.results.demands import suggested
+from mutabot.results.ladders import Between, Ladder, Step
+from mutabot.results.thresholds import (
+    Change,
+    Compared,
+    Comparison,
+    Floor,
+    Thresholds,
+    amount,
+    line_of,
+    rounds_left_out,
+    violations_in_words,
+)
 
 #: lines of a kind that are shown; --json has all
 _MOST = 12

@@ -13,9 +13,9 @@ from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import Control, controls_of, end_of
 from mutabot.campaign.engines.engine import Engine, Remainder, Trial
+from mutabot.campaign.engines.fork_parent import Trunks
 from mutabot.campaign.engines.fresh import Hindered, replay_alone
-from mutabot.campaign.engines.suspects import clear_up
-from mutabot.campaign.engines.trunk import Trunks
+from mutabot.campaign.engines.repeats import clear_up
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome
 

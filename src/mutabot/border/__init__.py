@@ -1,1 +1,0 @@
-"""What crosses the process border: a job description in, events out."""

@@ -1,0 +1,569 @@
+"""Comparing how a test ended as a mutant with how it ended as the original.
+
+Probes are read along the way of a test too, as often as they cost next to nothing; they are compared at
+moments that mutant and original have in common.
+
+Comparing orientations by the angle between them, and single angles modulo a full turn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from typing import Any
+
+from mutabot.campaign.request import Progress
+from mutabot.frozen import frozen
+from mutabot.model import Compared, Operation, Path, Probe, Quantity
+from mutabot.model.events import TestEnd
+from mutabot.model.outcome import Figure
+from mutabot.model.quantity import is_number, told_apart, value_text
+from mutabot.model.units import apart, distance
+
+#: an operation and the notation of its command
+Command = tuple[str, str | None]
+_PARTS = (("w", "x", "y", "z"), ("x", "y", "z"))
+
+
+@frozen
+class Turned:
+    """Two values of one orientation or angle.
+
+    Attributes:
+        name: the part of the probe.
+        keys: the values it consists of.
+        before, after: as they were read.
+        angle: how far they are apart, in the quantity's unit (radians for a quaternion).
+        unit: that unit.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    before: Any
+    after: Any
+    angle: float
+    unit: str
+
+
+class Angles:
+    """The orientations and angles among the values of operations."""
+
+    def __init__(self, operations: Sequence[Operation]) -> None:
+        self._known: dict[Command, dict[str, Quantity]] = {}
+        for operation in operations:
+            self._add((operation.target, None), (*operation.arguments, *operation.result))
+            for pattern in operation.patterns:
+                self._add((operation.target, pattern.text), (*pattern.arguments, *pattern.result))
+
+    def of(self, command: Command) -> Mapping[str, Quantity]:
+        """Those of one command, by name."""
+        return self._known.get(command, {})
+
+    def _add(self, command: Command, quantities: Sequence[Quantity]) -> None:
+        found = {one.name: one for one in quantities if one.is_whole or one.full_turn is not None}
+        if found:
+            self._known[command] = found
+
+
+def angle_between(quantity: Quantity, before: Any, after: Any) -> float | None:
+    """How far two values of a quantity are apart as orientations or angles; None if they are none."""
+    if quantity.is_whole:
+        first, second = quantity.orientation(before), quantity.orientation(after)
+        return quantity.from_unit(distance(first, second), "rad") if first and second else None
+    turn = quantity.full_turn
+    if turn is None or not (is_number(before) and is_number(after)):
+        return None
+    return apart(before, after, turn)
+
+
+def values_apart(
+    before: Any, after: Any, quantities: Mapping[str, Quantity], other: Callable[[Any, Any], float]
+) -> float:
+    """The greatest distance of two sets of values by quantity; ``other`` is that of all other values."""
+    if not quantities or not isinstance(before, Mapping) or not isinstance(after, Mapping):
+        return other(before, after)
+    distances = []
+    for name in {*before, *after}:
+        angle = None
+        if name in quantities:
+            angle = angle_between(quantities[name], before.get(name), after.get(name))
+        distances.append(other(before.get(name), after.get(name)) if angle is None else angle)
+    return max(distances, default=0.0)
+
+
+def turned_parts(
+    original: Mapping[str, Any], mutant: Mapping[str, Any], probes: Sequence[Probe]
+) -> Iterator[Turned]:
+    """The orientations and angles in two readings of the probes, as far as both have them."""
+    for probe in probes:
+        for name in readings_of(probe, original) if probe.result else ():
+            for quantity in probe.result:
+                keys = _keys(name, quantity, original)
+                if not keys or not all(key in original and key in mutant for key in keys):
+                    continue
+                before, after = (_value(quantity, keys, values) for values in (original, mutant))
+                angle = angle_between(quantity, before, after)
+                if angle is not None:
+                    yield Turned(f"{name}{quantity.path}", keys, before, after, angle, quantity.unit or "rad")
+
+
+def _value(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any]) -> Any:
+    return [values[key] for key in keys] if quantity.is_whole else values[keys[0]]
+
+
+def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Any]:
+    """The value of a quantity in a reading of a probe, if it is there."""
+    keys = _keys(name, quantity, values)
+    if keys and all(key in values for key in keys):
+        yield _value(quantity, keys, values)
+
+
+def readings_of(probe: Probe, values: Mapping[str, Any]) -> list[str]:
+    """The probe's names among its values: one for each object."""
+    found: dict[str, None] = {}
+    for key in values:
+        tail = key[len(probe.target) :] if key.startswith(probe.target) else None
+        if tail is not None and (not tail or tail[0] in ".[#"):
+            number = tail[1:].partition(".")[0].partition("[")[0] if tail[:1] == "#" else ""
+            found[f"{probe.target}#{number}" if number else probe.target] = None
+    return list(found)
+
+
+def _keys(name: str, quantity: Quantity, values: Mapping[str, Any]) -> tuple[str, ...]:
+    """The flat values that a quantity consists of, in its order; none if they are not there."""
+    path: Path = quantity.path
+    bounds = path.steps[-1].bounds if path.steps else None
+    steps = path.steps[:-1] if bounds is not None else path.steps
+    base = name + "".join(
+        _step(step.attribute if step.attribute is not None else step.item) for step in steps
+    )
+    if bounds is None and not quantity.is_whole:
+        return (base,)
+    count = 0
+    while f"{base}[{count}]" in values:
+        count += 1
+    if count:
+        indexes = range(count)[slice(*bounds)] if bounds is not None else range(count)
+        return tuple(f"{base}[{index}]" for index in indexes)
+    named: tuple[str, ...] = next(
+        (parts for parts in _PARTS if all(f"{base}.{part}" in values for part in parts)), ()
+    )
+    if len(named) == 4 and quantity.order is not None:
+        named = tuple(quantity.order)
+    return tuple(f"{base}.{part}" for part in named)
+
+
+def _step(item: Any) -> str:
+    return f"[{item}]" if isinstance(item, int) else f".{item}"
+
+
+#: share of a test's processor time that readings along the way may take, and the seconds that any test may
+_SHARE, _LEAST = 0.01, 0.005
+#: after every how many commands; a coarser one where this takes too long
+_STRIDES = (1, 4, 16, 64)
+#: readings before the first thinning inside
+_FULL = 100
+
+
+def strides_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[tuple[int, str], int]:
+    """After every how many commands the probes are read, by round and test; tests without are left out."""
+    read = [end for end in ends.values() if end.reading is not None]
+    if not read or any(end.not_along for end in ends.values()):
+        return {}
+    seconds = min(end.reading for end in read if end.reading is not None)
+    found = {}
+    for key, end in ends.items():
+        may_take = max(_LEAST, _SHARE * end.cpu)
+        possible = [one for one in _STRIDES if one <= end.commands]
+        fitting = [one for one in possible if _readings_at(end.commands, one) * seconds <= may_take]
+        if fitting:
+            found[key] = fitting[0]
+    return found
+
+
+def moments_in(strides: Mapping[tuple[int, str], int], round: int) -> dict[str, int]:
+    """The strides of a round, by test, for its jobs."""
+    return {test: stride for (where, test), stride in strides.items() if where == round}
+
+
+def note_moments(ends: Iterable[TestEnd], progress: Progress) -> None:
+    """Say once why probes are not read along the way."""
+    why = next((end.not_along for end in ends if end.not_along), None)
+    if why is not None:
+        progress.note(f"the probes are read at the ends of tests only, not along the way: {why}")
+
+
+def _readings_at(commands: int, stride: int) -> int:
+    """About how many readings a test has."""
+    moments = commands // stride
+    return moments if moments <= _FULL else _FULL + 50 * (moments // _FULL).bit_length()
+
+
+#: greatest difference of two equal numbers where the vocabulary names no probe
+DEFAULT_TOLERANCE = 1e-6
+#: multiples of its tolerance that a difference counts which is not one of numbers
+OTHER_WORLD = 1e9
+_NO_RETURNS: dict[str, Any] = {"prepared": None, "returned": None}
+_NO_MOMENTS: dict[str, Any] = {"moments": None}
+
+
+@frozen
+class Event:
+    """One call in a trace, comparable between processes.
+
+    Attributes:
+        key: where and what, such as ``mission.py:12 Arm.move_by``.
+        written: values it wrote, by quantity or in a fixed order.
+        read: values it read, likewise.
+        what: the operation and command.
+    """
+
+    key: str
+    written: Any = None
+    read: Any = None
+    what: Command = ("", None)
+
+
+@frozen
+class Observation:
+    """What was seen of one test: its calls in order, and the probes at its end.
+
+    Attributes:
+        events: the calls.
+        probes: values by ``target.part``.
+        truncated: whether the list of calls was cut off.
+        unread: why a probe could not be read, by target.
+        moments: probes along the way, as in ``TestEnd.moments``; None if they are not to be compared.
+        outcome: how the test ended for the suite.
+        prepared, returned: what the program returned to the test's fixtures and to the test itself, as in
+            ``TestEnd.returned``; None if that is not to be compared.
+    """
+
+    events: Sequence[Event] = ()
+    probes: Mapping[str, Any] = field(default_factory=dict)
+    truncated: bool = False
+    unread: Mapping[str, str] = field(default_factory=dict)
+    outcome: str = "passed"
+    prepared: Sequence[Any] | None = ()
+    returned: Sequence[Any] | None = ()
+    moments: Sequence[Any] | None = ()
+
+
+@frozen
+class Difference:
+    """How far a mutant's test is from the original's.
+
+    Attributes:
+        indistinguishable: whether all that was compared is equal within the tolerance.
+        distance: greatest difference of a probe, in multiples of its tolerance (``OTHER_WORLD`` for one
+            that is not of numbers); None without probes, or if none that differs more is all that is known.
+        divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
+        gaps: what could not be compared, one line each.
+        way: greatest difference of a probe along the way, in multiples of its tolerance; None if none was
+            compared.
+        compared: how much was.
+        figures: figures of merit that differ.
+    """
+
+    indistinguishable: bool
+    distance: float | None
+    divergence: tuple[str, ...]
+    gaps: tuple[str, ...] = ()
+    way: float | None = None
+    compared: Compared = field(default=Compared(), compare=False)
+    figures: tuple[Figure, ...] = field(default=(), compare=False)
+
+
+def compare(
+    original: Observation,
+    mutant: Observation,
+    probes: Sequence[Probe] = (),
+    operations: Sequence[Operation] = (),
+) -> Difference:
+    """Compare a mutant's test with the original's.
+
+    Numbers are equal when they differ by no more than their probe's tolerance; values in the trace, when
+    they differ by no more than the greatest tolerance of any probe. Orientations are compared by the angle
+    between them, angles modulo a full turn. All else is compared by equality.
+    Two cut-off traces are compared as far as they go. What the program returned is compared by the finest of
+    these tolerances if it is a fraction, and exactly if not.
+    """
+    probe_lines = _probe_differences(original, mutant, probes)
+    gaps = tuple(
+        f"{_short(target)} cannot be read: {mutant.unread[target]}"
+        for target in original.unread
+        if target in mutant.unread
+    )
+    if probes and not (original.probes or mutant.probes or original.unread or mutant.unread):
+        gaps = ("no probe reads anything",)
+    tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
+    trace_line = _first_difference(original, mutant, tolerance, Angles(operations))
+    returned_line = _returned_difference(original, mutant, probes)
+    distances = [distance for distance, _ in probe_lines]
+    different = [line for distance, line in probe_lines if distance > 1.0]
+
+    way, way_line, moments = _on_the_way(original, mutant, probes)
+    lines = [
+        *_outcome_lines(original, mutant),
+        *different,
+        *([way_line] if (way or 0.0) > 1.0 else []),
+        *filter(None, [returned_line, trace_line]),
+    ]
+    distance = max(distances, default=None)
+    if gaps and not different:  # what cannot be read may be anywhere
+        distance = None
+    compared = _compared(original, mutant, moments)
+    figures = tuple(_figures(original, mutant, probes))
+    return Difference(not lines, distance, tuple(lines), gaps, way, compared, figures)
+
+
+def _on_the_way(
+    original: Observation, mutant: Observation, probes: Sequence[Probe]
+) -> tuple[float | None, str, int]:
+    """How far readings after the same calls are apart, as far as both made the same calls.
+
+    Returns the greatest distance, in multiples of its probe's tolerance (None if there is nothing to
+    compare), that difference in words, and how many moments were compared.
+    """
+    before, after = _readings(original.moments or ()), _readings(mutant.moments or ())
+    same = _same_calls(original, mutant)
+    common = [call for call in before if call in after and call <= same]
+    worst, line = 0.0, ""
+    for call in common:
+        if before[call] == after[call]:
+            continue
+        sides = Observation(probes=before[call]), Observation(probes=after[call])
+        for far, text in _probe_differences(*sides, probes)[:1]:
+            if far > worst:
+                worst = far
+                line = f"on the way, after call {call}, {mutant.events[call - 1].key}: {text}"
+    return worst if common else None, line, len(common)
+
+
+def _same_calls(original: Observation, mutant: Observation) -> int:
+    """How many calls at the beginning are the same."""
+    pairs = zip(original.events, mutant.events, strict=False)
+    shorter = min(len(original.events), len(mutant.events))
+    return next((number for number, (one, other) in enumerate(pairs) if one.key != other.key), shorter)
+
+
+def _readings(moments: Sequence[Any]) -> dict[int, dict[str, Any]]:
+    """All parts at each moment; a trace that is cut off has its last number more than once."""
+    found: dict[int, dict[str, Any]] = {}
+    last: dict[str, Any] = {}
+    for call, parts, is_whole in moments:
+        last = dict(parts) if is_whole else {**last, **parts}
+        found.setdefault(call, last)
+    return found
+
+
+def as_steady(
+    first: Observation,
+    second: Observation,
+    probes: Sequence[Probe],
+    operations: Sequence[Operation] = (),
+) -> Observation | None:
+    """The observation of the original that mutants are compared with, after a second run of it.
+
+    Without what the program returned, or probes along the way, if only that differs; None if more does.
+    """
+    for dropped in ({}, _NO_RETURNS, _NO_MOMENTS, {**_NO_RETURNS, **_NO_MOMENTS}):
+        one = replace(first, **dropped)
+        if compare(one, second, probes, operations).indistinguishable:
+            return one if one.moments is None or one.moments else replace(one, moments=second.moments)
+    return None
+
+
+def farthest(comparisons: Sequence[Difference]) -> Difference:
+    """One comparison for several tests of the same mutant: the worst of them, all of them equal or not."""
+    if not comparisons:
+        return Difference(True, None, ())
+    ranked = sorted(
+        comparisons, key=lambda one: (one.distance or 0.0, not one.indistinguishable), reverse=True
+    )
+    distances = [one.distance for one in comparisons if one.distance is not None]
+    lines = dict.fromkeys(line for one in ranked for line in one.divergence)
+    together = all(one.indistinguishable for one in comparisons)
+    gaps = tuple(dict.fromkeys(gap for one in comparisons for gap in one.gaps))
+    distance = max(distances, default=None)
+    if gaps and (distance or 0.0) <= 1.0:
+        distance = None
+    compared = Compared.together(one.compared for one in comparisons)
+    way = max((one.way for one in comparisons if one.way is not None), default=None)
+    return Difference(together, distance, tuple(lines), gaps, way, compared)
+
+
+def _outcome_lines(original: Observation, mutant: Observation) -> list[str]:
+    if original.outcome == mutant.outcome:
+        return []
+    return [f"the test ended {mutant.outcome} instead of {original.outcome}"]
+
+
+def _probe_differences(
+    original: Observation, mutant: Observation, probes: Sequence[Probe]
+) -> list[tuple[float, str]]:
+    unread = original.unread.keys() | mutant.unread.keys()
+    found = [
+        (OTHER_WORLD, f"{_short(target)}: {_readable(original, mutant, target)}")
+        for target in sorted(original.unread.keys() ^ mutant.unread.keys())
+    ]
+    turned = list(turned_parts(original.probes, mutant.probes, probes))
+    for one in turned:
+        distance = one.angle / _tolerance(one.name, probes)
+        found.append((min(distance, OTHER_WORLD), f"{_short(one.name)}: {_turn(one)}"))
+    done = {key for one in turned for key in one.keys}
+    for key in dict.fromkeys([*original.probes, *mutant.probes]):
+        if key in done or any(key == target or _lies_below(key, target) for target in unread):
+            continue
+        before, after = original.probes.get(key), mutant.probes.get(key)
+        distance = _distance(before, after) / _tolerance(key, probes)
+        found.append((min(distance, OTHER_WORLD), f"{_short(key)}: {_change(before, after)}"))
+    return sorted(found, key=lambda item: -item[0])
+
+
+def _figures(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> Iterator[Figure]:
+    for probe in probes:
+        # a class of which the program uses several objects has a figure for each
+        keys = (key for key in original.probes if key == probe.target or key.startswith(f"{probe.target}#"))
+        for key in keys if probe.better is not None else ():
+            before, after = original.probes[key], mutant.probes.get(key)
+            if not (is_number(before) and is_number(after)):
+                continue
+            if math.inf > _distance(before, after) > probe.tolerance:
+                yield Figure(key, float(before), float(after or 0.0), probe.better or "")
+
+
+def _readable(original: Observation, mutant: Observation, target: str) -> str:
+    """How a probe that only one side can read differs."""
+    if target in mutant.unread:
+        return f"cannot be read, as it could be in the original: {mutant.unread[target]}"
+    return f"can be read, as it could not be in the original: {original.unread[target]}"
+
+
+def _tolerance(key: str, probes: Sequence[Probe]) -> float:
+    fitting = [probe for probe in probes if key == probe.target or _lies_below(key, probe.target)]
+    if not fitting:
+        return DEFAULT_TOLERANCE
+    # A tolerance of nothing is meant as "exactly equal".
+    return max(max(fitting, key=lambda probe: len(probe.target)).tolerance, 1e-300)
+
+
+def _lies_below(key: str, target: str) -> bool:
+    return key.startswith(target) and key[len(target)] in ".[#"
+
+
+def _distance(before: Any, after: Any) -> float:
+    """Absolute difference of two numbers or of the worst pair in two lists; infinite if not comparable."""
+    if is_number(before) and is_number(after):
+        if before == after or (math.isnan(before) and math.isnan(after)):
+            return 0.0
+        difference = abs(float(before) - float(after))
+        return math.inf if math.isnan(difference) else difference
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        keys = {*before, *after}
+        return max((_distance(before.get(key), after.get(key)) for key in keys), default=0.0)
+    if isinstance(before, list | tuple) and isinstance(after, list | tuple) and len(before) == len(after):
+        return max((_distance(*pair) for pair in zip(before, after, strict=True)), default=0.0)
+    return 0.0 if before == after else math.inf
+
+
+def _first_difference(
+    original: Observation, mutant: Observation, tolerance: float, angles: Angles
+) -> str | None:
+    for index, (before, after) in enumerate(zip(original.events, mutant.events, strict=False), start=1):
+        if before.key != after.key:
+            return f"call {index}: {after.key} instead of {before.key}"
+        known = angles.of(before.what)
+        if values_apart(before.written, after.written, known, _distance) > tolerance:
+            return f"call {index}, {after.key}: wrote {_change(before.written, after.written)}"
+        if values_apart(before.read, after.read, known, _distance) > tolerance:
+            return f"call {index}, {after.key}: read {_change(before.read, after.read)}"
+    more = len(mutant.events) - len(original.events)
+    if more == 0 or original.truncated or mutant.truncated:
+        return None
+    return f"{abs(more)} {'calls' if abs(more) > 1 else 'call'} {'more' if more > 0 else 'fewer'}"
+
+
+def _compared(original: Observation, mutant: Observation, moments: int) -> Compared:
+    returned = 0
+    for before, after in ((original.prepared, mutant.prepared), (original.returned, mutant.returned)):
+        if before is not None and after is not None:
+            returned += sum("opaque" not in str(entry[1]) for entry in before[: len(after)])
+    return Compared(
+        calls=min(len(original.events), len(mutant.events)),
+        moments=moments + bool(original.probes and mutant.probes),
+        returned=returned,
+    )
+
+
+def _returned_difference(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> str | None:
+    """The first difference in what the program returned.
+
+    A fixture that tests share is set up in one of them, in another one if others are run before: the last of
+    what was returned to fixtures is from those that the test has alone.
+    """
+    tolerance = min((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
+    if original.prepared is not None and mutant.prepared is not None:
+        pairs = zip(original.prepared[::-1], mutant.prepared[::-1], strict=False)
+        for before, after in [*pairs][::-1]:
+            if not _is_same(before, after, tolerance):
+                return _returned_text(before, after)
+    if original.returned is None or mutant.returned is None:
+        return None
+    for before, after in zip(original.returned, mutant.returned, strict=False):
+        if not _is_same(before, after, tolerance):
+            return _returned_text(before, after)
+    more, fewer = mutant.returned[len(original.returned) :], original.returned[len(mutant.returned) :]
+    if more:
+        return f"{_event_text(*more[0])} only with the mutant"
+    return f"{_event_text(*fewer[0])} only in the original" if fewer else None
+
+
+def _is_same(before: Any, after: Any, tolerance: float) -> bool:
+    """Whether two values are equal, fractions within the tolerance."""
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        same_keys = before.keys() == after.keys()
+        return same_keys and all(_is_same(before[key], after[key], tolerance) for key in before)
+    if isinstance(before, list | tuple) and isinstance(after, list | tuple):
+        return len(before) == len(after) and all(
+            _is_same(*pair, tolerance) for pair in zip(before, after, strict=True)
+        )
+    if is_number(before) and is_number(after) and isinstance(before + after, float):
+        return _distance(before, after) <= tolerance
+    return type(before) is type(after) and bool(before == after)
+
+
+def _returned_text(before: Any, after: Any) -> str:
+    (name, was), (other, is_now) = before, after
+    if name != other:
+        return f"{other} returned to the test instead of {name}"
+    if isinstance(is_now, Mapping):
+        return _event_text(name, is_now)
+    if isinstance(was, Mapping):
+        return f"{name} returned {value_text(is_now[0])} instead of raising {was['raised']}"
+    if any(isinstance(value, Mapping) and "digest" in value for value in (*was, *is_now)):
+        return f"{name} returned something else"
+    return f"{name} returned {_change(was[0], is_now[0])}"
+
+
+def _event_text(name: str, value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{name} raised {value['raised']}"
+    return f"{name} returned {value_text(value[0])}"
+
+
+def _short(key: str) -> str:
+    return key.partition(":")[2]
+
+
+def _change(before: Any, after: Any) -> str:
+    text = " instead of ".join(told_apart(after, before, value_text, 4))
+    if is_number(before) and is_number(after):
+        return f"{text} (off by {abs(float(after) - float(before)):.3g})"
+    return text
+
+
+def _turn(one: Turned) -> str:
+    text = " instead of ".join(told_apart(one.after, one.before, value_text, 4))
+    return f"{text} (turned by {one.angle:.3g} {one.unit})"

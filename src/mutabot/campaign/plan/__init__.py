@@ -1,1 +1,0 @@
-"""Which mutants there are, and which of them to run."""

@@ -1,1 +1,0 @@
-"""Finding detection thresholds with as few runs as they take."""

@@ -1,0 +1,315 @@
+"""The verdict: the one named end of a mutant in a round, from what was seen of it by either engine."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.comparison import Observation, compare, farthest
+from mutabot.errors import MutabotError
+from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
+from mutabot.model.event_file import OWN_FAULT
+from mutabot.model.events import TestEnd
+from mutabot.model.outcome import Figure, added
+
+#: tests of a survivor whose checks are kept
+_MOST_LOOKED = 20
+#: tests of which it is kept how they differ from the original's
+_MOST_DIVERGED = 5
+_RECORDED = frozenset({Verdict.SURVIVED, Verdict.KILLED, Verdict.TIMEOUT, Verdict.REFUSED})
+
+#: exit codes of pytest's that say nothing about the mutant: the mistake may be ours
+_OF_NO_TEST = {3: "an internal error", 4: "a wrong command line or configuration"}
+
+Ruling = tuple[Verdict, TestEnd | None, str | None]
+
+
+@dataclass(slots=True)
+class Death:
+    """How a process ended that did not run its tests to their end.
+
+    Attributes:
+        text: in words.
+        test: the test it was in, or None.
+        signal: the signal that killed it, or None.
+        overdue: whether its wall-clock time was up.
+        acted: whether its mutant had changed anything by then.
+        in_mutated_call: whether it was in the midst of a mutated call.
+        where: where it was when its time was up, if that is known.
+        hindered: why that says little of it, as the machine was busy, in words; None if it was not.
+        is_starved: whether it was ended although it had not had its time.
+    """
+
+    text: str
+    test: str | None = None
+    signal: int | None = None
+    overdue: bool = False
+    acted: bool = False
+    in_mutated_call: bool = False
+    where: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
+
+
+@dataclass(slots=True)
+class Run:
+    """What was seen of a mutant in a round.
+
+    Attributes:
+        mutant, round: which.
+        tests: the tests that judge it, in order.
+        ends: how they ended, in this order, up to the one that decided; all of them where each is to run.
+        observations: what is compared of each test that passed.
+        death: set if a process did not live to the end of its tests.
+        wall: seconds spent on it.
+        shared: simulated seconds that it did not have to spend, since the original had.
+        engine: ``replay`` or ``branch``.
+        exit_code: how the process ended after the whole session; None if it did not get that far.
+        problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
+        left_out: tests that it was to leave out, unless the original has run them for it.
+    """
+
+    mutant: Mutant
+    round: int
+    tests: tuple[str, ...]
+    ends: list[TestEnd] = field(default_factory=list)
+    observations: Mapping[str, Observation] = field(default_factory=dict)
+    death: Death | None = None
+    wall: float = 0.0
+    shared: float | None = None
+    engine: str = "replay"
+    exit_code: int | None = None
+    problem: str | None = None
+    left_out: frozenset[str] = frozenset()
+
+    @property
+    def hindered(self) -> str | None:
+        """Why a limit of wall clock that ended it says little of its mutant, in words; None if none did."""
+        deaths = [self.death.hindered] if self.death is not None else []
+        return next((why for why in (*deaths, *(end.hindered for end in self.ends)) if why is not None), None)
+
+
+def judged(campaign: Campaign, run: Run) -> Outcome:
+    """The outcome of a run, whose recordings are kept as far as they differ from the original's.
+
+    What goes wrong while it is judged is an error of this mutant, and not the end of the campaign.
+    """
+    try:
+        return _judged(campaign, run)
+    except Exception as error:
+        return not_judged(run.mutant, run.round, error, run.engine)
+
+
+def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:
+    """The outcome of a mutant that could not be judged; an error that is not about it is raised again."""
+    refuse_others(error)
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    text = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
+    message = f"mutabot could not judge what it saw of it: {text}"
+    return Outcome(mutant.id, round, Verdict.ERROR, message=message, engine=engine)
+
+
+def refuse_others(error: Exception) -> None:
+    """Raise an error again that says nothing of a mutant, but of the user's set-up or of the disk."""
+    if isinstance(error, MutabotError | OSError):
+        raise error
+
+
+def _judged(campaign: Campaign, run: Run) -> Outcome:
+    outcome = judge(campaign, run)
+    if campaign.evidence is None or outcome.verdict not in _RECORDED:
+        return outcome
+    restless = campaign.baseline.restless
+    ends = [end for end in run.ends if (run.round, end.test) not in restless]
+    survived = outcome.verdict is Verdict.SURVIVED
+    found = campaign.evidence.take(run.mutant.id, run.round, ends, survived=survived)[:_MOST_DIVERGED]
+    is_elsewhere = any(one.apart for one in found)
+    same = False if is_elsewhere and outcome.indistinguishable else outcome.indistinguishable
+    return replace(outcome, diverged=found, indistinguishable=same)
+
+
+def judge(campaign: Campaign, run: Run) -> Outcome:
+    """The outcome of a run."""
+    request, baseline = campaign.request, campaign.baseline
+    verdict, end, message = _ruling(run, baseline.exits[run.round])
+    aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
+    if aside:
+        verdict, message = Verdict.UNSTABLE, _let_through_without(aside)
+    simulated = [end.simulated for end in run.ends if end.simulated is not None]
+    by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
+    died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
+    outcome = Outcome(
+        mutant=run.mutant.id,
+        round=run.round,
+        verdict=verdict,
+        by=by if verdict is Verdict.KILLED else None,
+        test=end.test if end is not None else run.death.test if run.death is not None else None,
+        exception=end.exception if end is not None else None,
+        message=message,
+        place=end.place if end is not None else None,
+        # a test that never ended cannot say how often, but that the mutant was at work is known
+        hits=sum(end.hits for end in run.ends) + died_at_work,
+        acted=sum(end.acted for end in run.ends) + died_at_work,
+        away=added(end.away for end in run.ends),
+        example=next((end.example for end in run.ends if end.example is not None), None),
+        tests=len(run.ends),
+        wall=run.wall,
+        cpu=sum(end.cpu for end in run.ends),
+        simulated=sum(simulated) if simulated else None,
+        shared=run.shared,
+        engine=run.engine,
+        complete=request.every_test and {end.test for end in run.ends} == set(run.tests),
+        kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
+        commands=end.commands if end is not None else None,
+        stuck=run.death.where if run.death is not None else None,
+        looked=_looked(run, baseline) if verdict is Verdict.SURVIVED else (),
+    )
+    outcome = replace(outcome, confirmed=False if _lacks_tests(run, outcome) else None)
+    return _compared(campaign, outcome, run) if verdict is Verdict.SURVIVED else outcome
+
+
+def _lacks_tests(run: Run, outcome: Outcome) -> bool:
+    """Whether tests were left out that might have decided: before the one that did, or any if none did.
+
+    What changes nothing is the original in these as well; a refusal leaves it to other tests to decide.
+    """
+    if not run.left_out or outcome.verdict is Verdict.NO_EFFECT:
+        return False
+    is_decided = outcome.test in run.tests and outcome.verdict is not Verdict.REFUSED
+    before = run.tests[: run.tests.index(outcome.test)] if is_decided else run.tests
+    return not run.left_out.intersection(before) <= {end.test for end in run.ends}
+
+
+def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
+    """The tests that reach a survivor, those first in which it acted."""
+    reaching = baseline.tests_reaching(run.round, run.mutant)
+    ends = (end for end in run.ends if end.test in reaching)
+    found = [Looked(end.test, end.acted > 0, end.checks, end.more_checks) for end in ends]
+    return tuple(sorted(found, key=lambda one: not one.acted)[:_MOST_LOOKED])
+
+
+def _let_through_without(aside: Sequence[str]) -> str:
+    more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
+    others = f"{aside[0]}{more}, set aside in this round, might not"
+    return f"the tests that can be relied on let it through; {others}"
+
+
+def _ruling(run: Run, usual: int) -> Ruling:
+    """Verdict, the test that decided it, and the reason in words; ``usual``: the suite's exit code."""
+    if run.problem is not None:
+        return Verdict.ERROR, None, run.problem
+    acted = False
+    refused: TestEnd | None = None
+    for end in _before_death(run):
+        acted = acted or end.acted > 0
+        if end.failure is not None:
+            return Verdict.ERROR, end, end.failure
+        if end.invalid:
+            return Verdict.INVALID, end, end.message
+        if end.timeout is not None:
+            return (Verdict.TIMEOUT if acted else Verdict.UNSTABLE), end, end.timeout
+        if end.refused is not None and not end.caught:
+            refused = refused or end
+        elif end.outcome == "failed":
+            if acted:
+                return Verdict.KILLED, end, end.message
+            return Verdict.UNSTABLE, end, f"failed before the mutant changed anything: {end.message}"
+    return _ruling_on_end(run, refused, usual, acted=acted)
+
+
+def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool) -> Ruling:
+    """No test decided: what the end of the process says."""
+    if run.death is not None:
+        return _ruling_on_death(run.death, acted)
+    if refused is not None:
+        return Verdict.REFUSED, refused, refused.refused
+    if run.exit_code not in (None, usual) and not any(end.outcome == "failed" for end in run.ends):
+        return _ruling_on_exit(run.exit_code, usual, acted)
+    return _ruling_on_survivor(run, acted)
+
+
+def _before_death(run: Run) -> list[TestEnd]:
+    """The tests up to the one in which the process died, if it did: what comes after decides nothing."""
+    if run.death is None or run.death.test not in run.tests:
+        return run.ends
+    before = set(run.tests[: run.tests.index(run.death.test)])
+    return [end for end in run.ends if end.test in before]
+
+
+def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
+    """The tests that noticed the mutant, in their order; a crash is noticed by the test it ended."""
+    found: list[Kill] = []
+    acted = False
+    for end in run.ends:
+        acted = acted or end.acted > 0
+        if acted and end.notices:
+            found.append(Kill(end.test, end.by or By.EXCEPTION, end.exception, end.timeout or end.message))
+    death = run.death
+    if death is not None and death.test is not None and _ruling_on_death(death, acted)[0].is_killed:
+        found.append(Kill(death.test, By.EXCEPTION, None, message))
+    order = {test: number for number, test in enumerate(run.tests)}
+    return tuple(sorted(found, key=lambda kill: order.get(kill.test, -1)))
+
+
+def _ruling_on_death(death: Death, acted: bool) -> Ruling:
+    if death.is_starved:
+        return Verdict.UNSTABLE, None, f"{death.text}, of which it had too little: {death.hindered}"
+    if death.overdue and (acted or death.acted):
+        return Verdict.TIMEOUT, None, death.text
+    if death.in_mutated_call and death.signal in OWN_FAULT:
+        return Verdict.KILLED, None, f"the mutated call crashed: {death.text}"
+    return Verdict.ERROR, None, death.text
+
+
+def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
+    """No test failed, and yet the suite ended otherwise: its hooks saw to that."""
+    text = f"the suite ends with exit code {code} instead of {usual}"
+    if code in _OF_NO_TEST:
+        return Verdict.ERROR, None, f"{text} ({_OF_NO_TEST[code]})"
+    if not acted:
+        return Verdict.UNSTABLE, None, f"{text}, and the mutant has changed nothing"
+    return Verdict.KILLED, None, text
+
+
+def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
+    if acted:
+        return Verdict.SURVIVED, None, None
+    if any(end.hits for end in run.ends):
+        return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
+    return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
+
+
+def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
+    """The outcome of a survivor with how far its world is from the original's."""
+    baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
+    comparisons = []
+    figures: list[Figure] = []
+    first = next((number for number, end in enumerate(run.ends) if end.hits), 0)
+    since_hit = {end.test for end in run.ends[first:]}  # before it is hit, a mutant is the original
+    for test, found in run.observations.items():
+        key = (run.round, test)
+        if test not in since_hit:
+            continue
+        if key in baseline.restless:
+            return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
+        if key in baseline.observations:
+            known = (vocabulary.probes, vocabulary.operations)
+            comparisons.append(compare(baseline.observations[key], found, *known))
+            figures += (replace(one, test=test) for one in comparisons[-1].figures)
+    worst = farthest(comparisons)
+    # Without a probe, equal traces say only that the program did the same, not that the world ended so.
+    is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
+    return replace(
+        outcome,
+        indistinguishable=worst.indistinguishable if is_claimed else None,
+        distance=worst.distance,
+        divergence=worst.divergence,
+        gaps=worst.gaps,
+        way=worst.way,
+        compared=worst.compared if comparisons else None,
+        figures=tuple(figures),
+    )

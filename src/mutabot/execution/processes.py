@@ -1,0 +1,329 @@
+"""What a worker process needs: a folder, a command line, an environment, an end; and what it tells.
+
+Open files: as many as a campaign needs may be open at a time, or it is refused before anything runs.
+"""
+
+from __future__ import annotations
+
+import compileall
+import contextlib
+import errno
+import os
+import resource
+import secrets
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from dataclasses import field, replace
+from pathlib import Path
+from shutil import disk_usage
+
+from mutabot.errors import UsageError
+from mutabot.execution.remains import remove_folder
+from mutabot.frozen import frozen
+from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, EventReader
+from mutabot.model.events import Event, ForkEnded
+from mutabot.model.fold import fold_fork
+from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
+from mutabot.model.keeper import FILE as KEEPER
+from mutabot.model.keeper import LEFT
+
+_LOG_BYTES = 4000
+#: seconds that a keeper may take to end all it looks after
+_PATIENCE = 15.0
+#: bytes that must be free on the disk for a process to print what it prints
+_ROOM = 1 << 14
+
+
+@frozen
+class Home:
+    """A process's own folder: its job, what it prints, pytest's cache.
+
+    Attributes:
+        folder: the folder.
+        key: of the seals on what the process reports.
+    """
+
+    folder: Path
+    key: str = field(default_factory=lambda: secrets.token_hex(16), repr=False)
+
+    @classmethod
+    def make(cls, parent: Path, job: Job) -> Home:
+        """A new folder in ``parent``, with the job in it; if that is gone, it is made again."""
+        parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        home = cls(Path(tempfile.mkdtemp(dir=parent)))
+        write_job(home.folder, replace(job, key=home.key))
+        home.processes.mkdir()
+        Path(home.events(SESSION)).touch(mode=0o600)
+        return home
+
+    @property
+    def job_file(self) -> Path:
+        """Where the job is."""
+        return job_file(self.folder)
+
+    @property
+    def log_file(self) -> Path:
+        """Where the process's output goes."""
+        return self.folder / "log.txt"
+
+    @property
+    def processes(self) -> Path:
+        """The folder that processes below it know it by."""
+        return self.folder / FOLDER
+
+    def events(self, name: str) -> str:
+        """Where the process of this name tells what it does."""
+        return f"{self.processes}/{name}{SUFFIX}"
+
+    def log_text(self) -> str:
+        """The last of what the process printed."""
+        try:
+            descriptor = os.open(self.log_file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        except OSError:
+            return ""
+        with os.fdopen(descriptor, "rb") as file:
+            status = os.fstat(descriptor)
+            if not stat.S_ISREG(status.st_mode):
+                return ""
+            file.seek(max(0, status.st_size - _LOG_BYTES))
+            return file.read(_LOG_BYTES).decode("utf-8", "replace")
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is still there: nobody but the controller may remove it."""
+        return self.job_file.is_file() if os.access(self.folder, os.X_OK) else False
+
+    def remove(self) -> str | None:
+        """Remove it with all that is in it; why it is still there, in words, or None."""
+        return remove_folder(self.folder)
+
+
+def refuse_full_disk(folder: Path) -> None:
+    """Raises OSError if a process that worked in ``folder`` may have died because there is no room left."""
+    try:
+        is_full = disk_usage(folder).free < _ROOM
+    except FileNotFoundError:  # somebody has deleted it
+        return
+    if is_full:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
+
+
+class Spawned:
+    """A fresh process, with a keeper above it that ends all it starts.
+
+    Attributes:
+        pid: the keeper's number.
+        pidfd: becomes readable when it ends.
+        startup: seconds spent on it before it began; none.
+    """
+
+    startup = 0.0
+
+    def __init__(
+        self,
+        root: Path,
+        arguments: Iterable[str],
+        home: Home,
+        writing: int,
+        descriptors: tuple[int, ...] = (),
+    ) -> None:
+        self._left = home.folder / LEFT
+        keeper = [sys.executable, "-I", "-S", KEEPER, str(os.getpid())]
+        with home.log_file.open("wb") as log:
+            self._process = subprocess.Popen(
+                [*keeper, *command(arguments, home.folder)],
+                cwd=root,
+                env=environment(home.job_file, writing),
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                pass_fds=(writing, *descriptors),
+                start_new_session=True,
+            )
+        self.pid = self._process.pid
+        self.pidfd = os.pidfd_open(self.pid)
+
+    @property
+    def exit_code(self) -> int | None:
+        """Its exit code, negative for a signal; None while it runs."""
+        return self._process.poll()
+
+    @property
+    def tests(self) -> int:
+        """The number of the process that runs the tests; the keeper's if there is none."""
+        with contextlib.suppress(OSError, ValueError, IndexError):
+            return int(Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text("ascii").split()[0])
+        return self.pid
+
+    @property
+    def left(self) -> list[str] | None:
+        """What it had left running when it ended, and was ended; None if the keeper did not see to that."""
+        try:
+            return self._left.read_text("utf-8", "replace").splitlines()
+        except OSError:
+            return None
+
+    def kill(self) -> None:
+        """End it and all it has started, without waiting for that."""
+        self._process.terminate()
+
+    def end(self) -> int:
+        """End it, and whatever it left behind, if it has not ended yet; returns its exit code."""
+        self.kill()
+        try:
+            return self._process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:  # the keeper was stopped
+            self._process.kill()
+            return self._process.wait()
+
+    def release(self) -> None:
+        """Let go of what is held of it."""
+        os.close(self.pidfd)
+
+
+def kill_group(pid: int) -> None:
+    """End all processes of a group."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(pid, signal.SIGKILL)
+
+
+class EventStream:
+    """The events of a test process, and those of its forks once they have ended.
+
+    What a fork has told counts as a whole or not at all: where something is missing, or is none of ours, its
+    mutants have not been run.
+
+    Args:
+        home: that of the test process.
+
+    Attributes:
+        bell: can be read when there is something new. What is in it means nothing.
+        writing: with which the test process says so.
+    """
+
+    def __init__(self, home: Home) -> None:
+        self.bell, self.writing = os.pipe()
+        self._home = home
+        self._reader = EventReader(home.events(SESSION), home.key)
+        os.set_blocking(self.bell, False)
+
+    def read(self, *, is_last: bool = False) -> list[Event]:
+        """The events that are there by now; ``is_last``: all processes are gone."""
+        return self._with_forks(SESSION, self.own(is_last=is_last))
+
+    def own(self, *, is_last: bool = False) -> list[Event]:
+        """Those of the process itself, with the ends of its forks."""
+        with contextlib.suppress(BlockingIOError):
+            os.read(self.bell, 1 << 21)  # more than what a pipe holds
+        return self._reader.read(is_last=is_last)
+
+    def close(self) -> None:
+        """Hear nothing any more."""
+        os.close(self.bell)
+        os.close(self.writing)
+
+    def _with_forks(self, name: str, events: Iterable[Event]) -> list[Event]:
+        """The events of a process, with those of its forks at their ends."""
+        found: list[Event] = []
+        for event in events:
+            if isinstance(event, ForkEnded):
+                found += self._of_fork(f"{name}.{event.fork}", event)
+            else:
+                found.append(event)
+        return found
+
+    def _of_fork(self, name: str, ended: ForkEnded) -> list[Event]:
+        """What a fork told that has ended; nothing if it cannot be relied on."""
+        reader = EventReader(self._home.events(name), self._home.key)
+        events = reader.read(is_last=True)
+        if reader.damage is not None:
+            return []
+        Path(self._home.events(name)).unlink(missing_ok=True)
+        return self._with_forks(name, fold_fork(events, ended.exit_code, ended.died))
+
+
+def command(arguments: Iterable[str], home: Path) -> list[str]:
+    """The command line of a worker."""
+    # the native traceback is the one that pytest need not parse any source for: that took a killed mutant
+    # longer than all else together
+    own = ["--maxfail=0", "--tb=native", "-o", f"cache_dir={home / 'cache'}"]
+    return [sys.executable, "-m", "pytest", "-p", "mutabot", *arguments, *own]
+
+
+def environment(job_file: Path, pipe: int) -> dict[str, str]:
+    """The environment of a worker."""
+    return {**usual_environment(), JOB_VARIABLE: str(job_file), PIPE_VARIABLE: str(pipe)}
+
+
+#: what processes of the tests import of us
+_OF_PROCESSES = ("evidence", "languages", "model", "operators", "runtime")
+
+
+def compile_us() -> None:
+    """Compile what processes of the tests import of us, if nobody has: they write no compiled files.
+
+    Some installers and all editable installations leave that to the first import, which would be each
+    process's.
+    """
+    ours = Path(__file__).parents[1]
+    if not os.access(ours, os.W_OK):
+        return
+    compileall.compile_dir(ours, maxlevels=0, quiet=2)
+    for part in _OF_PROCESSES:
+        compileall.compile_dir(ours / part, quiet=2)
+
+
+def usual_environment() -> dict[str, str]:
+    """What the environments of all workers have in common.
+
+    Nothing is written beside the user's sources, and hashing and numeric libraries behave the same in
+    every worker. Settings of the user's own take precedence.
+    """
+    settings = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    return {
+        "PYTHONHASHSEED": "0",
+        **settings,
+        **os.environ,
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+
+
+#: for Python, the journal and what is recorded; for pytest with its plug-ins, and the program under test
+_ALWAYS = 128
+#: for each of ``-j``: a pipe and the process itself, for up to four in its place, and as much to begin them
+_EACH = 16
+#: for a page: its connections, and what is read to answer them
+_PAGE = 128
+
+
+def needed(jobs: int, *, served: bool) -> int:
+    """How many files a campaign may have open at a time."""
+    return _ALWAYS + _EACH * jobs + (_PAGE if served else 0)
+
+
+def provide(jobs: int, *, served: bool) -> None:
+    """Raise this process's limit, and with it that of all it starts, if it is too low.
+
+    Raises UsageError if the system does not allow that.
+    """
+    wanted = needed(jobs, served=served)
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if _is_enough(soft, wanted):
+        return
+    if _is_enough(hard, wanted):
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+        return
+    fewer = (hard - needed(0, served=served)) // _EACH
+    advice = f", or use -j {fewer}" if fewer > 0 else ""
+    raise UsageError(
+        f"-j {jobs}{' with a page' if served else ''} needs {wanted} open files at a time, but the system "
+        f"allows {hard} (RLIMIT_NOFILE): raise that limit (`ulimit -Hn {wanted}` as root){advice}"
+    )
+
+
+def _is_enough(limit: int, wanted: int) -> bool:
+    return limit == resource.RLIM_INFINITY or limit >= wanted

@@ -1,0 +1,218 @@
+"""What a worker has left behind when it is gone: processes in sessions of their own, and its folder.
+
+All that is started below a worker finds the worker's folder in its environment, and the kernel shows with
+what environment a process began, whoever its parent is by then. A look at all processes takes about a
+millisecond. The folder is removed, whatever the worker has made of it.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import select
+import shutil
+import signal
+import stat
+import struct
+import subprocess
+import time
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from mutabot.model.event_file import VARIABLE
+from mutabot.model.keeper import name_of
+
+#: looks, each after the last one's finds were killed, until nothing is found
+_LOOKS = 20
+#: seconds between two looks at a process that is being started
+_PAUSE = 0.005
+#: the flag of the kernel's own threads, <linux/sched.h>
+_KERNEL = 0x00200000
+#: milliseconds that killed processes may take to be gone
+_PATIENCE = 5000
+_PROC = Path("/proc")
+#: in the folder of workers: who their controller is, and when it began
+OWNER = "controller"
+
+
+def end_left_over(folder: Path) -> list[str]:
+    """End every process that was started below the worker of this folder; returns which there were."""
+    entry = _mark(folder)
+    ended: list[str] = []
+    for _ in range(_LOOKS):
+        environments = {pid: _environment(pid) for pid in _processes()}
+        found = [pid for pid, environment in environments.items() if entry in environment]
+        ended += [name for pid in found for name in [name_of(pid)] if _end(pid, entry)]
+        if not found:
+            # for a moment, a program that is being started has no environment yet
+            if not any(
+                environment == [b""] and _is_starting(pid) for pid, environment in environments.items()
+            ):
+                break
+            time.sleep(_PAUSE)
+    return ended
+
+
+def by_mark() -> dict[Path, list[int]]:
+    """The processes that were started below workers, by the folder of the worker."""
+    found: dict[Path, list[int]] = {}
+    start = f"{VARIABLE}=".encode()
+    for pid in _processes():
+        for entry in _environment(pid):
+            if entry.startswith(start):
+                found.setdefault(Path(os.fsdecode(entry[len(start) :])), []).append(pid)
+    return found
+
+
+def claim(folder: Path) -> None:
+    """Say that the folder of workers belongs to this process, as long as that lives."""
+    (folder / OWNER).write_text(f"{os.getpid()} {_began(os.getpid())}", encoding="ascii")
+
+
+def end_abandoned(home: Path) -> int:
+    """End what is left below workers whose controller was killed; returns how many processes there were.
+
+    Args:
+        home: the folder in which the folders of workers are made.
+    """
+    ended = 0
+    for owner in home.glob(f"*/{OWNER}"):
+        try:
+            pid, began = owner.read_text("ascii").split()
+        except (OSError, ValueError):  # another campaign is about to write it, or to remove it
+            continue
+        if _began(int(pid)) == began:
+            continue
+        ended += end_below(owner.parent)
+        owner.unlink(missing_ok=True)
+    return ended
+
+
+def end_below(folder: Path) -> int:
+    """End all that was started below workers whose folders are in this one; returns how many there were."""
+    marks = os.fsencode(f"{VARIABLE}={folder}/")
+    ended = 0
+    for process in _processes():
+        entries = [entry for entry in _environment(process) if entry.startswith(marks)]
+        ended += sum(_end(process, entry) for entry in entries)
+    return ended
+
+
+def _mark(folder: Path) -> bytes:
+    """What the environment of a process says that was started below the worker of this folder."""
+    return os.fsencode(f"{VARIABLE}={folder}")
+
+
+def _began(pid: int) -> str:
+    """When a process began, in the kernel's words; empty if it is gone."""
+    with suppress(OSError):
+        return (_PROC / str(pid) / "stat").read_text("ascii", "replace").rpartition(")")[2].split()[19]
+    return ""
+
+
+def _processes() -> list[int]:
+    return [int(name) for name in os.listdir(_PROC) if name.isdigit()]  # noqa: PTH208  # three times as fast
+
+
+def _environment(pid: int) -> list[bytes]:
+    """What a process began with; empty if it is gone or somebody else's."""
+    with suppress(OSError), open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123  # likewise
+        return file.read().split(b"\0")
+    return []
+
+
+def _is_starting(pid: int) -> bool:
+    """Whether a process without an environment may get one: it is neither a dead one nor the kernel's own."""
+    with suppress(OSError):
+        fields = (_PROC / str(pid) / "stat").read_text("ascii", "replace").rpartition(")")[2].split()
+        return fields[0] not in "ZX" and not int(fields[6]) & _KERNEL
+    return False
+
+
+def _end(pid: int, entry: bytes) -> bool:
+    """End a process and wait until it is gone; not another that has got its number meanwhile."""
+    try:
+        process = os.pidfd_open(pid)
+    except OSError:
+        return False
+    try:
+        if entry not in _environment(pid):
+            return False
+        with suppress(ProcessLookupError, PermissionError):
+            signal.pidfd_send_signal(process, signal.SIGKILL)
+        poll = select.poll()
+        poll.register(process, select.POLLIN)
+        poll.poll(_PATIENCE)
+        return True
+    finally:
+        os.close(process)
+
+
+#: <linux/fs.h>: to read and to set the flags of a file; those that keep it from being changed or deleted
+_GET_FLAGS, _SET_FLAGS = 0x80086601, 0x40086602
+_IMMUTABLE, _APPEND_ONLY = 0x10, 0x20
+_FLAGS = struct.Struct("@l")
+_Error = tuple[type[BaseException], BaseException, TracebackType]
+
+
+def remove_folder(folder: Path) -> str | None:
+    """Remove a folder with all that is in it. Returns why it is still there, in words; None if it is gone."""
+    problems: list[str] = []
+
+    def let_in(function: Any, path: str, error: _Error) -> None:
+        if not isinstance(error[1], FileNotFoundError):
+            problems.append(f"{path} ({getattr(error[1], 'strerror', None) or error[1]})")
+        if isinstance(error[1], PermissionError):
+            _free(Path(path))
+
+    for _ in range(2):  # the second time all is free
+        try:
+            shutil.rmtree(folder, onerror=let_in)
+        except (RecursionError, OSError) as error:  # more folders in each other than Python can go down
+            problems.append(f"{folder} ({getattr(error, 'strerror', None) or error})")
+            subprocess.run(["rm", "-rf", "--", folder], check=False, stderr=subprocess.DEVNULL)
+        if not os.path.lexists(folder):
+            return None
+    return problems[-1] if problems else f"{folder} (something is written there)"
+
+
+def _free(path: Path) -> None:
+    """Something cannot be removed: let its owner change all that is in its folder, and in itself.
+
+    Folders may be closed to their owner, as those of private files are, and files may be immutable. Nothing
+    is changed through a link: what it leads to is the user's.
+    """
+    folder = path.parent
+    _open_up(folder)
+    with suppress(OSError):
+        for one in [path, *folder.iterdir()]:
+            _open_up(one)
+    if not path.is_symlink() and path.is_dir():
+        with suppress(OSError):
+            for one in path.iterdir():
+                _open_up(one)
+
+
+def _open_up(path: Path) -> None:
+    with suppress(OSError):
+        mode = path.lstat().st_mode
+        if not stat.S_ISDIR(mode) and not stat.S_ISREG(mode):
+            return
+        _make_mutable(path)
+        if stat.S_ISDIR(mode):
+            path.chmod(0o700)
+            _make_mutable(path)
+
+
+def _make_mutable(path: Path) -> None:
+    with suppress(OSError):
+        flags = os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC
+        descriptor = os.open(path, flags)
+        try:
+            found = _FLAGS.unpack(fcntl.ioctl(descriptor, _GET_FLAGS, bytes(_FLAGS.size)))[0]
+            if found & (_IMMUTABLE | _APPEND_ONLY):
+                fcntl.ioctl(descriptor, _SET_FLAGS, _FLAGS.pack(found & ~(_IMMUTABLE | _APPEND_ONLY)))
+        finally:
+            os.close(descriptor)

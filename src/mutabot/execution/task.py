@@ -1,0 +1,251 @@
+"""Tasks and results: a job with what is needed to run it, and what became of the process; and what runs them.
+
+An executor only runs what it is given, in worker processes on this machine or on others: which tasks there
+are, and what their results mean, is the engines' business. A package brings another executor by a
+``campaign.request.ExecutorChoice``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from mutabot.frozen import frozen
+from mutabot.model import Span
+from mutabot.model.event_file import UNWRITTEN
+from mutabot.model.events import (
+    Acted,
+    Called,
+    Event,
+    KnownLater,
+    NotInstrumented,
+    PlacesReached,
+    Problem,
+    SessionEnd,
+    SiteSeen,
+    TestEnd,
+    TestStart,
+    TextsSeen,
+    TokensHeld,
+    Untrusted,
+    Watched,
+)
+from mutabot.model.job import Job
+
+#: pytest's exit statuses after which a run of the suite says nothing about its tests
+ABNORMAL = {2: "it was interrupted", 3: "an internal error", 4: "a wrong command line or configuration"}
+_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
+#: what pytest prints around a mistake explains nothing
+_OF_NO_USE = re.compile(
+    r"\s*(inifile|rootdir|configfile|cachedir|plugins|testpaths): |platform |collected \d|=+ .* =+$"
+    r"|.*usage: .*\[options\]"
+)
+_LINES = 20
+
+
+def said_in(log: str) -> str:
+    """The last lines of what a process printed, in their own layout, as an appendix to a message."""
+    lines = [line.rstrip() for line in _ESCAPES.sub("", log).splitlines() if line.strip()]
+    lines = [_without_frame(line) for line in lines if not _OF_NO_USE.match(line)] or lines
+    if not lines:
+        return ""
+    return "; pytest said:" + "".join(f"\n  {line}" for line in lines[-_LINES:])
+
+
+def _without_frame(line: str) -> str:
+    """A line without the exclamation marks that pytest fills it up with."""
+    return line.strip("! ") if line.startswith("!!!") else line
+
+
+def last_line(log: str) -> str:
+    """The last line with text in it."""
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
+    return lines[-1][:300] if lines else ""
+
+
+#: seconds a worker may take until its first test begins, at least
+STARTUP_SECONDS = 60.0
+
+
+@frozen
+class Task:
+    """A job with what the controller needs to run it.
+
+    Attributes:
+        key: what the caller knows it by.
+        job: the job.
+        deadlines: wall-clock seconds each test may take; tests that are missing get ``deadline``.
+        deadline: wall-clock seconds for any other test.
+        startup: wall-clock seconds until the first test begins.
+        is_trunk: whether it branches: it then runs on a token of the pool.
+        may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
+        alone: whether nothing may run beside it.
+    """
+
+    key: Any
+    job: Job
+    deadlines: Mapping[str, float] = field(default_factory=dict)
+    deadline: float = 600.0
+    startup: float = STARTUP_SECONDS
+    is_trunk: bool = False
+    may_share: bool = False
+    alone: bool = False
+
+
+@dataclass(slots=True)
+class Result:
+    """What became of a worker.
+
+    Attributes:
+        task: its task.
+        sites, ends, problems: what it reported.
+        acted: tests in which its mutant did something; the empty one stands for before any test.
+        reached: places of the program text by test, likewise.
+        reached_elsewhere: the same in processes below the tests.
+        called_at_import: the calls of operations before any test.
+        seen: what a recording saw of the program text.
+        not_instrumented: files whose mutants cannot run, with the reason.
+        known_later: operations by sites at which only some tests tell that they stand there.
+        in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
+        held: tokens that it and its branches held when it was last heard of.
+        running: test that was under way when it ended, or None.
+        watched: limits of the suite's own that would end it during that test.
+        end: its orderly end; None if there was none.
+        exit_code: its exit code, negative for a signal.
+        overdue: which wall-clock limit it exceeded, in words, or None.
+        hindered: why that says little of it, as the machine was busy, in words; None if it was not.
+        is_starved: whether it was ended although it had not had its time, as it would have taken too long.
+        where: where it was then: its innermost calls; None if that is not known.
+        wall: seconds from its start to its end.
+        log: the last lines it printed.
+        lost: why no process could be had that runs it to its end, or None.
+        untrusted: why what it reported cannot be relied on, or None.
+    """
+
+    task: Task
+    sites: list[SiteSeen] = field(default_factory=list)
+    ends: list[TestEnd] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+    acted: list[str] = field(default_factory=list)
+    reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    reached_elsewhere: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    called_at_import: list[Called] = field(default_factory=list)
+    seen: TextsSeen | None = None
+    not_instrumented: dict[str, str] = field(default_factory=dict)
+    known_later: dict[Span, str] = field(default_factory=dict)
+    in_mutated_call: bool = False
+    held: int = 0
+    running: str | None = None
+    watched: list[Watched] = field(default_factory=list)
+    end: SessionEnd | None = None
+    exit_code: int = 0
+    overdue: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
+    where: str | None = None
+    wall: float = 0.0
+    log: str = ""
+    lost: str | None = None
+    untrusted: str | None = None
+
+    def take(self, line: Event) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
+        """Sort in one event."""
+        match line:
+            case SiteSeen():
+                self.sites.append(line)
+            case TestStart():
+                self.running = line.test
+                self.watched.clear()
+            case Watched():
+                self.watched.append(line)
+            case Acted(in_call=None):
+                self.acted.append(line.test)
+            case Acted(in_call=bool(in_call)):
+                self.in_mutated_call = in_call
+            case PlacesReached() if line.elsewhere:
+                self.reached_elsewhere[line.test] = line.places
+            case PlacesReached():
+                self.reached[line.test] = line.places
+            case Called():
+                self.called_at_import.append(line)
+            case TextsSeen():
+                self.seen = line
+            case NotInstrumented():
+                self.not_instrumented[line.file] = line.reason
+            case KnownLater():
+                self.known_later[line.span] = line.operation
+            case TokensHeld():
+                self.held = line.held
+            case TestEnd():
+                self.ends.append(line)
+                self.running = None
+            case Problem():
+                self.problems.append(line)
+            case SessionEnd():
+                self.end = line
+            case Untrusted() if self.untrusted is None:
+                during = f" (during {self.running})" if self.running else ""
+                self.untrusted = f"{line.reason}{during}"
+
+    def find_overdue(self, now: float) -> bool:
+        """Whether a limit of the suite's own ended it by ``now`` (``time.monotonic``); it is noted."""
+        if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
+            self.overdue = next((one.text for one in self.watched if now >= one.until), None)
+            return self.overdue is not None
+        return False
+
+
+def death(result: Result, *, said: bool = True) -> str:
+    """How a worker ended that did not end in an orderly way, and the last that it ``said``."""
+    if result.lost is not None:
+        return result.lost
+    during = f" during {result.running}" if result.running else ""
+    if result.overdue:
+        return f"{result.overdue}{during}"
+    how = how_ended(result.exit_code)
+    line = last_line(result.log) if said else ""
+    return f"{how}{during}{f'; it said last: {line}' if line else ''}"
+
+
+def how_ended(code: int) -> str:
+    """How a process ended that did not say that it did, by its exit code."""
+    if code == UNWRITTEN:
+        return "the tests' process could not write what it had to tell; is the disk full?"
+    return f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
+
+
+def at(result: Result) -> str:
+    """Where a worker was when its time was up, to be added to how it ended; empty if that is not known."""
+    return f"; it was at {result.where}" if result.where is not None else ""
+
+
+class Executor(Protocol):
+    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs.
+
+    Attributes:
+        spread: how many places share nothing, neither trunks nor fork servers: work is worth cutting into
+            parts for them, and to begin with its longest. 1 on one machine.
+        remarks: what is to be known of where tasks ran, for whoever reads the journal.
+    """
+
+    @property
+    def spread(self) -> int: ...
+
+    @property
+    def remarks(self) -> Sequence[str]: ...
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        """The same, with each event as it comes.
+
+        A task whose job branches is a trunk: the executor gives it and its branches the tokens by which they
+        share its places with the other tasks. A task that is ``alone`` has nothing beside it.
+        """
+
+    def apart(self) -> AbstractContextManager[Executor]:
+        """An executor for one task at a time, which shares nothing with what runs here meanwhile."""

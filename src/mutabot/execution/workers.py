@@ -1,0 +1,557 @@
+"""Worker processes: each runs one job in a fresh Python and tells what it does.
+
+One thread looks after all of them: it waits for events, for exits and for deadlines, and never for one
+worker alone. Workers are process groups of their own, so that ending one ends all it started.
+
+Workers that only wait, for what may never come, and who may compute in their place.
+
+A place that such a worker holds is lent to the next task. What a mutant of a message does to a program is
+often just that: it waits. One place at a time stays one place: whoever asks for no neighbours has none.
+
+Nothing is lent where nobody can tell waiting from being kept waiting: a process that gets little of a busy
+machine is not idle. So what counts is what the tasks of a worker ask for, not what they get; and as long as
+processors are short on the machine, whoever uses them, nothing is lent at all.
+
+Of the token pool this is the controller's side: a pipe with one byte per free token, as many tokens as
+processes may compute. A trunk is started with a token that the controller took for it; from then on it takes
+and gives back by itself and says how many it holds, so that the tokens of a trunk that dies are not lost.
+"""
+
+from __future__ import annotations
+
+import os
+import selectors
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Protocol
+
+from mutabot.errors import JournalError
+from mutabot.execution.forkserver import LOOKS, Copy, ForkServer
+from mutabot.execution.interruption import Pause, interruptible
+from mutabot.execution.processes import EventStream, Home, Spawned, compile_us, refuse_full_disk
+from mutabot.execution.remains import by_mark, claim, end_abandoned, end_left_over, remove_folder
+from mutabot.execution.task import Result, Task
+from mutabot.model import process_time
+from mutabot.model.events import Acted, Event, TestEnd, TestStart, Untrusted
+from mutabot.model.fold import Children, acted_in
+from mutabot.model.process_time import (
+    MOST,
+    Accounts,
+    TimeUsed,
+    accounts_of,
+    below,
+    children,
+    is_crowded,
+    overdue,
+    shortage,
+)
+
+#: seconds between two looks
+PERIOD = 1.0
+#: looks in a row that must find a worker waiting
+_LOOKS = 3
+#: share of a processor under which a worker only waits: nodes that poll, and announce themselves, take some
+_SHARE = 0.25
+#: the share of the time in which some task may have had no processor while processors are not short
+_SHORT = 0.2
+#: workers at most, for each place
+_MOST = 4
+
+
+class Observed(Protocol):
+    """A worker: its process, and the folder that processes below it know it by."""
+
+    @property
+    def pid(self) -> int: ...
+
+    @property
+    def processes(self) -> Path: ...
+
+
+class Waiting:
+    """Which workers only wait.
+
+    Args:
+        places: how many may be at work at a time.
+    """
+
+    def __init__(self, places: int) -> None:
+        self._places = places
+        self._accounts: dict[int, Accounts] = {}
+        self._still: dict[int, int] = {}
+        self._looked = 0.0
+        self._shortage: float | None = None
+
+    def has_place(self, workers: Iterable[Observed]) -> bool:
+        """Whether one more may begin beside these, of which some may only wait."""
+        here = list(workers)
+        if len(here) < self._places:
+            return True
+        if self._places == 1 or len(here) >= _MOST * self._places:
+            return False
+        self._look(here)
+        return len(here) - sum(self._still.get(one.pid, 0) >= _LOOKS for one in here) < self._places
+
+    def _look(self, workers: list[Observed]) -> None:
+        now = time.monotonic()
+        since = now - self._looked
+        if since < PERIOD:
+            return
+        self._looked = now
+        known, marked = children(), by_mark()
+        accounts = {
+            one.pid: accounts_of(below([one.pid, *marked.get(one.processes, ())], known)) for one in workers
+        }
+        is_short = self._is_short(since)
+        self._still = {
+            pid: self._still.get(pid, 0) + 1
+            for pid, found in accounts.items()
+            if not is_short and asks_for_little(self._accounts.get(pid), found, _SHARE * since)
+        }
+        self._accounts = accounts
+
+    def _is_short(self, since: float) -> bool:
+        """Whether processors were short since the last look."""
+        before, self._shortage = self._shortage, shortage()
+        if self._shortage is None:
+            return is_crowded()
+        return before is None or self._shortage - before > _SHORT * since
+
+
+def asks_for_little(before: Accounts, now: Accounts, seconds: float) -> bool:
+    """Whether the tasks of a worker have asked for fewer seconds of a processor between two looks.
+
+    Not if any asks right now, if tasks have begun or ended, or if the kernel does not tell.
+    """
+    if not before or not now or before.keys() != now.keys():
+        return False
+    if any(one.is_asking for one in (*before.values(), *now.values())):
+        return False
+    asked = sum(one.ran + one.queued for one in now.values())
+    return asked - sum(one.ran + one.queued for one in before.values()) < seconds
+
+
+_BYTE = b"t"
+#: bytes that a pipe holds at most
+_MOST_TOKENS = 1 << 20
+
+
+class TokenPool:
+    """A pool of ``size`` tokens, all of them free at first."""
+
+    def __init__(self, size: int) -> None:
+        self._size = size
+        self.reading, self._writing = os.pipe()
+        # whatever a test puts there or takes away, nobody may wait for it
+        os.set_blocking(self.reading, False)
+        os.set_blocking(self._writing, False)
+        self.give_back(size)
+
+    @property
+    def descriptors(self) -> tuple[int, int]:
+        """Reading and writing end, for a trunk."""
+        return self.reading, self._writing
+
+    def take(self) -> bool:
+        """Take a free token, if there is one."""
+        try:
+            return bool(os.read(self.reading, 1))
+        except BlockingIOError:
+            return False
+
+    def give_back(self, count: int) -> None:
+        """Put tokens back; never more than there are."""
+        if count > 0:
+            with suppress(BlockingIOError):
+                os.write(self._writing, _BYTE * min(count, self._size))
+
+    def refill(self) -> None:
+        """Make all tokens free again; only when nobody holds any."""
+        with suppress(BlockingIOError):
+            os.read(self.reading, _MOST_TOKENS)
+        self.give_back(self._size)
+
+    def close(self) -> None:
+        """Close both ends."""
+        os.close(self.reading)
+        os.close(self._writing)
+
+
+#: said of a process whose own folder somebody deleted while it ran: what it kept there is lost
+_HOME_LOST = Untrusted("the folder in which the tests' process worked was deleted or closed while it ran")
+
+
+class Workers:
+    """Runs tasks in up to ``jobs`` worker processes at a time, and more while some of them only wait.
+
+    Args:
+        root: the project's root; workers start there.
+        arguments: pytest arguments of the project.
+        jobs: how many are at work side by side.
+        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
+        pause: while it is on, no task begins, and no trunk branches; None if nobody can pause.
+        on_left: told once what tests had left running, and was ended.
+
+    Use as a context manager: leaving it ends whatever still runs and removes temporary files.
+
+    Attributes:
+        pool: the tokens of trunks and branches.
+        look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
+        spread: see ``Executor``.
+    """
+
+    spread = 1
+
+    def __init__(
+        self,
+        root: Path,
+        arguments: Iterable[str],
+        jobs: int,
+        on_unshared: Callable[[str], None] = lambda reason: None,
+        pause: Pause | None = None,
+        on_left: Callable[[list[str]], None] = lambda left: None,
+    ) -> None:
+        self._root = root
+        self._arguments = tuple(arguments)
+        self._jobs = max(1, jobs)
+        self._selector = selectors.DefaultSelector()
+        self._workers: list[_Worker] = []
+        self._waiting = Waiting(self._jobs)
+        self._servers: list[ForkServer] = []
+        self._on_unshared = on_unshared
+        self._pause = pause
+        self._on_left, self._has_told_left = on_left, False
+        self._may_share = True
+        self._remains: list[str] = []
+        self.pool = TokenPool(self._jobs)
+        self.look: Callable[[], None] | None = None
+        compile_us()
+        home = root / ".mutabot"
+        try:
+            home.mkdir(exist_ok=True)
+            ignore = home / ".gitignore"
+            if not ignore.exists():
+                ignore.write_text("*\n", encoding="utf-8")
+            end_abandoned(home)
+            self._folder = Path(tempfile.mkdtemp(prefix="work-", dir=home))
+            try:
+                claim(self._folder)
+            except BaseException:
+                remove_folder(self._folder)
+                raise
+        except OSError as error:
+            raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        for worker in self._workers:
+            worker.kill()
+        for worker in self._workers:
+            worker.close(self._selector)
+            self._tell_left(worker.left)
+        self._workers.clear()
+        for server in list(self._servers):
+            self._end_server(server)
+        self._selector.close()
+        self.pool.close()
+        self._note_remains(remove_folder(self._folder))
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
+        for event in self.events(tasks):
+            if isinstance(event, Result):
+                yield event
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        """Events as they come, with their task, and results in the order in which they end."""
+        waiting = iter(tasks)
+        next_task = next(waiting, None)
+        while True:
+            while next_task is not None and not self._is_paused and self._has_place(next_task):
+                self._start(next_task)
+                next_task = next(waiting, None)
+            if next_task is None and not self._workers:
+                return
+            yield from self._wait(next_task)
+
+    def apart(self) -> Workers:
+        """One more worker process, which shares nothing with these."""
+        return Workers(self._root, self._arguments, jobs=1, pause=self._pause)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """See ``Executor``."""
+        if not self._remains:
+            return ()
+        more = f" and {len(self._remains) - 1} more" if len(self._remains) > 1 else ""
+        return (
+            f"What a test made cannot be removed: {self._remains[0]}{more}. Outcomes are not touched by it; "
+            f"remove {self._folder} by hand.",
+        )
+
+    def _note_remains(self, remains: str | None) -> None:
+        if remains is not None:
+            self._remains.append(remains)
+
+    @property
+    def _is_paused(self) -> bool:
+        return self._pause is not None and self._pause.is_on
+
+    @property
+    def _inherited(self) -> tuple[int, ...]:
+        """The descriptors that trunks need."""
+        gate = () if self._pause is None else (self._pause.reading,)
+        return (*self.pool.descriptors, *gate)
+
+    def _has_place(self, task: Task) -> bool:
+        if self._workers and self._is_alone(task):
+            return False
+        if not task.is_trunk:
+            return self._waiting.has_place(self._workers)
+        if len(self._workers) >= self._jobs:
+            return False
+        if not self._workers:
+            self.pool.refill()  # nobody is left who could hold one
+        return self.pool.take()
+
+    def _is_alone(self, task: Task) -> bool:
+        return task.alone or any(worker.task.alone for worker in self._workers)
+
+    def _start(self, task: Task) -> None:
+        if task.job.branching is not None:
+            gate = None if self._pause is None else self._pause.reading
+            branching = replace(task.job.branching, tokens=self.pool.descriptors, gate=gate)
+            task = replace(task, job=replace(task.job, branching=branching))
+        home = Home.make(self._folder, task.job)
+        events = EventStream(home)
+        try:
+            worker = _Worker(task, home, events, self._process(task, home, events.writing))
+        except BaseException:
+            events.close()
+            raise
+        worker.watch(self._selector)
+        self._workers.append(worker)
+
+    def _process(self, task: Task, home: Home, writing: int) -> Spawned | Copy:
+        server = self._server_for(task) if task.may_share else None
+        copy = server.copy(home, writing) if server is not None else None
+        if copy is not None:
+            return copy
+        descriptors = self._inherited if task.is_trunk else ()
+        return Spawned(self._root, self._arguments, home, writing, descriptors)
+
+    def _server_for(self, task: Task) -> ForkServer | None:
+        """The fork server for such a task; None if there can be none."""
+        found = next((server for server in self._servers if server.serves(task.job)), None)
+        if found is not None or not self._may_share:
+            return found
+        for idle in [server for server in self._servers if server.is_idle]:
+            self._end_server(idle)  # what it was for is over
+        server = ForkServer(task.job, self._root, self._arguments, self._folder, self._inherited)
+        self._servers.append(server)
+        for descriptor in (server.events.bell, server.process.pidfd):  # with it, its copies end
+            self._selector.register(descriptor, selectors.EVENT_READ, server)
+        reason = server.wait_until_ready(task.startup, self.look)
+        if reason is None:
+            return server
+        self._may_share = False
+        self._on_unshared(reason)
+        self._end_server(server)
+        return None
+
+    def _end_server(self, server: ForkServer) -> None:
+        for descriptor in (server.events.bell, server.process.pidfd):
+            self._selector.unregister(descriptor)
+        self._servers.remove(server)
+        left, remains = server.close()
+        self._tell_left(left)
+        self._note_remains(remains)
+
+    def _tell_left(self, left: list[str] | None) -> None:
+        """Say once that tests leave something running."""
+        if left and not self._has_told_left:
+            self._has_told_left = True
+            self._on_left(left)
+
+    def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Event]]:
+        """Until something happens, or might: ``next_task`` has no place yet."""
+        timeout = self._patience(next_task)
+        awaited = self._awaited(next_task)
+        if awaited is not None:
+            self._selector.register(awaited, selectors.EVENT_READ, None)
+        if self.look is not None:
+            self.look()
+            timeout = LOOKS if timeout is None else min(timeout, LOOKS)
+        with interruptible():
+            ready = self._selector.select(timeout)
+        if awaited is not None:
+            self._selector.unregister(awaited)
+        for key, _ in ready:
+            if isinstance(key.data, ForkServer):
+                key.data.listen()
+            elif isinstance(key.data, _Worker) and key.fd == key.data.events.bell:
+                for line in key.data.read():
+                    yield key.data.task, line
+        now = time.monotonic()
+        for worker in list(self._workers):
+            if now >= worker.deadline(self._pause) and not worker.has_ended and worker.is_out_of_time():
+                worker.expire()
+            if worker.has_ended:
+                yield from self._finish(worker)
+
+    def _patience(self, next_task: Task | None) -> float | None:
+        """Seconds until something is to be looked at, whatever happens; None if nothing is."""
+        if any(worker.has_ended for worker in self._workers):
+            return 0.0  # a fork server may have told so while it was asked for something else
+        until = min((worker.deadline(self._pause) for worker in self._workers), default=None)
+        seconds = None if until is None else max(0.0, until - time.monotonic())
+        if next_task is None or self._is_paused:
+            return seconds
+        return PERIOD if seconds is None else min(seconds, PERIOD)
+
+    def _awaited(self, next_task: Task | None) -> int | None:
+        """What tells that the next task may begin; None if only workers can."""
+        if next_task is None:
+            return None
+        if self._pause is not None and self._pause.is_on:
+            return self._pause.reading
+        return self.pool.reading if next_task.is_trunk and len(self._workers) < self._jobs else None
+
+    def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Event]]:
+        self._workers.remove(worker)
+        lines, result, remains = worker.finish(self._selector)
+        self._tell_left(worker.left)
+        self._note_remains(remains)
+        for line in lines:
+            yield worker.task, line
+        if result.end is None:
+            refuse_full_disk(self._folder)
+        if worker.task.is_trunk:
+            self.pool.give_back(result.held)  # what a trunk that died had not given back itself
+        yield result
+
+
+class _Worker:
+    """One running worker process."""
+
+    def __init__(self, task: Task, home: Home, events: EventStream, process: Spawned | Copy) -> None:
+        self.task = task
+        self.result = Result(task, held=1 if task.is_trunk else 0)
+        self.events = events
+        self._home, self._process = home, process
+        self.left: list[str] | None = None
+        self._started = time.monotonic()
+        self._allow(task.startup)
+
+    @property
+    def pid(self) -> int:
+        """The number of its process."""
+        return self._process.pid
+
+    @property
+    def processes(self) -> Path:
+        """The folder that processes below it know it by."""
+        return self._home.processes
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the process is gone."""
+        return self._process.exit_code is not None
+
+    def watch(self, selector: selectors.BaseSelector) -> None:
+        selector.register(self.events.bell, selectors.EVENT_READ, self)
+        if self._process.pidfd is not None:
+            selector.register(self._process.pidfd, selectors.EVENT_READ, self)
+
+    def read(self) -> list[Event]:
+        """Take what it has told by now."""
+        return self._taken(self.events.read())
+
+    def _taken(self, events: list[Event]) -> list[Event]:
+        for event in events:
+            self.result.take(event)
+            if isinstance(event, TestEnd):
+                self._allow(self.task.startup)
+            elif isinstance(event, TestStart) or self.task.is_trunk:
+                running = self.result.running or ""
+                self._allow(self.task.deadlines.get(running, self.task.deadline))
+        return events
+
+    def _allow(self, seconds: float) -> None:
+        """From now on it may take so long."""
+        self._limit, self._used = seconds, TimeUsed.from_now([self.pid])
+        self.until = self._used.began + seconds
+
+    def is_out_of_time(self) -> bool:
+        """Whether it has used its time, now that the wall clock has run out; if not, it gets what is left."""
+        left = self._used.left(self._limit, [self.pid])
+        if left > 0:
+            self.until = time.monotonic() + max(left, LOOKS)
+        return left <= 0
+
+    def deadline(self, pause: Pause | None) -> float:
+        """When (``time.monotonic``) its time is up. A trunk in a pause has nothing to tell."""
+        if pause is None or not self.task.is_trunk:
+            return self.until
+        return max(self.until, pause.lasted_until() + self.task.deadline)
+
+    def expire(self) -> None:
+        """Its time is up: end the process group."""
+        self.result.hindered = self._used.hindrance([self.pid])
+        self.result.is_starved = time.monotonic() >= self._used.began + MOST * self._limit
+        test = self.result.running
+        limit = self.task.startup if test is None else self.task.deadlines.get(test, self.task.deadline)
+        self.result.overdue = overdue(limit, test)
+        self.result.where = process_time.ask(
+            self._process.tests, str(self._home.folder / process_time.FILE), self.task.job.root
+        )
+        self._process.end()
+
+    def kill(self) -> None:
+        self._process.kill()
+
+    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result, str | None]:
+        """Collect the rest of a process that has ended.
+
+        Returns its last lines, what became of it, and what of it cannot be removed.
+        """
+        self.result.exit_code = self._end()
+        lines = self._taken([] if self._home.is_whole else [_HOME_LOST])
+        lines += self._taken(self.events.read(is_last=True))
+        if self.result.find_overdue(time.monotonic()):
+            self.result.hindered = self._used.hindrance()
+        if self.result.end is None:
+            children = Children(str(self._home.folder), self._home.key)
+            children.read()
+            lines += self._taken([Acted(test) for test in acted_in(children.records.values())])
+            lines += self._taken([Untrusted(children.doubt)] if children.doubt is not None else [])
+        self.result.wall = time.monotonic() - self._started + self._process.startup
+        self.result.log = self._home.log_text()
+        return lines, self.result, self.close(selector)
+
+    def close(self, selector: selectors.BaseSelector) -> str | None:
+        """Let go of all; what of it cannot be removed, in words, or None."""
+        selector.unregister(self.events.bell)
+        if self._process.pidfd is not None:
+            selector.unregister(self._process.pidfd)
+        self.events.close()
+        self._end()
+        self._process.release()
+        return self._home.remove()
+
+    def _end(self) -> int:
+        """End it and all that was started below it; returns its exit code."""
+        code = self._process.end()
+        if self.left is None:
+            left = self._process.left
+            self.left = end_left_over(self._home.processes) if left is None else left
+        return code

@@ -1,0 +1,432 @@
+"""Answers by value: what a command returned, as JSON-like data, and back as a fresh object each time.
+
+Only what is sure to be the same after a copy is kept: plain values, containers of them, arrays, enumerations,
+and objects whose whole state is made of these. An object that the call knew already (the instance, an
+argument) is kept as a reference to it. A part of the robot API is never copied: its copy would be a robot
+that nobody commands. A future is kept as one that is never done.
+
+Members of enumerations, of Python's and of pybind11's, as vocabularies write them.
+
+A vocabulary names a member by its name, by its number or other value, or as it prints (``Mode.AUTO``).
+"""
+
+from __future__ import annotations
+
+import base64
+import importlib
+import sys
+from array import array
+from collections import OrderedDict, deque
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import is_dataclass
+from enum import Enum, Flag
+from functools import cache, reduce
+from operator import or_
+from types import SimpleNamespace
+from typing import Any
+
+from mutabot.errors import PathError, nearest_name
+from mutabot.extensions import brought
+from mutabot.model.path import class_name
+
+#: members that a message lists
+_MOST = 12
+
+
+def is_member(value: Any) -> bool:
+    """Whether a value is a member of an enumeration."""
+    kind: Any = type(value)
+    return isinstance(value, Enum) or _is_of_pybind11(kind)
+
+
+@cache
+def _is_of_pybind11(kind: Any) -> bool:
+    members = getattr(kind, "__members__", None)
+    return (
+        isinstance(members, Mapping)
+        and bool(members)
+        and all(type(one) is kind for one in members.values())
+        and all(hasattr(kind, name) for name in ("name", "value"))
+    )
+
+
+def member_of(kind: type[Any], written: Any) -> Any | None:
+    """The member of an enumeration that is written so; None if it has none."""
+    members: Mapping[str, Any] = getattr(kind, "__members__", {})
+    if isinstance(written, str) and written in members:
+        return members[written]
+    for member in members.values():
+        if _is_value(member, written) or (isinstance(written, str) and str(member) == written):
+            return member
+    return _combined(kind, members, written) if issubclass(kind, Flag) else None
+
+
+def name_of(member: Any) -> str:
+    """A member's name; how it prints where it has none of its own."""
+    return str(member.name or member)
+
+
+def written_of(member: Any, values: Sequence[Any], path: str) -> Any:
+    """Which of a vocabulary's values stands for a member; its name if none does.
+
+    Raises PathError if its enumeration has no member for one of the values, or one member for two of them.
+    """
+    kind: Any = type(member)
+    found = _members(kind, tuple(map(_Typed, values)), path)
+    for value, one in zip(values, found, strict=True):
+        if one == member:
+            return value
+    return name_of(member)
+
+
+class _Typed:
+    """A value that is equal only to one of the same type: 1 is not true."""
+
+    __slots__ = ("value",)
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Typed) and (type(self.value), self.value) == (
+            type(other.value),
+            other.value,
+        )
+
+    def __hash__(self) -> int:
+        return hash((type(self.value), self.value))
+
+
+@cache
+def _members(kind: Any, values: tuple[_Typed, ...], path: str) -> tuple[Any, ...]:
+    """The members that these values stand for. Raises PathError."""
+    found: list[Any] = []
+    for one in values:
+        member = member_of(kind, one.value)
+        if member is None:
+            raise _unknown(kind, one.value, path)
+        if member in found:
+            raise _error(kind, f"values name {name_of(member)} of {kind.__name__} twice", path)
+        found.append(member)
+    return tuple(found)
+
+
+def _unknown(kind: type[Any], value: Any, path: str) -> PathError:
+    known = list(kind.__members__)
+    near = nearest_name(str(value), known)
+    listed = ", ".join(known[:_MOST]) + (" …" if len(known) > _MOST else "")
+    hint = f"did you mean {near!r}?" if near else f"it has {listed}"
+    return _error(kind, f"{kind.__name__} has no member {value!r}, which values name; {hint}", path)
+
+
+def _error(kind: type[Any], text: str, path: str) -> PathError:
+    return PathError(text, path="", step=path, found=kind.__name__)
+
+
+def _is_value(member: Any, written: Any) -> bool:
+    value = member.value
+    try:
+        return isinstance(value, str) is isinstance(written, str) and bool(value == written)
+    except Exception:  # a value of the user's may compare in any way
+        return False
+
+
+def _combined(kind: type[Any], members: Mapping[str, Any], written: Any) -> Any | None:
+    """Several flags at once, by their names (``READ|WRITE``) or their number."""
+    if isinstance(written, str):
+        names = [name.strip() for name in written.split("|")]
+        known = all(name in members for name in names)
+        return reduce(or_, (members[name] for name in names)) if known else None
+    every = reduce(or_, (member.value for member in members.values()), 0)
+    is_known = isinstance(written, int) and written >= 0 and not written & ~every
+    return kind(int(written)) if is_known else None
+
+
+def future_class(value: Any) -> str | None:
+    """The kind of future that a value is; None if it is none."""
+    # these modules are slow to import, and where nobody has done so there are no futures of theirs
+    if isinstance(value, _imported("asyncio", "Task")):
+        return "asyncio.Task"
+    if isinstance(value, _imported("asyncio", "Future")):
+        return "asyncio.Future"
+    if type(value) in _imported("concurrent.futures", "Future"):
+        return "concurrent.futures.Future"
+    name = class_name(type(value))
+    return next((one.name for one in brought("futures").values() if one.reference == name), None)
+
+
+def _imported(module: str, name: str) -> tuple[type, ...]:
+    """A class, if its module is imported."""
+    found = getattr(sys.modules.get(module), name, None)
+    return () if found is None else (found,)
+
+
+def never_done(kind: str, here: Mapping[str, Any]) -> Any:
+    """A new future of this kind that nobody ever completes. Raises LookupError where there can be none."""
+    if kind == "concurrent.futures.Future":
+        import concurrent.futures  # noqa: PLC0415  # as above
+
+        return concurrent.futures.Future()
+    known = brought("futures").get(kind)
+    if known is not None:
+        if known.reference.partition(":")[0] not in sys.modules:
+            raise LookupError(f"{known.reference} is not imported")
+        return known.load()()
+    import asyncio  # noqa: PLC0415  # as above
+
+    try:
+        loop = asyncio.get_running_loop()
+    except RuntimeError:
+        raise LookupError(f"a future of kind {kind} needs an event loop, and none is running") from None
+    if kind != "asyncio.Task":
+        return loop.create_future()
+
+    async def never() -> None:
+        await loop.create_future()
+
+    return loop.create_task(never())
+
+
+#: characters that an answer may take as data; it goes to every process that runs its mutant
+LIMIT = 50_000
+#: containers in containers; more is a structure that holds itself
+DEPTH = 20
+
+_PLAIN = frozenset({type(None), bool, int, float, str})
+_SEQUENCES: dict[type[Any], str] = {
+    list: "list", tuple: "tuple", set: "set", frozenset: "frozenset", deque: "deque",
+}  # fmt: skip
+_MAPPINGS: dict[type[Any], str] = {dict: "dict", OrderedDict: "OrderedDict"}
+_MADE_BY: dict[str, type[Any]] = {name: kind for kind, name in {**_SEQUENCES, **_MAPPINGS}.items()}
+_IMMUTABLE = (tuple, frozenset)
+#: who has one of these copies itself in a way of its own, notices being thrown away, or answers any question
+_OWN_WAYS = (
+    "__new__", "__reduce__", "__reduce_ex__", "__getstate__", "__setstate__", "__getnewargs__",
+    "__getnewargs_ex__", "__copy__", "__deepcopy__", "__del__", "__getattr__", "__getattribute__",
+)  # fmt: skip
+
+#: the modules of ROS 1 that its messages and moments have their methods from
+_OF_ROS_1 = ("genpy.message", "genpy.rostime")
+
+
+class NotKeptError(ValueError):
+    """An answer that cannot be kept by value; the text says what it is."""
+
+
+def is_of_numpy(value: Any) -> bool:
+    """Whether it is an array or a scalar of numpy, which may not be there at all."""
+    numpy = sys.modules.get("numpy")
+    return numpy is not None and (type(value) is numpy.ndarray or isinstance(value, numpy.generic))
+
+
+def is_plain(value: Any) -> bool:
+    """Whether a value is kept as it is."""
+    return type(value) in _PLAIN
+
+
+def keep(value: Any, here: Mapping[str, Any], handles: Collection[str] = ()) -> Any:
+    """An answer as JSON-like data.
+
+    Args:
+        value: what the command returned.
+        here: what the call knew, by name: the instance as ``self``, and the arguments.
+        handles: classes (``module:Name``) that are part of the robot API.
+
+    Raises NotKeptError if it cannot be copied safely.
+    """
+    return _Keeper(here, frozenset(handles)).keep(value, 0)
+
+
+def restore(data: Any, here: Mapping[str, Any]) -> Any:
+    """A fresh object for data that ``keep`` has made; ``{"call": name}`` is asked of the user's function.
+
+    Raises LookupError if a class or function is no longer there, or an argument is not given.
+    """
+    if not isinstance(data, dict):
+        return data
+    ((form, content),) = data.items()
+    if form in _REFERENCES:
+        return _REFERENCES[form](content, here)
+    if form in _LEAVES:
+        return _LEAVES[form](content)
+    match form:
+        case "namespace":
+            return SimpleNamespace(**{key: restore(item, here) for key, item in content.items()})
+        case "namedtuple":
+            return tuple.__new__(_named(content[0]), [restore(item, here) for item in content[1]])
+        case "object":
+            name, attributes, slots = content
+            return _object(name, attributes, slots, here)
+        case "dict" | "OrderedDict":
+            return _MADE_BY[form]((restore(key, here), restore(item, here)) for key, item in content)
+        case _:
+            return _MADE_BY[form](restore(item, here) for item in content)
+
+
+class _Keeper:
+    def __init__(self, here: Mapping[str, Any], handles: frozenset[str]) -> None:
+        self._here = here
+        self._handles = handles
+        self._left = LIMIT
+
+    def keep(self, value: Any, depth: int) -> Any:
+        self._spend(len(value) if isinstance(value, str) else 8)
+        if type(value) in _PLAIN:
+            return value
+        if depth > DEPTH:
+            raise NotKeptError("something that holds itself")
+        if not isinstance(value, _IMMUTABLE):
+            known = next((name for name, one in self._here.items() if one is value), None)
+            if known is not None:
+                return {"here": known}
+        return self._container(value, depth + 1)
+
+    def _container(self, value: Any, depth: int) -> Any:
+        kind = type(value)
+        if kind in _SEQUENCES:
+            return {_SEQUENCES[kind]: [self.keep(item, depth) for item in value]}
+        if kind in _MAPPINGS:
+            pairs = [[self.keep(key, depth), self.keep(item, depth)] for key, item in value.items()]
+            return {_MAPPINGS[kind]: pairs}
+        if kind is SimpleNamespace:
+            return {"namespace": self._attributes(vars(value), depth)}
+        if kind in (bytes, bytearray):
+            self._spend(len(value) * 4 // 3)
+            return {kind.__name__: base64.b64encode(value).decode()}
+        if is_of_numpy(value):
+            return self._numpy(value)
+        if kind is array and value.typecode != "u":
+            self._spend(len(value) * value.itemsize * 4 // 3)
+            return {"numbers": [value.typecode, base64.b64encode(value.tobytes()).decode()]}
+        future = future_class(value)
+        if future is not None:
+            return {"pending": future}
+        if is_member(value):
+            return {"member": [_name_of(kind), name_of(value)]}
+        if isinstance(value, tuple) and hasattr(kind, "_fields"):
+            return {"namedtuple": [_name_of(kind), [self.keep(item, depth) for item in tuple(value)]]}
+        return self._object(value, depth)
+
+    def _numpy(self, value: Any) -> Any:
+        if value.dtype.kind not in "biufcSUmM":
+            raise NotKeptError(f"an array of {value.dtype}")
+        self._spend(value.nbytes * 4 // 3)
+        form = "array" if type(value).__name__ == "ndarray" else "scalar"
+        return {form: [value.dtype.str, list(value.shape), base64.b64encode(value.tobytes()).decode()]}
+
+    def _object(self, value: Any, depth: int) -> Any:
+        kind = type(value)
+        name = _name_of(kind)
+        constant = _constant(value)
+        if constant is not None:
+            return {"name": constant}
+        if any(class_name(base) in self._handles for base in kind.__mro__) or not _is_all_state(value):
+            raise NotKeptError(name)
+        slots = {slot: getattr(value, slot) for slot in _slots(kind) if hasattr(value, slot)}
+        attributes = getattr(value, "__dict__", {})
+        return {"object": [name, self._attributes(attributes, depth), self._attributes(slots, depth)]}
+
+    def _attributes(self, attributes: Mapping[str, Any], depth: int) -> dict[str, Any]:
+        return {name: self.keep(item, depth) for name, item in attributes.items()}
+
+    def _spend(self, size: int) -> None:
+        self._left -= size
+        if self._left < 0:
+            raise NotKeptError(f"more than {LIMIT} characters")
+
+
+def _array(kind: str, shape: list[int], content: str) -> Any:
+    numpy = importlib.import_module("numpy")
+    return numpy.frombuffer(base64.b64decode(content), dtype=kind).reshape(shape).copy()
+
+
+def _is_all_state(value: Any) -> bool:
+    """Whether attributes are all there is to an object, and making another one has no effect."""
+    kind = type(value)
+    for name in _OWN_WAYS:
+        own = getattr(kind, name, None)
+        if own is not getattr(object, name, None) and not _does_the_same(kind, own):
+            return False
+    try:
+        object.__reduce_ex__(value, 4)  # says whether C code hides something
+    except TypeError:
+        return False
+    return True
+
+
+def _does_the_same(kind: type[Any], method: Any) -> bool:
+    """Frozen dataclasses with slots, and messages of ROS 1, have methods that do what is done here."""
+    made_by = getattr(method, "__module__", None)
+    return made_by in _OF_ROS_1 or (is_dataclass(kind) and made_by == "dataclasses")
+
+
+def _slots(kind: type[Any]) -> list[str]:
+    found = []
+    for base in kind.__mro__:
+        slots = vars(base).get("__slots__", ())
+        for slot in [slots] if isinstance(slots, str) else slots:
+            hidden = slot.startswith("__") and not slot.endswith("__")
+            found.append(f"_{base.__name__.lstrip('_')}{slot}" if hidden else slot)
+    return [slot for slot in found if slot not in ("__dict__", "__weakref__")]
+
+
+def _object(name: str, attributes: dict[str, Any], slots: dict[str, Any], here: Mapping[str, Any]) -> Any:
+    made = object.__new__(_named(name))
+    for slot, item in slots.items():
+        object.__setattr__(made, slot, restore(item, here))
+    if attributes:
+        made.__dict__.update({key: restore(item, here) for key, item in attributes.items()})
+    return made
+
+
+def _constant(value: Any) -> str | None:
+    """The name of a constant of its module or class, which programs compare with ``is``; else None."""
+    kind = type(value)
+    module = sys.modules.get(kind.__module__)
+    for owner, prefix in ((module, f"{kind.__module__}:"), (kind, f"{class_name(kind)}.")):
+        for name, one in list(vars(owner).items()) if owner is not None else ():
+            if one is value:
+                return f"{prefix}{name}"
+    return None
+
+
+def _name_of(kind: type[Any]) -> str:
+    """The class as ``module:Name``. Raises NotKeptError if it cannot be found by it."""
+    name = class_name(kind)
+    try:
+        found = _named(name)
+    except LookupError:
+        found = None
+    if found is not kind:
+        raise NotKeptError(name)
+    return name
+
+
+def _named(name: str) -> Any:
+    """What ``module:qualified.name`` means. Raises LookupError."""
+    module, _, qualname = name.partition(":")
+    try:
+        found: Any = sys.modules.get(module) or importlib.import_module(module)
+        for part in qualname.split("."):
+            found = getattr(found, part)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise LookupError(f"{name} is not there: {error}") from error
+    return found
+
+
+#: objects that were there before
+_REFERENCES: dict[str, Callable[[Any, Mapping[str, Any]], Any]] = {
+    "pending": never_done,
+    "here": lambda name, here: here[name],
+    "name": lambda name, here: _named(name),
+    "call": lambda name, here: _named(name)(),
+    "member": lambda content, here: member_of(_named(content[0]), content[1]),
+}
+#: values without parts
+_LEAVES: dict[str, Callable[[Any], Any]] = {
+    "bytes": base64.b64decode,
+    "bytearray": lambda content: bytearray(base64.b64decode(content)),
+    "array": lambda content: _array(*content),
+    "numbers": lambda content: array(content[0], base64.b64decode(content[1])),
+    "scalar": lambda content: _array(*content)[()],
+}

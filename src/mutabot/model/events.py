@@ -1,0 +1,585 @@
+"""Events: what the processes of a job tell, each in a file of its own, see ``event_file``.
+
+The test process, its forks and the processes below the tests tell them alike. Times are those of
+``time.monotonic``, which all processes share. The end of a test is also what the journal keeps
+of the baseline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from typing import Any, get_args
+
+from mutabot.frozen import frozen
+from mutabot.model.codec import from_data, to_data
+from mutabot.model.mutant import Sighting, Span
+from mutabot.model.outcome import By, Check
+
+#: hits per test that are reported with their values; a test is compared and planned from these
+TRACE_LIMIT = 5000
+
+
+@frozen
+class TestEnd:
+    """A test has ended.
+
+    Attributes:
+        test: node id.
+        outcome: as pytest counts it: ``passed``, ``failed``, ``skipped``, ``xfailed`` or ``xpassed``. Only
+            ``failed`` makes the suite fail.
+        by: what noticed, for a failure.
+        phase: ``setup``, ``call`` or ``teardown``: where it failed; ``collect`` if it never began.
+        exception: type of the exception as ``module:Name``.
+        message: first lines of the exception's text.
+        place: ``file:line`` where the failure was noticed.
+        timeout: which limit was exceeded, or None.
+        hindered: why the limit of wall clock that it exceeded says little, as the machine was busy, in words;
+            else None.
+        failure: the simulator's failure, or None.
+        invalid: whether the mutated call rejected its arguments' types.
+        refused: text of the refusal of a mutated call, or None.
+        refused_calls: in the baseline, the calls that the robot refused: site index, and the call's number
+            among those of its site, from 1.
+        live: in the baseline, indexes of sites that returned the robot's own memory, not a copy of it.
+        caught: whether the program handled that refusal, so that the test ended for another reason.
+        hits: calls at the mutant's site (with its operation and pattern).
+        acted: hits at which the mutant changed something.
+        away: hits at which it stayed away, by the reason.
+        example: value before and after at the first hit at which it acted.
+        operations: intercepted calls at any site.
+        commands: operations that made the robot do something, from any site.
+        wall, cpu: seconds of the test, fixtures included.
+        simulated: simulated seconds, or None if there is no clock.
+        trace: per hit: site index, values written, values read, and in the baseline a note of what the call
+            returned: a plain value, ``{"kept": data}`` or ``{"opaque": what}`` at a site's first hit,
+            ``{"same"}`` or ``{"other"}`` than that later on, ``{"raised"}`` if it did not return.
+        truncated: whether the trace was cut off.
+        returned: what functions of the program returned to the test: name, and the value in a list or, for
+            one that raised, ``{"raised": text}``.
+        prepared: how many of these are from before the test itself began: from its fixtures.
+        probes: values of each probe by ``target.part``; those of the second object of a class by
+            ``target#2.part``.
+        unread: why a probe could not be read, by target.
+        processes: processes below the tests that were there during it, by number, with a name for people.
+        exclusive: by what it gets in the way of other processes, in words, or None.
+        moments: probes along the way: after which call (from 1), parts that differ from the moment before,
+            and whether these are all parts.
+        reading: processor seconds it takes to read all probes; None if they cannot be read along the way.
+        not_along: why not, or None.
+        checks: the checks of the tests that were made, and what they compared.
+        more_checks: how many further ones were made.
+        recording: what the world did, as ``evidence.recording.to_text`` writes it; None if that was not asked
+            for.
+    """
+
+    __test__ = False  # not a test class, whatever pytest may think of the name
+
+    test: str
+    outcome: str
+    by: By | None = None
+    phase: str = "call"
+    exception: str | None = None
+    message: str | None = None
+    place: str | None = None
+    timeout: str | None = None
+    failure: str | None = None
+    invalid: bool = False
+    refused: str | None = None
+    refused_calls: tuple[tuple[int, int], ...] = ()
+    live: tuple[int, ...] = ()
+    caught: bool = False
+    hits: int = 0
+    acted: int = 0
+    away: Mapping[str, int] = field(default_factory=dict)
+    example: tuple[Any, ...] | None = None
+    operations: int = 0
+    commands: int = 0
+    wall: float = 0.0
+    cpu: float = 0.0
+    simulated: float | None = None
+    trace: tuple[Any, ...] = ()
+    truncated: bool = False
+    returned: tuple[Any, ...] = ()
+    prepared: int = 0
+    probes: Mapping[str, Any] = field(default_factory=dict)
+    unread: Mapping[str, str] = field(default_factory=dict)
+    processes: tuple[tuple[int, str], ...] = ()
+    exclusive: str | None = None
+    moments: tuple[Any, ...] = ()
+    reading: float | None = None
+    not_along: str | None = None
+    checks: tuple[Check, ...] = ()
+    more_checks: int = 0
+    recording: str | None = None
+    hindered: str | None = None
+
+    @property
+    def lasting(self) -> str:
+        """The outcome, as far as equal runs must agree on it: what may fail may also pass."""
+        return "xfailed" if self.outcome == "xpassed" else self.outcome
+
+    @property
+    def notices(self) -> bool:
+        """Whether this test noticed its mutant, provided that the mutant had changed anything."""
+        if self.failure is not None or self.invalid:
+            return False
+        is_refused = self.refused is not None and not self.caught
+        return self.timeout is not None or (self.outcome == "failed" and not is_refused)
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether this test alone decides about its mutant, so that no other test needs to run."""
+        if self.failure is not None or self.invalid or self.timeout is not None:
+            return True
+        return self.outcome == "failed" and (self.refused is None or self.caught)
+
+
+@frozen
+class SiteSeen:
+    """A site was reached for the first time in this session; traces refer to it by ``index``.
+
+    ``direct`` is whether the call that stands there is that of the operation itself, rather than of something
+    that leads to it; only the baseline finds out.
+    """
+
+    index: int
+    span: Span
+    operation: str
+    pattern: str | None
+    oracle: bool
+    direct: bool = False
+
+
+@frozen
+class TestStart:
+    """A test begins: its fixtures are next."""
+
+    __test__ = False
+
+    test: str
+
+
+@frozen
+class Watched:
+    """The suite itself ends this process with exit code 1 if a test takes too long.
+
+    Attributes:
+        test: the test.
+        until: from when on, by the clock of ``time.monotonic``, which all processes share.
+        text: the limit, in words.
+    """
+
+    test: str
+    until: float
+    text: str
+
+
+@frozen
+class Acted:
+    """The mutant is at work: proof that mutated code ran.
+
+    Attributes:
+        test: the test; empty for a mutant of the program text before any test began.
+        in_call: whether a mutated call begins, or has ended, which tells whether a process died in it; None
+            where the mutant changed something for the first time in this test.
+    """
+
+    test: str
+    in_call: bool | None = None
+
+
+@frozen
+class PlacesReached:
+    """Places of the program text that a test reached; those before any test, if ``test`` is empty.
+
+    ``elsewhere``: whether that was in processes below the tests.
+    """
+
+    test: str
+    places: tuple[int, ...]
+    elsewhere: bool = False
+
+
+@frozen
+class TextsSeen:
+    """What a recording saw of the program text, over all tests.
+
+    Attributes:
+        imported: files that were imported, relative to the root.
+        sightings: what was seen at each place.
+    """
+
+    imported: tuple[str, ...]
+    sightings: tuple[Sighting, ...]
+
+
+@frozen
+class NotInstrumented:
+    """A file whose mutants cannot run, because it was imported without its alternatives."""
+
+    file: str
+    reason: str
+
+
+@frozen
+class KnownLater:
+    """At a site stood an operation, and in another test something that nothing tells to be one."""
+
+    span: Span
+    operation: str
+
+
+@frozen
+class BranchEnd:
+    """A branch has finished a test: the one in which it was forked, or a later one.
+
+    Attributes:
+        mutant: id of the mutant it was.
+        end: what the test ended like.
+        sites: the sites that the trace refers to.
+        shared: simulated seconds it inherited from the trunk, or None without a clock.
+        is_early: whether it was forked before any test.
+    """
+
+    mutant: str
+    end: TestEnd
+    sites: tuple[SiteSeen, ...] = ()
+    shared: float | None = None
+    is_early: bool = False
+
+
+@frozen
+class BranchFinished:
+    """A branch has gone to the end of the session.
+
+    Attributes:
+        mutants: ids of the mutants it was.
+        exit_code: its exit code, by which the suite says how it has ended; its parent's word.
+        errors: what could not be collected.
+    """
+
+    mutants: tuple[str, ...]
+    exit_code: int = 0
+    errors: tuple[str, ...] = ()
+
+
+@frozen
+class BranchDied:
+    """A branch ended without saying how its test ended.
+
+    Attributes:
+        mutant: id of the mutant it was.
+        test: the test it was in; empty before any.
+        exit_code: its exit code, negative for a signal.
+        overdue: which wall-clock limit it exceeded, in words, or None.
+        hindered, is_starved: as in ``Result``.
+        where: where it was then, if that is known.
+        acted: whether the mutant had changed anything.
+        in_mutated_call: whether it was in the midst of a mutated call.
+    """
+
+    mutant: str
+    test: str
+    exit_code: int
+    overdue: str | None = None
+    where: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
+    acted: bool = False
+    in_mutated_call: bool = False
+
+
+@frozen
+class ForkEnded:
+    """A process that this one forked has ended.
+
+    Attributes:
+        fork: the number of a branch among the forks of its parent, from 1; that of the process for a copy of
+            a fork server.
+        exit_code: its exit code, negative for a signal.
+        died: what else is known of it, if it was a branch that did not say how its test ended.
+    """
+
+    fork: int
+    exit_code: int
+    died: BranchDied | None = None
+
+
+@frozen
+class Unbranched:
+    """It was not safe to fork at the first hit, in this test: these mutants need a process of their own.
+
+    The test is empty before any.
+    """
+
+    test: str
+    mutants: tuple[str, ...]
+    reason: str
+
+
+@frozen
+class Undiverged:
+    """Mutants of the program text that were reached in a trunk's test and always had the original's value.
+
+    The trunk itself has run this test for them.
+
+    Attributes:
+        test: the test, which is about to end.
+        hits: evaluations of the mutant's place in it, by mutant id.
+    """
+
+    test: str
+    hits: Mapping[str, int]
+
+
+@frozen
+class TokensHeld:
+    """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
+
+    held: int
+
+
+@frozen
+class Problem:
+    """Something in the vocabulary does not fit the program.
+
+    Attributes:
+        source: where the vocabulary says so.
+        key: the key below the source.
+        text: what is wrong.
+        name, known: the name that does not exist and those that do, where it is about a name.
+    """
+
+    source: str
+    key: str
+    text: str
+    name: str | None = None
+    known: tuple[str, ...] = ()
+
+
+@frozen
+class Remark:
+    """Something about the vocabulary that the user should know; the program can be tested all the same.
+
+    Attributes:
+        source: where the vocabulary says so.
+        key: the key below the source.
+        text: what there is to say, and what to do about it.
+    """
+
+    source: str
+    key: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.source} · {self.key}: {self.text}"
+
+
+@frozen
+class Serving:
+    """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``.
+
+    ``copy``: the process that it has forked for the job that came last.
+    """
+
+    reason: str | None = None
+    copy: int | None = None
+
+
+@frozen
+class Began:
+    """A process below the tests has begun to tell.
+
+    Attributes:
+        pid, group: its number, and that of its process group.
+        command: its command line.
+        test: number of the test that was running.
+        unable: why nothing in it can be seen; None if it can.
+    """
+
+    pid: int
+    group: int
+    command: tuple[str, ...]
+    time: float
+    test: int = 0
+    unable: str | None = None
+
+
+@frozen
+class Called:
+    """A call of an operation below the tests, or of the program before any test began.
+
+    Attributes:
+        site, written, read, answer: as in a trace.
+        time: when it was, below the tests.
+    """
+
+    site: int
+    written: Any
+    read: Any
+    answer: Any = None
+    time: float = 0.0
+
+
+@frozen
+class Noted:
+    """A call of the original that the robot refused, or that returned the robot's own memory.
+
+    Attributes:
+        site: its site.
+        refused: its number there in this process, from 1, if it was refused; else None.
+    """
+
+    site: int
+    refused: int | None = None
+
+
+@frozen
+class Did:
+    """What the mutant did since the last time: counts are to be added up.
+
+    Attributes:
+        test: the test that runs.
+        hits, acted, away, example, invalid, failure: as in ``TestEnd``.
+        refused: how the robot refused a mutated call; None if it did not.
+        is_final: whether this refusal decides about a test that fails, since it was told as data.
+    """
+
+    test: str
+    hits: int = 0
+    acted: int = 0
+    away: Mapping[str, int] = field(default_factory=dict)
+    example: tuple[Any, ...] | None = None
+    invalid: bool = False
+    failure: str | None = None
+    refused: str | None = None
+    is_final: bool = False
+
+
+@frozen
+class Used:
+    """What the process used of the running test's budget by now: the last one counts.
+
+    ``exceeded`` is the limit that was exceeded, in words.
+    """
+
+    operations: int
+    commands: int
+    simulated: float | None = None
+    exceeded: str | None = None
+
+
+@frozen
+class Raised:
+    """An exception that nobody caught ended the process, or one of its threads.
+
+    Attributes:
+        text: its type and what it says.
+        is_refusal: whether it is the robot's refusal of a mutated call.
+        failure: the simulator's failure, or None.
+        in_thread: whether only a thread ended.
+    """
+
+    text: str
+    is_refusal: bool = False
+    failure: str | None = None
+    in_thread: bool = False
+
+
+@frozen
+class Found:
+    """Targets of the vocabulary, modules that it names, and nodes, that the process has."""
+
+    targets: tuple[str, ...] = ()
+    modules: tuple[str, ...] = ()
+    nodes: tuple[str, ...] = ()
+
+
+@frozen
+class Signalled:
+    """The process sends a signal to another, or to a group (negative), or to ``ANYBODY``."""
+
+    pid: int
+
+
+@frozen
+class SessionEnd:
+    """The process ends in an orderly way: the last of its events.
+
+    Attributes:
+        exit_status: pytest's exit status; 0 for a process below the tests.
+        collected: node ids of the tests collected, in order.
+        errors: texts of collection errors.
+        not_private: why its files were not its own, though that was asked for; None if they were.
+    """
+
+    exit_status: int = 0
+    collected: tuple[str, ...] = ()
+    errors: tuple[str, ...] = ()
+    not_private: str | None = None
+
+
+@frozen
+class Untrusted:
+    """What a process reports cannot be relied on: said of it by whoever reads its events.
+
+    Attributes:
+        reason: in words.
+    """
+
+    reason: str
+
+
+Event = (
+    SiteSeen
+    | TestStart
+    | Watched
+    | Acted
+    | PlacesReached
+    | TextsSeen
+    | NotInstrumented
+    | KnownLater
+    | TestEnd
+    | BranchEnd
+    | BranchFinished
+    | BranchDied
+    | Unbranched
+    | Undiverged
+    | TokensHeld
+    | Problem
+    | Remark
+    | Serving
+    | ForkEnded
+    | Began
+    | Called
+    | Noted
+    | Did
+    | Used
+    | Raised
+    | Found
+    | Signalled
+    | SessionEnd
+    | Untrusted
+)
+
+#: the kinds of event by their names
+EVENTS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Event)}
+
+
+def event_to_data(event: Event) -> dict[str, Any]:
+    """JSON-like data of an event, with its type."""
+    data: dict[str, Any] = to_data(event)
+    return {"type": type(event).__name__, **data}
+
+
+def event_from_data(data: dict[str, Any]) -> Event:
+    """The event in such data.
+
+    Raises KeyError for a type that is not known, TypeError or ValueError for data that does not fit it.
+    """
+    if not isinstance(data, dict):
+        raise TypeError(f"an event is an object, not {type(data).__name__}")
+    kind = EVENTS[data["type"]]
+    event: Event = from_data(kind, {key: value for key, value in data.items() if key != "type"})
+    return event

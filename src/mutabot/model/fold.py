@@ -1,0 +1,332 @@
+"""From the events of several processes to the record of a test.
+
+The same functions serve the test process, which must know whether a test decides about its mutant, and the
+controller, if the test process did not get that far.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from time import monotonic, sleep  # tests may replace those of the module
+
+from mutabot.frozen import frozen
+from mutabot.model.event_file import ANYBODY, FOLDER, NOW, OWN_FAULT, SUFFIX, EventReader
+from mutabot.model.events import (
+    TRACE_LIMIT,
+    Acted,
+    Began,
+    BranchDied,
+    BranchFinished,
+    Called,
+    Did,
+    Event,
+    Found,
+    Noted,
+    PlacesReached,
+    Raised,
+    SessionEnd,
+    SiteSeen,
+    TestEnd,
+    Untrusted,
+    Used,
+)
+from mutabot.model.job import Job
+from mutabot.model.outcome import added
+
+#: seconds that a process may take to write what it has begun to write, and between two looks at it
+_PATIENCE, _PAUSE = 1.0, 0.002
+
+
+@dataclass(slots=True)
+class ChildRecord:
+    """A process below the tests, and what it told.
+
+    Attributes:
+        began: what it is.
+        nodes: nodes that live in it.
+        sites: its sites, by its own indexes.
+        ended: whether it ended in an orderly way.
+        raised: what ended it otherwise.
+        is_in_call: whether a mutated call has begun in it and not ended.
+        acted: tests in which the mutant did something in it, in their order.
+        called, noted, did, places, used, exceeded: what it told during the running test.
+    """
+
+    began: Began
+    nodes: list[str] = field(default_factory=list)
+    sites: dict[int, SiteSeen] = field(default_factory=dict)
+    ended: bool = False
+    raised: Raised | None = None
+    is_in_call: bool = False
+    acted: dict[str, None] = field(default_factory=dict)
+    called: list[Called] = field(default_factory=list)
+    noted: list[Noted] = field(default_factory=list)
+    did: list[Did] = field(default_factory=list)
+    places: set[int] = field(default_factory=set)
+    used: Used | None = None
+    exceeded: str | None = None
+
+    @property
+    def name(self) -> str:
+        """What people know it by: its node, or the file that it runs."""
+        if self.nodes:
+            return self.nodes[0]
+        arguments = [one for one in self.began.command[1:] if not one.startswith("-")]
+        return os.path.basename(arguments[0]) if arguments else os.path.basename(self.began.command[0])
+
+    def take(self, event: Event) -> None:
+        """Sort in one event; what is none of a test is nothing to it."""
+        match event:
+            case SiteSeen():
+                self.sites[event.index] = event
+            case Called():
+                self.called.append(event)
+            case Noted():
+                self.noted.append(event)
+            case Did():
+                self.did.append(event)
+                if event.acted:
+                    self.acted[event.test] = None
+            case Acted(in_call=bool(is_in_call)):
+                self.is_in_call = is_in_call
+                if is_in_call:
+                    self.acted[event.test] = None
+            case PlacesReached():
+                self.places.update(event.places)
+            case Used():
+                self.used, self.exceeded = event, event.exceeded or self.exceeded
+            case Raised():
+                self.raised = event
+            case Found():
+                self.nodes += event.nodes
+            case SessionEnd():
+                self.ended = True
+
+    def forget(self) -> None:
+        """The test is over."""
+        for told in (self.called, self.noted, self.did, self.places):
+            told.clear()
+        self.used, self.exceeded = None, None
+        if self.raised is not None and self.raised.in_thread:
+            self.raised = None
+
+
+def is_alive(pid: int) -> bool:
+    """Whether a process is there, and more than what its parent has not asked for."""
+    try:
+        with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as file:
+            return file.read().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+class Children:
+    """The processes below a test process, by their files.
+
+    The tests know the folder, and so does whatever they start: files may be gone or damaged.
+
+    Args:
+        home: the home of the test process.
+        key: of the seals.
+
+    Attributes:
+        records: what each of them told, by file.
+        doubt: why what they told cannot be relied on, or None.
+    """
+
+    def __init__(self, home: str, key: str) -> None:
+        self.records: dict[str, ChildRecord] = {}
+        self.doubt: str | None = None
+        self._folder, self._key = os.path.join(home, FOLDER), key
+        self._readers: dict[str, EventReader] = {}
+
+    def read(self) -> list[Event]:
+        """Sort in what is new, and return it."""
+        found: list[Event] = []
+        for name in [*self._readers, *(name for name in self._names() if name not in self._readers)]:
+            for event in self._new_in(name):
+                self._take(name, event)
+                found.append(event)
+        if self._is_unwritten():
+            self._note("one of them could not write what it had to tell; is the disk full?")
+        return found
+
+    def _take(self, name: str, event: Event) -> None:
+        if isinstance(event, Untrusted):
+            self._note(event.reason)
+        elif isinstance(event, Began):
+            if str(event.pid) != name.partition("-")[0] or name in self.records:
+                self._note(f"{name} was not begun by its process")
+            elif event.unable is None:
+                self.records[name] = ChildRecord(event)
+        elif name in self.records:
+            self.records[name].take(event)
+
+    def _names(self) -> list[str]:
+        try:
+            files = sorted(os.listdir(self._folder))
+        except OSError:
+            self._note("their folder was deleted")
+            files = []
+        return [file for file in files if file.endswith(SUFFIX) and file[0].isdigit()]
+
+    def _new_in(self, name: str) -> list[Event]:
+        """The new events of a process, which may be in the midst of writing one."""
+        path = os.path.join(self._folder, name)
+        reader = self._readers.setdefault(name, EventReader(path, self._key))
+        found = reader.read()
+        until = monotonic() + _PATIENCE
+        while reader.is_torn and reader.damage is None:
+            is_writing = monotonic() < until and is_alive(int(name.partition("-")[0]))
+            found += reader.read(is_last=not is_writing)
+            sleep(_PAUSE)
+        return found
+
+    def _is_unwritten(self) -> bool:
+        try:
+            with open(os.path.join(self._folder, NOW), "rb") as file:
+                return any(file.read(16)[8:])
+        except OSError:  # there is none before the first test
+            return False
+
+    def _note(self, why: str) -> None:
+        self.doubt = self.doubt or f"what processes below the tests reported was damaged: {why}"
+
+
+def acted_in(records: Collection[ChildRecord]) -> list[str]:
+    """Tests in which a process below the tests says that the mutant changed something."""
+    return list(dict.fromkeys(test for record in records for test in record.acted))
+
+
+def fold_fork(events: Sequence[Event], exit_code: int, died: BranchDied | None) -> list[Event]:
+    """What is to be known of a fork that has ended, by its events and its parent's word of how it ended."""
+    found: list[Event] = [
+        replace(event, exit_code=exit_code) if isinstance(event, BranchFinished) else event
+        for event in events
+        if not isinstance(event, Acted)
+    ]
+    if died is None:
+        return found
+    told = [event.in_call for event in events if isinstance(event, Acted)]
+    calls = [one for one in told if one is not None]
+    return [*found, replace(died, acted=None in told, in_mutated_call=calls[-1:] == [True])]
+
+
+@frozen
+class Known:
+    """What only the test process knows of a test and the processes below it.
+
+    Attributes:
+        job: its job.
+        index_of: its own index of a site.
+        has_acted: whether the mutant changed anything in an earlier test.
+        codes: exit codes of processes.
+        signalled: processes, and groups (negative), that somebody sent a signal to, or ``ANYBODY``.
+    """
+
+    job: Job
+    index_of: Callable[[SiteSeen], int]
+    has_acted: bool = False
+    codes: Mapping[int, int] = field(default_factory=dict)
+    signalled: Collection[int] = ()
+
+
+def fold(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
+    """The end of a test, as the test process alone would tell it, with what the others told during it."""
+    if not records:
+        return end
+    end = _with_calls(end, records, known)
+    end = _with_deeds(end, [did for one in records for did in one.did])
+    return _with_ends(end, records, known)
+
+
+def calls_of(records: Sequence[ChildRecord], known: Known) -> Iterator[tuple[int, Called]]:
+    """The calls of each process in their order, one process after the other, each with its site."""
+    for one in records:
+        yield from ((known.index_of(one.sites[call.site]), call) for call in one.called)
+
+
+def _with_calls(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
+    called = list(calls_of(records, known))
+    trace = [*end.trace, *((site, call.written, call.read, call.answer) for site, call in called)]
+    used = [one.used for one in records if one.used is not None]
+    times = [end.simulated, *(one.simulated for one in used)]
+    noted = [(known.index_of(one.sites[each.site]), each.refused) for one in records for each in one.noted]
+    return replace(
+        end,
+        refused_calls=(*end.refused_calls, *((site, number) for site, number in noted if number is not None)),
+        live=tuple(sorted({*end.live, *(site for site, number in noted if number is None)})),
+        trace=tuple(trace[:TRACE_LIMIT]) if known.job.record else (),
+        truncated=end.truncated or len(trace) > TRACE_LIMIT,
+        operations=end.operations + max(len(called), sum(one.operations for one in used)),
+        commands=end.commands + sum(one.commands for one in used),
+        simulated=max((time for time in times if time is not None), default=None),
+    )
+
+
+def _with_deeds(end: TestEnd, did: list[Did]) -> TestEnd:
+    """What the mutant did in all processes together."""
+    if not did:
+        return end
+    refused = [one for one in did if one.refused is not None]
+    failures = [end.failure, *(one.failure for one in did)]
+    examples = [end.example, *(one.example for one in did)]
+    end = replace(
+        end,
+        hits=end.hits + sum(one.hits for one in did),
+        acted=end.acted + sum(one.acted for one in did),
+        away=added([end.away, *(one.away for one in did)]),
+        example=next((one for one in examples if one is not None), None),
+        failure=next((one for one in failures if one is not None), None),
+        invalid=end.invalid or any(one.invalid for one in did),
+    )
+    if refused and end.refused is None:
+        is_final = any(one.is_final for one in refused)
+        caught = end.outcome == "failed" and not is_final
+        end = replace(end, refused=refused[-1].refused, caught=caught)
+    return end
+
+
+def _with_ends(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
+    """What became of the processes, as far as it decides about the test."""
+    raised = [one.raised for one in records if one.raised is not None]
+    failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
+    exceeded = next((one.exceeded for one in records if one.exceeded is not None), None)
+    died_at_work = [one for one in records if one.is_in_call and not is_alive(one.began.pid)]
+    end = replace(
+        end,
+        failure=failure,
+        timeout=end.timeout or exceeded,
+        hits=end.hits + len(died_at_work),
+        acted=end.acted + len(died_at_work),
+    )
+    for one in died_at_work:
+        one.is_in_call = False
+    if end.refused is not None and any(one.is_refusal for one in raised):
+        end = replace(end, caught=False)
+    if end.outcome == "failed" and end.failure is None and known.job.mutant is not None:
+        end = replace(end, failure=_lost(end, records, known))
+    return end
+
+
+def _lost(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> str | None:
+    """Why a failed test says nothing about the mutant, or None."""
+    for one in records:
+        code = known.codes.get(one.began.pid)
+        is_killed = code is not None and code < 0 and -code not in OWN_FAULT
+        if code is not None and is_killed and not one.ended and not _was_signalled(one, known):
+            return f"the process {one.name} was killed from outside, by signal {-code}"
+    if end.acted or known.has_acted or end.refused is not None:
+        return None
+    for one in records:
+        if one.raised is not None and not one.raised.in_thread:
+            return f"the process {one.name} ended before the mutant changed anything: {one.raised.text}"
+    return None
+
+
+def _was_signalled(record: ChildRecord, known: Known) -> bool:
+    """Whether the tests, or a process below them, sent it a signal."""
+    pid, group = record.began.pid, record.began.group
+    return not {pid, -pid, -group, ANYBODY}.isdisjoint(known.signalled)

@@ -1,0 +1,258 @@
+"""What crosses the process border: a job description in, events out.
+
+The controller writes one ``Job`` as JSON; the process that runs the robot program answers with lines of
+JSON, each one of the classes in ``model.events``.
+
+How ``mutabot init`` tells a run of the tests what to watch.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import field
+from pathlib import Path
+from typing import Any
+
+from mutabot.frozen import frozen
+from mutabot.model.codec import from_data, to_data
+from mutabot.model.mutant import Choice, Instrumentation, Mutant, Span
+from mutabot.model.operation import Vocabulary
+
+#: environment variable that names the job file; the plugin sleeps without it
+JOB_VARIABLE = "MUTABOT_JOB"
+#: environment variable with the number of the pipe's writing end
+PIPE_VARIABLE = "MUTABOT_PIPE"
+
+
+@frozen
+class Budget:
+    """What one test may use before it counts as timed out.
+
+    Attributes:
+        operations: intercepted calls; None for no limit.
+        simulated: simulated seconds; None for no limit.
+    """
+
+    operations: int | None = None
+    simulated: float | None = None
+
+
+@frozen
+class RefusedAt:
+    """The calls of one site that the robot refuses in the original, in one test.
+
+    Attributes:
+        span, operation, pattern: the site, and what is called there.
+        numbers: of these calls among all of the site in the test, from 1.
+    """
+
+    span: Span
+    operation: str
+    pattern: str | None
+    numbers: tuple[int, ...]
+
+
+@frozen
+class InProcess:
+    """What puts a fault in place that is neither one of calls nor an alternative in the program text.
+
+    Attributes:
+        reference: ``module:attribute`` of a ``mutabot.runtime.process_fault.ProcessFault``.
+        data: what it is told, as plain data.
+    """
+
+    reference: str
+    data: Any = None
+
+
+@frozen
+class Branching:
+    """How a trunk branches: which mutants, with how many processes, for how long.
+
+    Attributes:
+        mutants: the mutants that are alive in this round.
+        tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
+        gate: descriptor that can be read while mutants may begin, filled in likewise; None: always.
+        walls: wall-clock seconds that a branch may take for a test, by test.
+        wall: the same for tests that are missing there.
+        startup: the same until its first test begins.
+        choices: of mutants that are alternatives in the program text: which, by id.
+        every_test: whether a branch goes on after a test that decided about its mutant.
+        at_start: test to ids of mutants that are branched before it begins, if they were not before: they may
+            be hit in processes below it.
+        serial: whether the trunk waits for each branch, since two of them would get in each other's way.
+    """
+
+    mutants: tuple[Mutant, ...]
+    tokens: tuple[int, int] = (-1, -1)
+    gate: int | None = None
+    walls: Mapping[str, float] = field(default_factory=dict)
+    wall: float = 600.0
+    startup: float = 600.0
+    choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
+    every_test: bool = False
+    serial: bool = False
+    at_start: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+@frozen
+class Pictures:
+    """Which test is filmed.
+
+    Attributes:
+        test: its node id.
+        file: absolute path of the film, see ``evidence.tape``.
+    """
+
+    test: str
+    file: str
+
+
+@frozen
+class Job:
+    """One session inside: which tests to run, as which mutant.
+
+    Attributes:
+        root: absolute path of the project; files in spans are relative to it.
+        program, oracle: files and folders, relative to the root.
+        vocabulary: the robot API.
+        seed: the campaign's seed.
+        round: 0-based round.
+        tests: node ids to run, in this order; None for all that the project's own arguments select.
+        reaching: by the ids of mutants, the numbers of the tests that reach them: after the first of these,
+            all others are left out. Of mutants that are missing here, none is.
+        mutant: the fault to plant; None for the original.
+        record: whether to report traces and values.
+        stop_at_kill: whether to stop after the first test that fails for another reason than a refusal.
+        budgets: limits by node id.
+        memory: address space limit in bytes; None for no limit.
+        moments: after every how many commands the probes are read along the way, by node id; tests that are
+            missing are read at their end only.
+        inspect: whether to check every callable of the vocabulary at the end, also those that no test
+            imported.
+        branching: set for a trunk: fork a branch for each live mutant at its site.
+        serving: set for a fork server: the socket over which jobs come. It runs no test itself.
+        instrumentation: what to put into the program text; None to leave it alone.
+        private_files: whether the process is to keep to itself what it does to files.
+        oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
+        refused: the calls that the robot refuses in the original, by node id: a mutant that is refused there
+            as well is judged by its tests.
+        known: sites at which all of an operation's name is one, whatever it is: elsewhere in the suite it is.
+        evidence: whether to record what the world does while tests run.
+        pictures: which test is filmed; None for none.
+        extensions: references to what packages bring, by kind and name, see ``extensions.use``.
+        faults: what puts the mutant in place, or parts of it, if it does so by itself: by the part's id.
+        key: of the seals on its events, see ``event_file``.
+    """
+
+    root: str
+    program: tuple[str, ...]
+    oracle: tuple[str, ...]
+    vocabulary: Vocabulary
+    seed: int
+    round: int
+    tests: tuple[str, ...] | None = None
+    reaching: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    mutant: Mutant | None = None
+    record: bool = False
+    stop_at_kill: bool = False
+    budgets: Mapping[str, Budget] = field(default_factory=dict)
+    memory: int | None = None
+    moments: Mapping[str, int] = field(default_factory=dict)
+    inspect: bool = False
+    branching: Branching | None = None
+    serving: int | None = None
+    instrumentation: Instrumentation | None = None
+    private_files: bool = True
+    oracle_nodes: tuple[str, ...] = ()
+    refused: Mapping[str, tuple[RefusedAt, ...]] = field(default_factory=dict)
+    known: tuple[tuple[Span, str], ...] = ()
+    evidence: bool = False
+    pictures: Pictures | None = None
+    extensions: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    faults: Mapping[str, InProcess] = field(default_factory=dict)
+    key: str = ""
+
+    def left_out(self, mutant: str) -> frozenset[str]:
+        """The tests that are not run as this mutant once one has reached it."""
+        numbers = self.reaching.get(mutant)
+        if not numbers or self.tests is None:
+            return frozenset()
+        return frozenset(self.tests[min(numbers) :]).difference(self.tests[number] for number in numbers)
+
+
+def job_file(home: str | os.PathLike[str]) -> Path:
+    """Where the job of the worker with this folder is."""
+    return Path(home, "job.json")
+
+
+def write_job(home: str | os.PathLike[str], job: Job) -> None:
+    """Write a worker's job into its folder."""
+    job_file(home).write_text(json.dumps(to_data(job)), encoding="utf-8")
+
+
+def read_job(home: str | os.PathLike[str]) -> Job:
+    """The job of the worker with this folder."""
+    job: Job = from_data(Job, json.loads(job_file(home).read_text(encoding="utf-8")))
+    return job
+
+
+@frozen
+class Idle:
+    """What a command answered at one place in the baseline, test by test.
+
+    Attributes:
+        answers: the different answers, as data that ``answer.restore`` understands.
+        of_test: number of the answer that was the first in a test, by ``key``; tests that are missing here
+            get the first of all.
+        varying: keys of the tests in which later answers were others: there the answer tells something
+            about the world, which stands still while the robot does nothing.
+    """
+
+    answers: tuple[Any, ...]
+    of_test: Mapping[str, int] = field(default_factory=dict)
+    varying: tuple[str, ...] = ()
+
+    @staticmethod
+    def key(round: int, test: str) -> str:
+        """A test in a round, 0-based."""
+        return f"{round} {test}"
+
+    @classmethod
+    def of(cls, data: Any) -> Idle:
+        """The answers in a mutant's ``idle``; a plain value there is the only answer."""
+        from mutabot.model.answer import is_plain  # noqa: PLC0415  # most jobs have no answers
+
+        return cls((data,)) if is_plain(data) else from_data(cls, data)
+
+    def data(self) -> Any:
+        """The answers as a mutant carries them."""
+        from mutabot.model.answer import is_plain  # noqa: PLC0415  # as above
+
+        single = len(self.answers) == 1 and not self.varying and is_plain(self.answers[0])
+        return self.answers[0] if single else to_data(self)
+
+    def in_round(self, round: int) -> Any:
+        """The answers as far as they count in a round."""
+        here = {key: number for key, number in self.of_test.items() if key.startswith(f"{round} ")}
+        used = sorted({0, *here.values()})
+        return [
+            [self.answers[number] for number in used],
+            {key: used.index(number) for key, number in here.items()},
+            [key for key in self.varying if key in here],
+        ]
+
+    def first(self, round: int, test: str) -> Any:
+        """The data of the first answer in a test."""
+        return self.answers[self.of_test.get(self.key(round, test), 0)]
+
+    def is_varying(self, round: int, test: str) -> bool:
+        """Whether answers differed in a test; in an unknown one, whether they did anywhere."""
+        key = self.key(round, test)
+        return key in self.varying if key in self.of_test else bool(self.varying)
+
+
+#: names the file with what to watch: program, tests, output
+WATCH_VARIABLE = "MUTABOT_WATCH"

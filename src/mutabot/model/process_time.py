@@ -1,0 +1,252 @@
+"""How much of the time that a process may take it has used, on a machine that others use as well.
+
+Time in which its tasks stood in the queue for a processor is none that it has used. So a limit of wall clock
+means on a busy machine what it means on a quiet one, as far as the kernel keeps account of that: a task that
+waits for a message asks for nothing; one that wants to compute and has no processor looks just as idle to
+whoever counts only what it got.
+
+Where a process hangs: it writes its stack into a file when it gets a signal, before it is ended.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import time
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from itertools import takewhile
+from pathlib import Path
+from time import monotonic  # before a simulation takes over the clock
+
+from mutabot.frozen import frozen
+
+#: states of a task that asks for the machine: it can run, or waits for a disk
+_ASKING = frozenset("RD")
+_PRESSURE = "/proc/pressure/cpu"
+
+
+@frozen
+class Account:
+    """What a task has had until now.
+
+    Attributes:
+        ran: seconds on a processor.
+        queued: seconds for which it could have run and had none.
+        is_asking: whether it asks for the machine right now.
+    """
+
+    ran: float
+    queued: float
+    is_asking: bool = False
+
+
+#: by the number of the task; None where the kernel keeps no such accounts
+Accounts = Mapping[int, Account] | None
+
+
+def overdue(seconds: float, test: str | None) -> str:
+    """Which limit of wall clock a process has exceeded, in words; without a ``test``, before it began one."""
+    if test:
+        return f"no end after {seconds:.0f} s of wall clock"
+    return f"no test begun or finished within {seconds:.0f} s"
+
+
+def accounts_of(processes: Iterable[int]) -> Accounts:
+    """The accounts of all tasks of these processes, of those that are there."""
+    if not _are_kept():
+        return None
+    found = {}
+    for pid in processes:
+        for task in _names(f"/proc/{pid}/task"):
+            with suppress(OSError, IndexError, ValueError):
+                folder = f"/proc/{pid}/task/{task}"
+                ran, queued = _read(f"{folder}/schedstat").split()[:2]
+                state = _read(f"{folder}/stat").rpartition(")")[2].split()[0]
+                found[int(task)] = Account(int(ran) * 1e-9, int(queued) * 1e-9, state in _ASKING)
+    return found
+
+
+def children() -> dict[int, list[int]]:
+    """The children of every process that has any."""
+    found: dict[int, list[int]] = {}
+    for name in _names("/proc"):
+        if name.isdigit():
+            with suppress(OSError, IndexError, ValueError):
+                parent = int(_read(f"/proc/{name}/stat").rpartition(")")[2].split()[1])
+                found.setdefault(parent, []).append(int(name))
+    return found
+
+
+def below(roots: Iterable[int], children: Mapping[int, Iterable[int]]) -> set[int]:
+    """These processes and all below them."""
+    found, due = set[int](), list(roots)
+    while due:
+        pid = due.pop()
+        if pid not in found:
+            found.add(pid)
+            due += children.get(pid, ())
+    return found
+
+
+def shortage() -> float | None:
+    """Seconds since the start of the system in which some task had no processor; None if nobody counts."""
+    try:
+        for line in _read(_PRESSURE).splitlines():
+            kind, *fields = line.split()
+            if kind == "some":
+                return int(dict(field.split("=") for field in fields)["total"]) * 1e-6
+    except (OSError, ValueError, KeyError):
+        pass
+    return None
+
+
+def is_crowded() -> bool:
+    """Whether more tasks want to run right now, or did in the last minute, than there are processors."""
+    processors = len(os.sched_getaffinity(0))
+    with suppress(OSError, ValueError, IndexError):
+        line = next(line for line in _read("/proc/stat").splitlines() if line.startswith("procs_running"))
+        if int(line.split()[1]) - 1 > processors:  # this one runs as well
+            return True
+    return os.getloadavg()[0] > processors
+
+
+def _are_kept() -> bool:
+    """Whether the kernel keeps accounts: this very process must have run."""
+    with suppress(OSError, IndexError, ValueError):
+        return int(_read("/proc/self/schedstat").split()[0]) > 0
+    return False
+
+
+def _names(folder: str) -> list[str]:
+    with suppress(OSError):
+        return os.listdir(folder)  # noqa: PTH208  # three times as fast
+    return []
+
+
+def _read(path: str) -> str:
+    with open(path, encoding="ascii", errors="replace") as file:  # noqa: PTH123  # likewise
+        return file.read()
+
+
+#: a limit is extended to this many times its length at most
+MOST = 10.0
+#: the share of the time in the queue, and that in which processors were short, which make a time-out doubtful
+_QUEUED, _SHORT = 0.1, 0.5
+_NONE = Account(0.0, 0.0)
+
+
+@frozen
+class TimeUsed:
+    """What there was when the time of a process began.
+
+    Attributes:
+        began: the moment (``time.monotonic``).
+        accounts: those of its tasks.
+        shortage: see ``demand.shortage``.
+    """
+
+    began: float
+    accounts: Accounts
+    shortage: float | None
+
+    @classmethod
+    def from_now(cls, processes: Iterable[int] = ()) -> TimeUsed:
+        """The time of these processes, and of those that they start, begins."""
+        return cls(monotonic(), accounts_of(processes), shortage())
+
+    def left(self, limit: float, processes: Iterable[int]) -> float:
+        """Seconds until so many are used up, if the processes, and those below them, are not held up again.
+
+        0 or less: they are, or ``MOST`` times as many have passed.
+        """
+        passed = monotonic() - self.began
+        if passed >= MOST * limit:
+            return 0.0
+        ran, queued = self._had(processes)
+        return limit - max(ran, passed - min(queued, passed))
+
+    def hindrance(self, processes: Iterable[int] = ()) -> str | None:
+        """Why nobody can say that the time was enough, in words; None if the machine was quiet enough."""
+        passed = monotonic() - self.began
+        _, queued = self._had(processes)
+        if min(queued, passed) >= _QUEUED * passed:
+            share = min(1.0, queued / passed) if passed else 1.0
+            return f"it stood in the queue for a processor for {share:.0%} of the time"
+        total = shortage()
+        if self.shortage is None or total is None:
+            return "more tasks wanted to run than there are processors" if is_crowded() else None
+        short = (total - self.shortage) / passed if passed else 0.0
+        return f"processors were short for {min(1.0, short):.0%} of the time" if short >= _SHORT else None
+
+    def _had(self, processes: Iterable[int]) -> tuple[float, float]:
+        """Seconds that all their tasks together were on a processor, and stood in the queue for one."""
+        roots = list(processes)
+        found = accounts_of(below(roots, children())) if roots else None
+        if not found:
+            return 0.0, 0.0
+        before = self.accounts or {}
+        pairs = [(before.get(task, _NONE), account) for task, account in found.items()]
+        ran = sum(account.ran - first.ran for first, account in pairs)
+        return ran, sum(account.queued - first.queued for first, account in pairs)
+
+
+#: the signal, one that programs leave alone, and the file in the process's home
+SIGNAL, FILE = signal.SIGRTMAX - 2, "stack.txt"
+#: seconds to wait for a stack; a process that blocks the signal gives none
+_PATIENCE, _STEP = 0.5, 0.02
+#: innermost calls to name
+_CALLS = 5
+_FRAME = re.compile(r'  File "(?P<file>.*)", line (?P<line>\d+) in (?P<function>.*)')
+_RUNNER = re.compile(r"/(_pytest|pluggy)/")
+#: the inside, and the packages beside the core
+_OURS = re.compile(rf"/mutabot/runtime/|{re.escape(str(Path(__file__).parents[2]))}/mutabot_|<frozen ")
+
+
+def ask(pid: int, file: str, root: str) -> str | None:
+    """Where this process is, in words; None if it does not say. It must have arranged for the signal.
+
+    Args:
+        pid: the process.
+        file: the file that it writes its stack to.
+        root: the project's folder.
+    """
+    before = _size(file)
+    try:
+        os.kill(pid, SIGNAL)
+    except (ProcessLookupError, PermissionError):
+        return None
+    until = time.monotonic() + _PATIENCE
+    seen = before
+    while time.monotonic() < until:
+        time.sleep(_STEP)
+        size = _size(file)
+        if size > before and size == seen:
+            break
+        seen = size
+    if seen == before:
+        return None
+    return calls_in_words(Path(file).read_bytes()[before:].decode("utf-8", "replace"), root)
+
+
+def calls_in_words(text: str, root: str) -> str | None:
+    """The innermost calls of the user's in what ``faulthandler`` wrote, innermost first."""
+    current = text.rpartition("Current thread")[2]
+    frames = [match for line in current.splitlines() if (match := _FRAME.fullmatch(line)) is not None]
+    below = takewhile(lambda frame: not _RUNNER.search(frame["file"]), frames)
+    users = [frame for frame in below if not _OURS.search(frame["file"])]
+    calls = [f"{_short(frame['file'], root)}:{frame['line']} {frame['function']}" for frame in users[:_CALLS]]
+    return ", called from ".join(calls) or None
+
+
+def _short(file: str, root: str) -> str:
+    inside = file.startswith(root.rstrip(os.sep) + os.sep)
+    return os.path.relpath(file, root) if inside else Path(file).name
+
+
+def _size(file: str) -> int:
+    try:
+        return Path(file).stat().st_size
+    except OSError:
+        return 0

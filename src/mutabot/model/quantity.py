@@ -1,0 +1,491 @@
+"""Quantities: what one argument, or one part of a result, means.
+
+An orientation's numbers may be attributes, as a message's quaternion has ``x``, ``y``, ``z`` and ``w``. A
+stamp of ROS 2 has ``sec`` and ``nanosec``, one of ROS 1 ``secs`` and ``nsecs``. Of a number of seconds since
+1970 some hundred nanoseconds are lost, so a stamp is written anew only where it is to be another one.
+
+Whether two values of a quantity are the same for the robot: one in the place of the other is no fault.
+
+Plan, engines and operators of all families ask here, so that what one leaves out no other plants.
+
+Readings that come in steps, as times of a simulation do.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from math import isclose
+from typing import Any
+
+from mutabot.model.answer import is_member, member_of, written_of
+from mutabot.model.path import Path, Step
+from mutabot.model.units import UNITS, Dimension, Quaternion, convert, distance, to_quaternion, to_values
+
+_PARTS = (("sec", "nanosec"), ("secs", "nsecs"))
+_NANO = 1_000_000_000
+
+
+def seconds_of(stamp: Any) -> float | None:
+    """The seconds of a stamp, or of a number that is one; None for anything else."""
+    if isinstance(stamp, int | float) and not isinstance(stamp, bool):
+        return float(stamp)
+    for whole, rest in _PARTS:
+        if hasattr(stamp, whole) and hasattr(stamp, rest):
+            return float(getattr(stamp, whole) + getattr(stamp, rest) / _NANO)
+    return None
+
+
+def with_seconds(stamp: Any, seconds: float) -> Any:
+    """A copy of a stamp that says so many seconds; none says less than zero."""
+    whole, rest = divmod(max(0, round(seconds * _NANO)), _NANO)
+    for names in _PARTS:
+        if all(hasattr(stamp, name) for name in names):
+            copied = copy.copy(stamp)
+            setattr(copied, names[0], whole)
+            setattr(copied, names[1], rest)
+            return copied
+    return float(seconds)
+
+
+#: digits that tell any two numbers apart
+_MOST_DIGITS = 17
+#: A value a quantity can have, in the quantity's own unit.
+Value = Any
+
+
+class Kind(StrEnum):
+    """The meaning of a quantity: mostly a physical one.
+
+    A setting is what something is set up with, such as the name of a topic; no vocabulary describes it.
+    """
+
+    TRANSLATION = "translation"
+    ROTATION = "rotation"
+    OPENING = "opening"
+    OUTPUT = "output"
+    DURATION = "duration"
+    POSITION = "position"
+    ORIENTATION = "orientation"
+    ANGLE = "angle"
+    DISTANCE = "distance"
+    ROTATION_VECTOR = "rotation_vector"
+    QUATERNION = "quaternion"
+    EULER = "euler"
+    LABEL = "label"
+    FLAG = "flag"
+    FRAME_ID = "frame_id"
+    STAMP = "stamp"
+    SPEED = "speed"
+    ACCELERATION = "acceleration"
+    JERK = "jerk"
+    FORCE = "force"
+    TORQUE = "torque"
+    MASS = "mass"
+    TEMPERATURE = "temperature"
+    VOLTAGE = "voltage"
+    CURRENT = "current"
+    PRESSURE = "pressure"
+    FREQUENCY = "frequency"
+    RATIO = "ratio"
+    COUNT = "count"
+    NUMBER = "number"
+    SETTING = "setting"
+
+
+class Mode(StrEnum):
+    """Whether a commanded amount is relative or an absolute target."""
+
+    BY = "by"
+    TO = "to"
+
+
+#: orientations as a whole: several numbers that mean something only together; written and read
+WHOLE = frozenset({Kind.ROTATION_VECTOR, Kind.QUATERNION, Kind.EULER})
+#: what a message says of itself: the name of the frame it is given in, and when that was; written and read
+HEADER = frozenset({Kind.FRAME_ID, Kind.STAMP})
+#: numbers on a scale that say neither where something is nor how long it takes; written and read
+PLAIN = frozenset(
+    {
+        Kind.SPEED, Kind.ACCELERATION, Kind.JERK, Kind.FORCE, Kind.TORQUE, Kind.MASS, Kind.TEMPERATURE,
+        Kind.VOLTAGE, Kind.CURRENT, Kind.PRESSURE, Kind.FREQUENCY, Kind.RATIO, Kind.COUNT, Kind.NUMBER,
+    }
+)  # fmt: skip
+#: kinds that are written to the robot
+WRITTEN = frozenset(
+    {Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION, *WHOLE, *HEADER, *PLAIN}
+)
+#: kinds that are read from the robot
+READ = frozenset(
+    {Kind.POSITION, Kind.ORIENTATION, Kind.ANGLE, Kind.DISTANCE, Kind.LABEL, Kind.FLAG}
+    | WHOLE | HEADER | PLAIN
+)  # fmt: skip
+#: what each kind measures; kinds that are missing carry no unit. Plain ones measure what they are called by,
+#: along an axis or about it
+DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
+    **dict.fromkeys((Kind.TRANSLATION, Kind.POSITION, Kind.DISTANCE), frozenset({Dimension.LENGTH})),
+    **dict.fromkeys((Kind.ROTATION, Kind.ORIENTATION, Kind.ANGLE), frozenset({Dimension.ANGLE})),
+    **dict.fromkeys((Kind.ROTATION_VECTOR, Kind.EULER), frozenset({Dimension.ANGLE})),
+    Kind.OPENING: frozenset({Dimension.RATIO, Dimension.LENGTH}),
+    Kind.DURATION: frozenset({Dimension.TIME}),
+    **{
+        kind: frozenset(one for one in Dimension if one.removeprefix("angular ") == kind)
+        for kind in PLAIN - {Kind.COUNT, Kind.NUMBER}
+    },
+}
+#: kinds whose values are numbers on a scale, with a unit
+MEASURED = frozenset(DIMENSIONS.keys() - {Kind.OPENING} | WHOLE | PLAIN)
+#: the reading that tells where a written kind is now
+READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """The meaning of one argument, or of one part of a result.
+
+    Attributes:
+        name: how ids and reports call it (``dx``, ``.pose.x``, ``height``, ``result``).
+        path: where it lies, starting at the argument's name, the result, or the field of a text command.
+        kind: its physical meaning.
+        axis: ``x``, ``y``, ``z``, or ``j1`` … for a joint; None where it has none.
+        unit: a key of ``units.UNITS``; None for kinds without one. All values below are in this unit.
+        frame: name of the frame it is given in, or None if the vocabulary does not say.
+        mode: relative or absolute; None for quantities that are not commanded motions.
+        values: the allowed values of a discrete quantity, or None for a continuous one.
+        range: least and greatest allowed value, or None for no limit.
+        clip: what the robot or its environment limits a value to that is sent: values beyond are taken for
+            the nearer end; None if it does not.
+        noise: standard deviation of the sensor noise to plant, or None for the operator's default.
+        order: of the parts of a quaternion (``wxyz`` or ``xyzw``), or the axes of Euler angles; else None.
+        relative: whether the program computes this absolute target from where the robot is, so that it hides
+            a relative move.
+        ladder: the magnitudes of graded faults to try, in ``ladder_unit``, rising; None for the usual ones.
+        ladder_unit: the unit of these; it measures what the quantity measures, or a time, or a ratio; only
+            graded faults of that measure follow it. None for its own unit.
+        repeatability: standard deviation of equal readings, as the sensor itself has it, in the unit; None if
+            the vocabulary does not say.
+        missing: what a reading gives that is not there: ``none``, ``nan``, or an exception that is raised
+            (``module:Name``); None if the vocabulary does not say.
+        tcp: the part of the tool centre point's offset that lies along this axis, in its unit; None if the
+            vocabulary does not say.
+    """
+
+    name: str
+    path: Path
+    kind: Kind
+    axis: str | None = None
+    unit: str | None = None
+    frame: str | None = None
+    mode: Mode | None = None
+    values: tuple[Value, ...] | None = None
+    range: tuple[float, float] | None = None
+    noise: float | None = None
+    clip: tuple[float, float] | None = None
+    order: str | None = None
+    relative: bool = False
+    ladder: tuple[float, ...] | None = None
+    ladder_unit: str | None = None
+    repeatability: float | None = None
+    missing: str | None = None
+    tcp: float | None = None
+
+    def get(self, start: Any) -> Value:
+        """Its value in what its path starts at: the seconds of a stamp, the numbers of an orientation.
+
+        A member of an enumeration is what ``values`` write for it. Raises PathError.
+        """
+        value = self.path.get(start)
+        if self.values is not None and is_member(value):
+            return written_of(value, self.values, self.name)
+        if self.is_whole:
+            return numbers_of(value, self._parts)
+        return seconds_of(value) if self.kind is Kind.STAMP else value
+
+    def put(self, start: Any, value: Value) -> Any:
+        """A copy of what its path starts at, with another value, or None. Raises PathError."""
+        if value is None:
+            return self.path.put(start, None)
+        if self.kind is Kind.STAMP:
+            value = with_seconds(self.path.get(start), value)
+        elif self.is_whole:
+            value = with_numbers(self.path.get(start), self._parts, value)
+        elif self.values is not None and is_member(before := self.path.get(start)):
+            member = member_of(type(before), value)
+            value = value if member is None else member
+        return self.path.put(start, value)
+
+    @property
+    def _parts(self) -> str:
+        """The names of the parts of an orientation, where these are attributes."""
+        return "xyz" if self.kind is Kind.ROTATION_VECTOR else (self.order or "").lower()
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether its values are numbers on a scale."""
+        return self.kind in MEASURED
+
+    def allows(self, value: Value) -> bool:
+        """Whether the robot API would take this value, as far as the vocabulary says."""
+        if self.values is not None and value not in self.values:
+            return False
+        if self.range is not None:
+            return bool(self.range[0] <= self.clipped(value) <= self.range[1])
+        return True
+
+    def clipped(self, value: Value) -> Value:
+        """A number, or each number of a vector, as it counts after ``clip``; other values as they are."""
+        if self.clip is None or isinstance(value, str | bytes | bool | None):
+            return value
+        if hasattr(value, "__len__"):
+            return [self.clipped(item) for item in value]
+        return min(max(value, self.clip[0]), self.clip[1])
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its value is an orientation as a whole."""
+        return self.kind in WHOLE
+
+    @property
+    def full_turn(self) -> float | None:
+        """A full turn in its unit, where that makes no difference; None for all else, joints included."""
+        is_joint = self.axis is not None and self.axis.startswith("j")
+        is_target = self.kind is Kind.ROTATION and self.mode is Mode.TO
+        if is_joint or not (is_target or self.kind in (Kind.ORIENTATION, Kind.ANGLE)):
+            return None
+        return self.from_unit(2.0 * math.pi, "rad")
+
+    def orientation(self, value: Value) -> Quaternion | None:
+        """The orientation that a value means, as a unit quaternion; None if it means none."""
+        if not self.is_whole:
+            return None
+        return to_quaternion(
+            value, self.kind, self.order, lambda angle: convert(angle, self.unit or "rad", "rad")
+        )
+
+    def numbers(self, orientation: Quaternion) -> list[float]:
+        """An orientation as this quantity writes it."""
+        return to_values(orientation, self.kind, self.order, lambda angle: self.from_unit(angle, "rad"))
+
+    def from_unit(self, value: float, unit: str) -> float:
+        """``value`` in ``unit``, expressed in this quantity's own unit."""
+        return convert(value, unit, self.unit) if self.unit is not None else value
+
+    def text(self, value: Value, digits: int = 6) -> str:
+        """A value as reports print it, with its unit."""
+        if self.is_whole and isinstance(value, list | tuple):
+            parts = [f"{part:.{digits}g}" if isinstance(part, int | float) else str(part) for part in value]
+            return f"({', '.join(parts)}){f' {self.unit}' if self.unit else ''}"
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return str(value)
+        number = f"{value:.{digits}g}"
+        return f"{number} {self.unit}" if self.unit not in (None, "fraction") else number
+
+    def texts(self, one: Value, other: Value) -> tuple[str, str]:
+        """Two values as reports print them side by side."""
+        return told_apart(one, other, self.text, 6)
+
+
+def told_apart(one: Value, other: Value, text: Callable[[Value, int], str], digits: int) -> tuple[str, str]:
+    """Two values as texts, with as many significant digits as tell them apart, but at least ``digits``."""
+    usual = text(one, digits), text(other, digits)
+    if usual[0] != usual[1] or text(one, _MOST_DIGITS) == text(other, _MOST_DIGITS):
+        return usual
+    for more in range(digits, _MOST_DIGITS + 1):
+        texts = text(one, more), text(other, more)
+        if texts[0] != texts[1]:
+            return texts
+    return usual
+
+
+def is_reading_of(reading: Quantity, written: Quantity) -> bool:
+    """Whether a reading tells where a commanded motion starts from: same axis, no other frame.
+
+    The target that was sent last tells it as well.
+    """
+    frames = {reading.frame, written.frame} - {None}
+    if reading.axis != written.axis or len(frames) > 1:
+        return False
+    is_joint = written.axis is not None and written.axis.startswith("j")
+    if reading.kind is written.kind and reading.mode is Mode.TO:
+        return reading.kind in READING_OF
+    return reading.kind is READING_OF.get(written.kind) or (
+        is_joint and written.kind is Kind.ROTATION and reading.kind is Kind.ANGLE
+    )
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a number; a truth value is none."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def value_text(value: Any, digits: int = 4) -> str:
+    """A value as divergence lines print it."""
+    if value is None:
+        return "nothing"
+    if is_number(value):
+        return f"{value:.{digits}g}"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key}: {value_text(item, digits)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple) and not value:
+        return "[]"
+    if isinstance(value, list | tuple):
+        return "(" + ", ".join(value_text(item, digits) for item in value) + ")"
+    return str(value)
+
+
+def same(one: Value, other: Value) -> bool:
+    """Whether two values are equal; arrays by their elements, not-a-number equal to itself.
+
+    A difference that is but rounding of the computation is none: no robot could show it.
+    """
+    if one is other:
+        return True
+    if (
+        isinstance(one, float)
+        and isinstance(other, float)
+        and isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
+    ):
+        return True
+    if hasattr(one, "tolist"):
+        one = one.tolist()
+    if hasattr(other, "tolist"):
+        other = other.tolist()
+    try:
+        return bool(one == other) or bool(one != one and other != other)  # noqa: PLR0124  # NaN
+    except Exception:  # a value of the user's may compare in any way; what cannot be compared differs
+        return False
+
+
+def numbers_of(value: Any, names: Sequence[str]) -> Any:
+    """The numbers of an object that has them as attributes of these names; anything else as it is."""
+    if value is None or hasattr(value, "__len__") or not all(hasattr(value, name) for name in names):
+        return value
+    return [getattr(value, name) for name in names]
+
+
+def with_numbers(value: Any, names: Sequence[str], numbers: Any) -> Any:
+    """A copy of such an object with other numbers; in place of anything else, the numbers themselves.
+
+    Raises PathError if it cannot be copied and changed.
+    """
+    if numbers_of(value, names) is value:
+        return numbers
+    for name, number in zip(names, numbers, strict=True):
+        value = Path(None, (Step(attribute=name),)).put(value, number)
+    return value
+
+
+#: share of a value that no robot shows: a thousand times finer than the 24 bits of the best encoders
+_RELATIVE = 1e-9
+#: the same next to zero, in the SI's unit. A picometre is what sums of coordinates of some hundred metres
+#: are rounded by (2⁻⁵² of each, several times over), and far below the finest step of any drive
+_ABSOLUTE = 1e-12
+#: share of a stamp: seconds since 1970 have sixteen digits, of which all but the last count
+_OF_STAMP = 1e-15
+#: seconds below which stamps are the same: messages count nanoseconds
+_NANOSECOND = 1e-9
+#: radians within which two orientations are the same
+SAME_ORIENTATION = 1e-9
+#: the same where they are a full turn apart, as half a turn and its opposite are: people write it as 3.1416
+TURNED_ROUND = 1e-3
+
+
+def is_same(quantity: Quantity, one: Value, other: Value) -> bool:
+    """Whether the robot, or the program that reads it, cannot tell two values of a quantity apart.
+
+    Orientations as a whole are the same if the angle between them is none, in whichever writing; targets of
+    rotations modulo a full turn; numbers, and the parts of vectors, up to the rounding of computations.
+    """
+    if one is other:
+        return True
+    if quantity.is_whole:
+        before, after = quantity.orientation(one), quantity.orientation(other)
+        if before is not None and after is not None:
+            return distance(before, after) < SAME_ORIENTATION
+    if not quantity.is_measured and quantity.kind is not Kind.STAMP:
+        return same(one, other)
+    return _are_same(quantity, _plain(one), _plain(other))
+
+
+def are_same(quantities: Iterable[Quantity], one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
+    """The same of the values of a call, by the names of its quantities."""
+    return one.keys() == other.keys() and not changes(quantities, other, one)
+
+
+def changes(
+    quantities: Iterable[Quantity], before: Mapping[str, Value], after: Mapping[str, Value]
+) -> dict[str, Value]:
+    """The values of a call that are others than before, or were not there."""
+    known = {quantity.name: quantity for quantity in quantities}
+
+    def is_kept(name: str, value: Value) -> bool:
+        if name not in before:
+            return False
+        return is_same(known[name], before[name], value) if name in known else same(before[name], value)
+
+    return {name: value for name, value in after.items() if not is_kept(name, value)}
+
+
+def _plain(value: Value) -> Value:
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _are_same(quantity: Quantity, one: Value, other: Value) -> bool:
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return len(one) == len(other) and all(
+            _are_same(quantity, first, second) for first, second in zip(one, other, strict=True)
+        )
+    if not (is_number(one) and is_number(other)):
+        return same(one, other)
+    if one == other:
+        return True
+    if not (math.isfinite(one) and math.isfinite(other)):
+        return same(one, other)
+    return _is_rounding(quantity, one, other) or _is_full_turn(quantity, one, other)
+
+
+def _is_rounding(quantity: Quantity, one: float, other: float) -> bool:
+    if isinstance(one, int) and isinstance(other, int):
+        return False  # whole numbers are not rounded: two counts of an encoder are two places
+    if quantity.kind is Kind.STAMP:
+        return math.isclose(one, other, rel_tol=_OF_STAMP, abs_tol=_NANOSECOND)
+    factor = UNITS[quantity.unit].factor if quantity.unit is not None else 1.0
+    return math.isclose(one, other, rel_tol=_RELATIVE, abs_tol=max(_ABSOLUTE / factor, _ABSOLUTE))
+
+
+def _is_full_turn(quantity: Quantity, one: float, other: float) -> bool:
+    """Whether the targets of a rotation lie a full turn apart, or several."""
+    turn = _turn_of_target(quantity)
+    if turn is None or abs(one - other) < 0.5 * turn:
+        return False
+    return abs(math.remainder(one - other, turn)) <= TURNED_ROUND * turn / (2.0 * math.pi)
+
+
+def _turn_of_target(quantity: Quantity) -> float | None:
+    """A full turn, where it makes no difference to the robot which of two targets it is sent.
+
+    A program that reads an angle may well tell 180 from −180 degrees. A joint tells them apart as well, and
+    so does whatever has a range of more than one turn: it winds.
+    """
+    turn = quantity.full_turn
+    if turn is None or quantity.kind is not Kind.ROTATION or quantity.mode is not Mode.TO:
+        return None
+    limits = quantity.range or quantity.clip
+    winds = limits is not None and limits[1] - limits[0] > turn * (1.0 + 1e-6)
+    return None if winds else turn
+
+
+#: decimals of a step at most: finer ones cannot be told from no steps at all
+_DECIMALS = 4
+
+
+def step_of(values: Iterable[float]) -> float | None:
+    """The power of ten of which all these are multiples, below 1; None if there is none, or all are whole."""
+    values = list(values)
+    for decimals in range(_DECIMALS + 1):
+        if all(abs(value - round(value, decimals)) <= 1e-9 * max(1.0, abs(value)) for value in values):
+            return 10.0**-decimals if decimals else None
+    return None

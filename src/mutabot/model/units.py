@@ -1,0 +1,283 @@
+"""Units a vocabulary may use, and their conversion to SI.
+
+Orientations: rotation vectors, quaternions and Euler angles, and how far two of them are apart.
+
+Everything goes through unit quaternions (w, x, y, z). Two orientations are as far apart as the angle of the
+one rotation that leads from the first to the second, between 0 and half a turn: 2·atan2(|v|, |w|) of the
+quaternion between them. Euler angles are read out after Bernardes and Viollet, "Quaternion to Euler angles
+conversion: A direct, general and computationally efficient method", PLoS ONE 17 (2022) e0276302.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from enum import StrEnum
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+
+class Dimension(StrEnum):
+    """What a unit measures."""
+
+    LENGTH = "length"
+    ANGLE = "angle"
+    TIME = "time"
+    RATIO = "ratio"
+    SPEED = "speed"
+    ANGULAR_SPEED = "angular speed"
+    ACCELERATION = "acceleration"
+    ANGULAR_ACCELERATION = "angular acceleration"
+    JERK = "jerk"
+    ANGULAR_JERK = "angular jerk"
+    FORCE = "force"
+    TORQUE = "torque"
+    MASS = "mass"
+    TEMPERATURE = "temperature"
+    VOLTAGE = "voltage"
+    CURRENT = "current"
+    PRESSURE = "pressure"
+    FREQUENCY = "frequency"
+
+
+class Unit(NamedTuple):
+    """A unit.
+
+    Attributes:
+        dimension: what it measures.
+        factor: how many of the SI's unit (metre, radian, second, fraction, kilogram …) it is.
+        zero: where its scale begins, in the SI's unit.
+    """
+
+    dimension: Dimension
+    factor: float
+    zero: float = 0.0
+
+
+_DEGREE = math.pi / 180.0
+#: by the names that vocabularies write; a test holds them against pint's
+UNITS: dict[str, Unit] = {
+    "m": Unit(Dimension.LENGTH, 1.0),
+    "cm": Unit(Dimension.LENGTH, 0.01),
+    "mm": Unit(Dimension.LENGTH, 0.001),
+    "um": Unit(Dimension.LENGTH, 1e-6),
+    "inch": Unit(Dimension.LENGTH, 0.0254),
+    "rad": Unit(Dimension.ANGLE, 1.0),
+    "mrad": Unit(Dimension.ANGLE, 0.001),
+    "deg": Unit(Dimension.ANGLE, _DEGREE),
+    "s": Unit(Dimension.TIME, 1.0),
+    "ms": Unit(Dimension.TIME, 0.001),
+    "us": Unit(Dimension.TIME, 1e-6),
+    "min": Unit(Dimension.TIME, 60.0),
+    "fraction": Unit(Dimension.RATIO, 1.0),
+    "percent": Unit(Dimension.RATIO, 0.01),
+    "m/s": Unit(Dimension.SPEED, 1.0),
+    "cm/s": Unit(Dimension.SPEED, 0.01),
+    "mm/s": Unit(Dimension.SPEED, 0.001),
+    "mm/min": Unit(Dimension.SPEED, 0.001 / 60.0),
+    "rad/s": Unit(Dimension.ANGULAR_SPEED, 1.0),
+    "deg/s": Unit(Dimension.ANGULAR_SPEED, _DEGREE),
+    "rpm": Unit(Dimension.ANGULAR_SPEED, 2.0 * math.pi / 60.0),
+    "m/s^2": Unit(Dimension.ACCELERATION, 1.0),
+    "mm/s^2": Unit(Dimension.ACCELERATION, 0.001),
+    "rad/s^2": Unit(Dimension.ANGULAR_ACCELERATION, 1.0),
+    "deg/s^2": Unit(Dimension.ANGULAR_ACCELERATION, _DEGREE),
+    "m/s^3": Unit(Dimension.JERK, 1.0),
+    "mm/s^3": Unit(Dimension.JERK, 0.001),
+    "rad/s^3": Unit(Dimension.ANGULAR_JERK, 1.0),
+    "deg/s^3": Unit(Dimension.ANGULAR_JERK, _DEGREE),
+    "N": Unit(Dimension.FORCE, 1.0),
+    "kN": Unit(Dimension.FORCE, 1000.0),
+    "Nm": Unit(Dimension.TORQUE, 1.0),
+    "Nmm": Unit(Dimension.TORQUE, 0.001),
+    "kg": Unit(Dimension.MASS, 1.0),
+    "g": Unit(Dimension.MASS, 0.001),
+    "K": Unit(Dimension.TEMPERATURE, 1.0),
+    "degC": Unit(Dimension.TEMPERATURE, 1.0, 273.15),
+    "degF": Unit(Dimension.TEMPERATURE, 5.0 / 9.0, 273.15 - 32.0 * 5.0 / 9.0),
+    "V": Unit(Dimension.VOLTAGE, 1.0),
+    "mV": Unit(Dimension.VOLTAGE, 0.001),
+    "A": Unit(Dimension.CURRENT, 1.0),
+    "mA": Unit(Dimension.CURRENT, 0.001),
+    "Pa": Unit(Dimension.PRESSURE, 1.0),
+    "kPa": Unit(Dimension.PRESSURE, 1000.0),
+    "mbar": Unit(Dimension.PRESSURE, 100.0),
+    "bar": Unit(Dimension.PRESSURE, 1e5),
+    "psi": Unit(Dimension.PRESSURE, 6894.757293168361),
+    "Hz": Unit(Dimension.FREQUENCY, 1.0),
+    "kHz": Unit(Dimension.FREQUENCY, 1000.0),
+}
+
+
+def dimension_of(unit: str) -> Dimension:
+    """The dimension a unit measures. Raises KeyError for an unknown unit."""
+    return UNITS[unit].dimension
+
+
+def convert(value: float, unit: str, to: str) -> float:
+    """``value`` given in ``unit``, expressed in ``to``.
+
+    Raises ValueError when the two units measure different things. A conversion between equal units
+    returns the value untouched, so that nothing is rounded without need.
+    """
+    one, other = _both(unit, to)
+    if unit == to:
+        return value
+    if one.zero == other.zero:
+        return value * one.factor / other.factor
+    return (value * one.factor + one.zero - other.zero) / other.factor
+
+
+def convert_difference(difference: float, unit: str, to: str) -> float:
+    """A difference of two values given in ``unit``, expressed in ``to``: where scales begin is all one.
+
+    Raises ValueError when the two units measure different things.
+    """
+    one, other = _both(unit, to)
+    return difference if unit == to else difference * one.factor / other.factor
+
+
+def _both(unit: str, to: str) -> tuple[Unit, Unit]:
+    one, other = UNITS[unit], UNITS[to]
+    if one.dimension is not other.dimension:
+        raise ValueError(f"cannot convert {unit} ({one.dimension}) to {to} ({other.dimension})")
+    return one, other
+
+
+Quaternion = tuple[float, float, float, float]
+
+#: the two ways to write a quaternion
+QUATERNION_ORDERS = ("wxyz", "xyzw")
+#: sines below which two Euler angles turn about the same axis
+_LOCKED = 1e-7
+
+
+def is_euler_order(text: str) -> bool:
+    """Whether these are axes of Euler angles: ``xyz`` if the axes stay, ``XYZ`` if they turn along."""
+    axes = text.lower()
+    same_case = text in (axes, axes.upper())
+    return len(axes) == 3 and set(axes) <= set("xyz") and same_case and all(a != b for a, b in pairwise(axes))
+
+
+def product(first: Quaternion, second: Quaternion) -> Quaternion:
+    """The rotation that does the second, then the first."""
+    a, b, c, d = first
+    w, x, y, z = second
+    return (
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    )
+
+
+def inverse(rotation: Quaternion) -> Quaternion:
+    """The rotation back."""
+    w, x, y, z = rotation
+    return (w, -x, -y, -z)
+
+
+def distance(first: Quaternion, second: Quaternion) -> float:
+    """Angle between two orientations, in radians: 0 to π."""
+    w, x, y, z = product(inverse(first), second)
+    return 2.0 * math.atan2(math.hypot(x, y, z), abs(w))
+
+
+def from_rotation_vector(vector: Sequence[float]) -> Quaternion:
+    """The rotation about a vector by its length, in radians."""
+    angle = math.hypot(*vector)
+    if angle == 0.0:
+        return (1.0, 0.0, 0.0, 0.0)
+    x, y, z = (math.sin(angle / 2) / angle * part for part in vector)
+    return (math.cos(angle / 2), x, y, z)
+
+
+def to_rotation_vector(rotation: Quaternion) -> list[float]:
+    """The rotation vector of up to half a turn, in radians."""
+    w, *axis = rotation if rotation[0] >= 0 else tuple(-part for part in rotation)
+    size = math.hypot(*axis)
+    return [part * 2.0 * math.atan2(size, w) / size for part in axis] if size > 0 else [0.0, 0.0, 0.0]
+
+
+def from_euler(angles: Sequence[float], order: str) -> Quaternion:
+    """The rotation about three axes, in radians, in the order in which they are written."""
+    found: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    for axis, angle in zip(order, angles, strict=True):
+        turn = from_rotation_vector([angle * (name == axis.lower()) for name in "xyz"])
+        found = product(found, turn) if axis.isupper() else product(turn, found)
+    return found
+
+
+def to_euler(rotation: Quaternion, order: str) -> list[float]:
+    """Euler angles of a rotation, in radians; where two axes fall together the third angle is zero."""
+    turning = order.isupper()
+    i, j, k = (1 + "xyz".index(axis) for axis in (reversed(order.lower()) if turning else order))
+    proper = i == k
+    k = 6 - i - j if proper else k
+    sign = (i - j) * (j - k) * (k - i) // 2
+    w, one, two, three = rotation[0], rotation[i], rotation[j], rotation[k] * sign
+    a, b, c, d = (w, one, two, three) if proper else (w - two, one + three, two + w, three - one)
+    middle = 2.0 * math.atan2(math.hypot(c, d), math.hypot(a, b))
+    half_sum, half_difference = math.atan2(b, a), math.atan2(d, c)
+    if abs(middle) <= _LOCKED:
+        first, third = 2.0 * half_sum, 0.0
+    elif abs(middle - math.pi) <= _LOCKED:
+        first, third = -2.0 * half_difference, 0.0
+    else:
+        first, third = half_sum - half_difference, half_sum + half_difference
+    if not proper:
+        third, middle = third * sign, middle - math.pi / 2
+    found = [third, middle, first] if turning else [first, middle, third]
+    return [math.remainder(angle, 2.0 * math.pi) for angle in found]
+
+
+def apart(first: float, second: float, turn: float) -> float:
+    """How far two angles about the same axis are apart, where a full ``turn`` makes no difference."""
+    return abs(math.remainder(first - second, turn))
+
+
+def to_quaternion(
+    values: Any, kind: str, order: str | None, radians: Callable[[float], float]
+) -> Quaternion | None:
+    """The unit quaternion of an orientation as an API writes it; None if these numbers are none.
+
+    Args:
+        values: the numbers.
+        kind: ``rotation_vector``, ``quaternion`` or ``euler``.
+        order: of the parts of a quaternion, or of Euler angles.
+        radians: turns an angle of the API into radians.
+    """
+    numbers = _numbers(values)
+    if numbers is None or len(numbers) != (4 if kind == "quaternion" else 3):
+        return None
+    if kind == "rotation_vector":
+        return from_rotation_vector([radians(number) for number in numbers])
+    if kind == "euler":
+        return from_euler([radians(number) for number in numbers], order or "")
+    size = math.hypot(*numbers)
+    if size == 0.0:
+        return None
+    a, b, c, d = (number / size for number in numbers)
+    return (d, a, b, c) if order == "xyzw" else (a, b, c, d)
+
+
+def to_values(
+    rotation: Quaternion, kind: str, order: str | None, angle: Callable[[float], float]
+) -> list[float]:
+    """An orientation as an API writes it; ``angle`` turns radians into its unit."""
+    if kind == "rotation_vector":
+        return [angle(part) for part in to_rotation_vector(rotation)]
+    if kind == "euler":
+        return [angle(part) for part in to_euler(rotation, order or "")]
+    w, x, y, z = rotation
+    return [x, y, z, w] if order == "xyzw" else [w, x, y, z]
+
+
+def _numbers(values: Any) -> list[float] | None:
+    if hasattr(values, "tolist"):
+        values = values.tolist()
+    if not isinstance(values, list | tuple):
+        return None
+    if not all(isinstance(part, int | float) and math.isfinite(part) for part in values):
+        return None
+    return [float(part) for part in values]

@@ -1,1 +1,0 @@
-"""What arguments and results mean, and the values they have."""

@@ -1,0 +1,212 @@
+"""Demands held against what a campaign found: which sites tolerate more than they may."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from enum import StrEnum
+
+from mutabot.errors import unknown_name_text
+from mutabot.families import GRADED
+from mutabot.frozen import frozen
+from mutabot.model import Kind, Outcome, Verdict
+from mutabot.model.graded import Demand, Seen, is_at_least, is_same, seen
+from mutabot.model.mutant import is_like
+from mutabot.results.ladders import Ladder, LadderRound, lower_limit, rounds_for, upper_limit
+from mutabot.results.thresholds import amount, in_rounds
+
+_UNSOUND = {Verdict.UNSTABLE: "is unstable", Verdict.ERROR: "ended in error"}
+
+
+class Held(StrEnum):
+    """What became of a demand on one ladder."""
+
+    PASSED = "passed"
+    FAILED = "failed"
+    UNDECIDED = "undecided"
+
+
+@frozen
+class Ruling:
+    """What became of a demand on one ladder.
+
+    Attributes:
+        demand: the demand.
+        ladder: which; None for a demand that fits none.
+        held: whether it holds.
+        why: in words.
+    """
+
+    demand: Demand
+    ladder: Ladder | None
+    held: Held
+    why: str
+
+    @property
+    def text(self) -> str:
+        """``sorting.py:38 arm.move_by y +: survives 5 mm in round 3 (mutant 17)``."""
+        where = f"{self.ladder.place} {self.ladder.name}" if self.ladder is not None else "no ladder"
+        source = f"{self.demand.source} · " if self.demand.source else ""
+        return f"{source}{self.demand.text}: {where}: {self.why}"
+
+
+def rulings(
+    demands: Iterable[Demand], ladders: Sequence[Ladder], families: Iterable[str] = (GRADED,)
+) -> tuple[Ruling, ...]:
+    """Each demand on each ladder that it speaks of, in their order.
+
+    ``families`` are those that the campaign was asked for.
+    """
+    families = tuple(families)
+    found: list[Ruling] = []
+    for demand in demands:
+        about = [one for one in ladders if demand.is_about(one.mutant, _kind(one))]
+        found += (ruling(demand, one) for one in about)
+        if not about:
+            found.append(Ruling(demand, None, Held.FAILED, _why_nothing_fits(demand, ladders, families)))
+    return tuple(found)
+
+
+def ruling(demand: Demand, ladder: Ladder) -> Ruling:
+    """One demand on one ladder that it speaks of."""
+    demanded = demand.magnitude_in(ladder.unit)
+    assert demanded is not None, "it speaks of ladders of its own measure alone"
+    if demand.share is not None:
+        held, why = _share(ladder, demanded, demand.share)
+    else:
+        held, why = _all_rounds(ladder, demanded)
+    return Ruling(demand, ladder, held, why)
+
+
+def suggested(ladder: Ladder) -> float | None:
+    """What may be demanded of a ladder: its ``all_from`` if the rounds lie close together, or a step more.
+
+    A refusal is as good as being noticed. None if some round neither notices nor refuses it, or if there is
+    no larger magnitude.
+    """
+    ends = [one.bracket.high or one.bracket.refused for one in ladder.counted]
+    known = [end for end in ends if end is not None]
+    if not known or len(known) < len(ends):
+        return None
+    largest = max(known)
+    return largest if ladder.are_neighbours(ladder.none_up_to, largest) else ladder.above(largest)
+
+
+def _kind(ladder: Ladder) -> Kind | None:
+    return ladder.quantity.kind if ladder.quantity is not None else None
+
+
+def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Sequence[str]) -> str:
+    if GRADED not in families:
+        return 'the campaign has no graded mutants; add "graded" to families, or run with --family graded'
+    if not ladders:
+        return "the campaign has no ladders"
+    about = [one for one in ladders if one.mutant.operator == demand.operator]
+    if not about:
+        return unknown_name_text("operator", demand.operator, {one.mutant.operator for one in ladders})
+    here = [one for one in about if demand.is_at(one.mutant)]
+    if not here:
+        places = {name for one in about for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
+        return unknown_name_text("site", demand.site or "", places)
+    names = {one.mutant.quantity or "" for one in here}
+    if demand.quantity is not None and not any(is_like(demand.quantity, name) for name in names):
+        return unknown_name_text("quantity", demand.quantity, names)
+    units = ", ".join(sorted({one.unit or "no unit" for one in here}))
+    kinds = ", ".join(sorted({kind.value for kind in map(_kind, here) if kind is not None}))
+    return f"fits none of {len(here)} ladders, which are of {kinds or 'unknown kinds'}, in {units}"
+
+
+def _all_rounds(ladder: Ladder, demanded: float) -> tuple[Held, str]:
+    """All rounds must notice it, and no valid run of it or more may survive."""
+    size = amount(demanded, ladder.unit)
+    survivors = list(_survivors(ladder, demanded))
+    if survivors:
+        return Held.FAILED, _survivors_text(ladder, survivors)
+    problem = _problem(ladder, demanded)
+    if problem:
+        return Held.FAILED, problem
+    ends = [seen(one) for one in _at(ladder, demanded)]
+    if Seen.NOTICED in ends:
+        return Held.PASSED, f"noticed at {size} in {ends.count(Seen.NOTICED)} of {len(ends)} rounds"
+    if set(ends) == {Seen.REFUSED}:
+        return Held.PASSED, f"the robot refuses {size}"
+    return Held.FAILED, f"{size} has no effect in any round, so nothing is known; demand it of other sites"
+
+
+def _share(ladder: Ladder, demanded: float, share: float) -> tuple[Held, str]:
+    """At least this share of rounds notices it, with 95 % confidence."""
+    size = amount(demanded, ladder.unit)
+    problem = _problem(ladder, demanded)
+    if problem:
+        return Held.FAILED, problem
+    ends = [seen(one) for one in _at(ladder, demanded)]
+    noticed, valid = ends.count(Seen.NOTICED), sum(one.is_valid for one in ends)
+    if not valid:
+        if set(ends) == {Seen.REFUSED}:
+            return Held.PASSED, f"the robot refuses {size}"
+        return Held.FAILED, f"{size} has no effect in any round, so nothing is known"
+    low, high = lower_limit(noticed, valid), upper_limit(noticed, valid)
+    found = f"noticed at {size} in {noticed} of {valid} rounds"
+    if low >= share:
+        return Held.PASSED, f"{found}, at least {_percent(low, up=False)} of all (95 %)"
+    if high < share:
+        return Held.FAILED, f"{found}, at most {_percent(high, up=True)} of all (95 %)"
+    if noticed < valid:
+        return Held.UNDECIDED, f"{found}, which decides nothing about {share:.0%}: it takes more rounds"
+    return (
+        Held.UNDECIDED,
+        f"{found}, which shows {_percent(low, up=False)}: it takes {rounds_for(share)} rounds",
+    )
+
+
+def _percent(share: float, *, up: bool) -> str:
+    return f"{math.ceil(100 * share) if up else math.floor(100 * share)} %"
+
+
+def _at(ladder: Ladder, demanded: float) -> Iterator[Outcome]:
+    """The outcomes at the demanded magnitude, in rounds that do not fail without a fault."""
+    for one in ladder.rounds:
+        if not one.fails_without_fault:
+            yield from (outcome for size, outcome in one.outcomes.items() if is_same(size, demanded))
+
+
+def _survivors(ladder: Ladder, demanded: float) -> Iterator[tuple[LadderRound, float, Outcome]]:
+    for one in ladder.rounds:
+        for size, outcome in one.outcomes.items():
+            if is_at_least(size, demanded) and seen(outcome) is Seen.MISSED:
+                yield one, size, outcome
+
+
+def _survivors_text(ladder: Ladder, survivors: Sequence[tuple[LadderRound, float, Outcome]]) -> str:
+    unreached = [one.number + 1 for one, _, outcome in survivors if outcome.verdict is Verdict.NOT_COVERED]
+    if unreached:
+        return f"no test reaches it in {in_rounds(unreached)}"
+    largest: dict[float, list[int]] = {}
+    for one, size, _ in survivors:
+        largest.setdefault(size, []).append(one.number + 1)
+    told = [
+        f"{amount(size, ladder.unit)} in {in_rounds(numbers)} (mutant {ladder.number_of(size)})"
+        for size, numbers in largest.items()
+    ]
+    return f"survives {', '.join(told)}"
+
+
+def _problem(ladder: Ladder, demanded: float) -> str:
+    """Why nothing can be said in some round; empty if it can in all."""
+    size = amount(demanded, ladder.unit)
+    if ladder.number_of(demanded) is None:
+        return f"{size} is not on its ladder; `mutabot run` again plants it"
+    unclean = [one.number + 1 for one in ladder.rounds if one.fails_without_fault]
+    if unclean:
+        return f"the tests fail without a fault in {in_rounds(unclean)}"
+    for verdict, words in _UNSOUND.items():
+        rounds = [one.number + 1 for one in ladder.rounds if _verdict(one, demanded) is verdict]
+        if rounds:
+            return f"{size} {words} in {in_rounds(rounds)}"
+    missing = [one.number + 1 for one in ladder.rounds if _verdict(one, demanded) is None]
+    return f"{size} was not run in {in_rounds(missing)}; `mutabot run` goes on" if missing else ""
+
+
+def _verdict(one: LadderRound, demanded: float) -> Verdict | None:
+    found = (outcome for size, outcome in one.outcomes.items() if is_same(size, demanded))
+    return next((outcome.verdict for outcome in found), None)

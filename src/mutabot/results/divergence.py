@@ -1,0 +1,104 @@
+"""Why a mutant ended as it did, in one line an engineer can act on."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
+from mutabot.model.quantity import told_apart, value_text
+
+
+def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
+    """The quantity a mutant changes, or None if it concerns the call or the vocabulary is not known."""
+    operation = vocabulary.operation(mutant.operation) if vocabulary is not None else None
+    if operation is None or mutant.quantity is None:
+        return None
+    pattern = operation.pattern(mutant.pattern)
+    owner = pattern if pattern is not None else operation
+    known = (*owner.arguments, *owner.result, *operation.arguments, *operation.result)
+    return next((quantity for quantity in known if quantity.name == mutant.quantity), None)
+
+
+def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary | None = None) -> str:
+    """One line about a mutant's outcomes: what changed, and what became of the world or who noticed.
+
+    Speaks about the survivor farthest from the original, if there is any; else about a round in which no
+    test reached it; else about the verdict that occurred most.
+    """
+    if not outcomes:
+        return "not run"
+    quantity = quantity_of(mutant, vocabulary)
+    survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
+    if survivors:
+        worst = max(survivors, key=worst_of)
+        return f"{change_text(mutant, worst, quantity) or mutant.description}; {_world_text(worst)}"
+    verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
+    if any(one.verdict is Verdict.NOT_COVERED for one in outcomes):
+        verdict = Verdict.NOT_COVERED
+    return _end_text(next(one for one in outcomes if one.verdict is verdict))
+
+
+def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = None) -> str | None:
+    """What the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``."""
+    if mutant.quantity is None or outcome.example is None or len(outcome.example) != 2:
+        return None
+    text = quantity.text if quantity is not None else value_text
+    before, after = told_apart(*outcome.example, text, 6 if quantity is not None else 4)
+    if before == after:
+        return None
+    return f"{_verb(quantity)} {after} instead of {before}"
+
+
+def worst_of(outcome: Outcome) -> float:
+    """How far the world was from the original's at the worst moment, in multiples of the tolerance.
+
+    What was recorded of the world tells more than probes do, of which one may be a clock: what went the same
+    way at other times is not far.
+    """
+    if any(one.apart for one in outcome.diverged):
+        return max(one.worst for one in outcome.diverged)
+    return max(outcome.distance or 0.0, outcome.way or 0.0)
+
+
+def _verb(quantity: Quantity | None) -> str:
+    if quantity is None:
+        return "had"
+    return "sent" if quantity.path.root is not None else "read"
+
+
+def _world_text(outcome: Outcome) -> str:
+    if outcome.indistinguishable:
+        return f"nothing differs{_extent_text(outcome)} (indistinguishable)"
+    story = next((one.story for one in outcome.diverged if one.story), "")
+    if story:
+        return story
+    if outcome.divergence:
+        return outcome.divergence[0]
+    if outcome.gaps:
+        return f"not compared with the original: {outcome.gaps[0]}"
+    if outcome.distance is not None:
+        return "every probe ended within its tolerance"
+    return "nothing tells how the world ended (the vocabulary names no probe)"
+
+
+def _extent_text(outcome: Outcome) -> str:
+    return f" in {outcome.compared.text}" if outcome.compared is not None else " that was compared"
+
+
+def _end_text(outcome: Outcome) -> str:
+    match outcome.verdict:
+        case Verdict.NOT_COVERED:
+            return "no test reaches it"
+        case Verdict.NO_EFFECT:
+            return outcome.message or "it changed no value"
+        case Verdict.KILLED:
+            return f"killed by {outcome.by or 'a test'}: {first_line(outcome.message)}"
+        case _:
+            return f"{outcome.verdict}: {first_line(outcome.message)}"
+
+
+def first_line(text: str | None) -> str:
+    """The first line of a message, or words that say there is none."""
+    lines = (text or "").strip().splitlines()
+    return lines[0] if lines else "no message"

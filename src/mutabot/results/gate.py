@@ -1,0 +1,189 @@
+"""Whether a campaign is good enough: the limits that decide its exit code."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from mutabot.errors import ExitCode
+from mutabot.families import GRADED
+from mutabot.frozen import frozen
+from mutabot.journal.records import ShardOf
+from mutabot.model import Verdict
+from mutabot.model.graded import Demand
+from mutabot.results.demands import Held, rulings
+from mutabot.results.ladders import ladders_of
+from mutabot.results.results import Results
+
+#: rows of the journal that are named
+_SHOWN = 5
+
+
+@frozen
+class Decision:
+    """The end of a campaign as a continuous-integration job sees it.
+
+    Attributes:
+        exit_code: what the command ends with.
+        lines: why it is not 0, one line each; empty if all is well.
+    """
+
+    exit_code: ExitCode
+    lines: tuple[str, ...] = ()
+
+
+def decide(
+    results: Results,
+    *,
+    min_score: float | None = None,
+    max_timeouts: float | None = None,
+    max_unstable: float | None = None,
+    max_errors: float | None = None,
+    demands: Sequence[Demand] = (),
+) -> Decision:
+    """Hold the results against the limits.
+
+    ``min_score`` (0 … 1) holds for every printed mean score, that is for each family and role on its own:
+    a good score of the oracle never hides a poor one of the program. ``max_timeouts`` (0 … 1) is the
+    greatest share of time-outs among the valid outcomes. ``max_unstable`` is the greatest share of flaky
+    tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
+    among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
+    unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify``
+    found always fails, and so does a journal that lacks what was found, or that something else has
+    written to. Of a shard nothing else is judged.
+    """
+    doubtful = tuple(_doubtful(results))
+    if doubtful:
+        return Decision(ExitCode.UNRELIABLE, doubtful)
+    if results.shard is not None and results.shard.of > 1:
+        return _of_shard(results, results.shard)
+    total = results.all.total
+    unstable = (
+        *_too_many(results, Verdict.ERROR, "errors", max_errors, "error_limit"),
+        *_disagreements(results),
+        *_too_unstable(results, max_unstable),
+    )
+    if unstable:
+        return Decision(ExitCode.UNRELIABLE, unstable)
+    if results.since is not None and not results.everything:
+        return Decision(ExitCode.FINE)  # nothing that was asked for has changed
+    if not total.valid and not _knows_thresholds(results):
+        return Decision(ExitCode.NOTHING_KNOWN, (_nothing_valid(results),))
+    share = total.timeouts / total.valid if total.valid else 0.0
+    if max_timeouts is not None and share > max_timeouts:
+        text = f"{total.timeouts} of {total.valid} valid outcomes are time-outs ({share:.0%})"
+        return Decision(ExitCode.TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
+    low = tuple(_too_low(results, min_score)) if min_score is not None else ()
+    low += tuple(_too_loose(results, demands))
+    return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
+
+
+def _incomplete(results: Results) -> str:
+    lacking = [str(one.mutant.number) for one in results.mutants if len(one.outcomes) < results.rounds]
+    if results.shard is not None and results.shard.of > 1:
+        lacking = []  # most of them are other shards'
+    shown = f": mutants {', '.join(lacking[:20])}{' …' if len(lacking) > 20 else ''}" if lacking else ""
+    return f"not all that was found could be written to the journal{shown}; `mutabot run` runs it again"
+
+
+def _doubtful(results: Results) -> Iterator[str]:
+    """What others did to the journal: nobody who can do that is to decide about an exit code."""
+    if results.set_aside:
+        yield (
+            f"{_listed(results.set_aside)} in the journal: not written by mutabot, or damaged; nothing of it "
+            "is believed, and `mutabot run` runs it again"
+        )
+    elif results.is_incomplete:
+        yield _incomplete(results)
+    if results.altered:
+        yield (
+            f"the journal was changed by something else while the campaign ran: {_listed(results.altered)}. "
+            "What mutabot had found was restored; see to it that no test writes into .mutabot"
+        )
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return ", ".join(names[:_SHOWN]) + more
+
+
+def _of_shard(results: Results, shard: ShardOf) -> Decision:
+    """Shares and scores of a part say little about the whole; a disagreement is one wherever it is found."""
+    wrong = _disagreements(results)
+    if wrong:
+        return Decision(ExitCode.UNRELIABLE, wrong)
+    told = f"{shard.words}: limits and scores are judged by `mutabot merge`, with all shards"
+    return Decision(ExitCode.FINE, (told,))
+
+
+def _disagreements(results: Results) -> tuple[str, ...]:
+    found = results.verification
+    if found is None or not found.disagreements:
+        return ()
+    lines = [f"{len(found.disagreements)} of {found.checked} outcomes come out otherwise in a fresh process:"]
+    for one in found.disagreements:
+        lines.append(f"  mutant {one.number} ({one.mutant}), round {one.round + 1}:")
+        lines += [f"    here    {one.first}", f"    afresh  {one.second}"]
+    return tuple(lines)
+
+
+def _too_unstable(results: Results, limit: float | None) -> tuple[str, ...]:
+    if limit is None:
+        return ()
+    lines = [results.flaky.text(limit)] if results.flaky.share > limit else []
+    return (*lines, *_too_many(results, Verdict.UNSTABLE, "unstable", limit, "unstable_limit"))
+
+
+def _too_many(
+    results: Results, verdict: Verdict, words: str, limit: float | None, key: str
+) -> tuple[str, ...]:
+    """A line if more outcomes than the limit allows ended so."""
+    outcomes = results.outcomes
+    count, run = sum(one.verdict is verdict for one in outcomes), len(outcomes)
+    if limit is None or not run or count / run <= limit:
+        return ()
+    numbers = [
+        str(result.mutant.number)
+        for result in results.everything
+        if any(one.verdict is verdict for one in result.outcomes)
+    ]
+    shown = ", ".join(numbers[:20]) + (" …" if len(numbers) > 20 else "")
+    text = f"{count} of {run} outcomes are {words} ({count / run:.0%})"
+    return (f"{text}; the limit is {limit:.0%} ({key}): mutants {shown}",)
+
+
+def _nothing_valid(results: Results) -> str:
+    if not results.everything:
+        return "no mutant was planned, so nothing is known about the tests"
+    counts = Counter(one.verdict for one in results.outcomes)
+    if not counts:
+        return "no mutant was run, so nothing is known about the tests"
+    if set(counts) == {Verdict.REFUSED}:
+        return "the robot refused every mutant, so nothing is known about the tests"
+    ends = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
+    return f"no mutant was valid ({ends}), so nothing is known about the tests"
+
+
+def _knows_thresholds(results: Results) -> bool:
+    """Whether something is known of a ladder: scores have no part in that."""
+    return bool(results.graded) and any(not one.why_unjudged for one in ladders_of(results))
+
+
+def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
+    """Each site that tolerates more than is demanded, with direction and rounds."""
+    if not demands:
+        return
+    families = [*(results.meta.get("families") or ()), *([GRADED] if results.graded else [])]
+    for one in rulings(demands, ladders_of(results), families):
+        if one.held is not Held.PASSED:
+            yield one.text
+
+
+def _too_low(results: Results, min_score: float) -> list[str]:
+    lines = []
+    for group in results.groups:
+        mean = group.scores.mean
+        if mean is not None and mean < min_score:
+            name = f"{group.family} mutants of the {group.role}"
+            lines.append(f"the score of the {name} is {mean:.1%}, under the limit of {min_score:.1%}")
+    return lines

@@ -1,0 +1,545 @@
+"""Everything a report needs, read from a journal once.
+
+Facts of objects as plain data, named in a line: ``id file=site.span.file round=round+1``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import field, fields, is_dataclass, replace
+from enum import Enum
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from mutabot.errors import SelectionError, unknown_name_text
+from mutabot.frozen import frozen
+from mutabot.journal import records
+from mutabot.journal.lock import is_written
+from mutabot.journal.reader import JournalReader
+from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
+from mutabot.model.codec import from_data
+from mutabot.model.mutant import fits
+from mutabot.results.divergence import change_text, explain, quantity_of, worst_of
+from mutabot.results.score import Group, RoundScores, Score, groups_of
+from mutabot.results.statistics import Confirmed
+
+#: mutants that are named where a text fits several
+_SHOWN = 10
+
+
+@frozen
+class MutantResult:
+    """What became of one mutant.
+
+    Attributes:
+        mutant: the mutant.
+        rounds: its outcome in each round; None where it has not been run.
+        quantity: what it changes, if the journal holds the vocabulary.
+        why: one line about how it ended.
+        earlier: whether an earlier campaign found some of it.
+        outdated: whether something has changed since that it depends on, as far as that is known.
+    """
+
+    mutant: Mutant
+    rounds: tuple[Outcome | None, ...]
+    quantity: Quantity | None
+    why: str
+    earlier: bool = False
+    outdated: bool = False
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """The outcomes there are."""
+        return tuple(outcome for outcome in self.rounds if outcome is not None)
+
+    @property
+    def survived(self) -> list[Outcome]:
+        """Those in which every test that reaches it passed."""
+        return [one for one in self.outcomes if one.verdict is Verdict.SURVIVED]
+
+    @property
+    def kill_rate(self) -> Score:
+        """In how many rounds it was killed."""
+        return Score.of(self.outcomes)
+
+    @property
+    def is_survivor(self) -> bool:
+        """Whether any round lets it through, by surviving or because no test reaches it."""
+        return any(one.verdict.is_valid and not one.verdict.is_killed for one in self.outcomes)
+
+    @property
+    def worst(self) -> float:
+        """How far its survivors were from the original at the worst moment, in multiples of the tolerance."""
+        return max(map(worst_of, self.survived), default=0.0)
+
+    @property
+    def change(self) -> str | None:
+        """What it changed when it first acted, in words; None if that is not known."""
+        return next(
+            filter(None, (change_text(self.mutant, one, self.quantity) for one in self.outcomes)), None
+        )
+
+    @property
+    def improvement(self) -> str:
+        """What a test did better with it than without, in words; empty if nothing."""
+        return next((one.improvement for one in self.outcomes if one.improvement), "")
+
+    @property
+    def indistinguishable(self) -> bool:
+        """Whether no survivor of it looked other than the original."""
+        return bool(self.survived) and all(one.indistinguishable for one in self.survived)
+
+    @property
+    def distance(self) -> float:
+        """How far its survivors took the world from the original's, in multiples of the tolerance."""
+        return max((one.distance or 0.0 for one in self.survived), default=0.0)
+
+
+@frozen
+class Results:
+    """What became of a campaign.
+
+    Attributes:
+        meta: what the campaign said about itself.
+        state: ``complete``, ``incomplete`` (all has run, but the journal lacks some of it), ``interrupted``,
+            ``running``, ``killed`` or why it stopped; of a shard, which.
+        rounds: number of rounds.
+        mutants: every planned mutant by number, but for graded ones.
+        groups: scores per family and role.
+        all: scores of all mutants together, as published studies give them. Only to be shown beside
+            ``groups``, because it mixes roles.
+        left_out: what the plan leaves out.
+        controls: the control mutants.
+        baseline: its tests on the original.
+        verification: what ``--verify`` found; None if it was not asked for.
+        repeats: how many outcomes were run once more, and how many ended otherwise.
+        flaky: tests that cannot be relied on.
+        drawing: how the mutants were drawn from those selected; None if they are all.
+        drawn: scores of those drawn, per family and role.
+        attempt: why a later campaign ended before it ran anything; None if there was none.
+        graded: the mutants of family ``graded``, by number. The magnitudes of a ladder are no population of
+            faults, and most of them need not be run: no score and no list of survivors knows of them.
+        since: what was run of what has changed since a revision; None if that was not asked for.
+        budget: how limited time was used; None if it was not limited.
+        shard: which part of its plan the campaign has run; None for all of it.
+        set_aside: what the journal holds that Mutabot has not written or that cannot be, in words. Nothing
+            of it is believed: its outcomes count as not run.
+        sources: text of the mutated files at the time of the campaign, by path relative to the project.
+        operators: what each operator does, in a sentence, by its name; those of journals that do not say it
+            are missing.
+        reaching: which tests reach which sites.
+        draws: names of operators that draw a number for each round.
+    """
+
+    meta: Mapping[str, Any]
+    state: str
+    rounds: int
+    mutants: tuple[MutantResult, ...]
+    groups: tuple[Group, ...]
+    all: RoundScores
+    left_out: tuple[LeftOut, ...]
+    controls: tuple[records.ControlEnd, ...]
+    baseline: tuple[records.BaselineTest, ...]
+    verification: records.Verification | None = None
+    repeats: records.Repeats = field(default_factory=records.Repeats)
+    flaky: records.Flaky = field(default_factory=records.Flaky)
+    drawing: records.Drawing | None = None
+    drawn: tuple[Group, ...] = ()
+    attempt: str | None = None
+    graded: tuple[MutantResult, ...] = ()
+    since: records.Since | None = None
+    budget: records.Budgeted | None = None
+    shard: records.ShardOf | None = None
+    set_aside: tuple[str, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)
+    operators: Mapping[str, str] = field(default_factory=dict)
+    reaching: records.Reaching = field(default_factory=records.Reaching)
+    draws: tuple[str, ...] = ()
+
+    @property
+    def altered(self) -> tuple[str, ...]:
+        """What something else changed in the journal while the campaign ran, and was restored, in words."""
+        return tuple(self.meta.get(records.ALTERED) or ())
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the campaign ran to its end."""
+        return self.state == "complete"
+
+    @property
+    def everything(self) -> tuple[MutantResult, ...]:
+        """All mutants, graded ones included, by number."""
+        if not self.graded:
+            return self.mutants
+        return tuple(sorted((*self.mutants, *self.graded), key=lambda one: one.mutant.number))
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """Every outcome there is: by mutant, then by round."""
+        return tuple(outcome for result in self.everything for outcome in result.outcomes)
+
+    @property
+    def tests(self) -> list[str]:
+        """Node ids of all tests that are known: what mutants name is among them."""
+        named = (test for one in self.outcomes for test, _ in killers(one))
+        baseline = (one.test.test for one in self.baseline)
+        return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
+
+    def source(self, file: str) -> str | None:
+        """The text of a mutated file at the time of the campaign; None if it was not written down."""
+        return self.sources.get(file)
+
+    def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
+        """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
+        return self.reaching.at(mutant.site.id)
+
+    @property
+    def ladders(self) -> int:
+        """Number of ladders of graded mutants; ``results`` says what became of them."""
+        return len({one.mutant.ladder for one in self.graded if one.mutant.magnitude})
+
+    @property
+    def earlier(self) -> list[MutantResult]:
+        """Mutants of which an earlier campaign found something."""
+        return [result for result in self.mutants if result.earlier]
+
+    @property
+    def survivors(self) -> list[MutantResult]:
+        """Mutants that some round lets through, the farthest from the original at any moment first."""
+        found = [result for result in self.mutants if result.is_survivor]
+        return sorted(found, key=lambda one: (-one.worst, one.indistinguishable, one.mutant.number))
+
+    @property
+    def worst_first(self) -> list[MutantResult]:
+        """The survivors in that order, then all others by number."""
+        survivors = self.survivors
+        return [*survivors, *(result for result in self.mutants if not result.is_survivor)]
+
+    def with_verdict(self, *verdicts: Verdict) -> list[tuple[MutantResult, Outcome]]:
+        """Each mutant with its first outcome of one of these verdicts, by number."""
+        found = []
+        for result in self.mutants:
+            outcome = next((one for one in result.outcomes if one.verdict in verdicts), None)
+            if outcome is not None:
+                found.append((result, outcome))
+        return found
+
+    @property
+    def planned(self) -> int:
+        """Number of (mutant, round) pairs the campaign was to run, without graded mutants."""
+        return len(self.mutants) * self.rounds
+
+    @property
+    def confirmation(self) -> Confirmed | None:
+        """What the whole suite says of mutants that were run without some tests; None if all were run."""
+        return Confirmed.of(self.outcomes, self.meta.get("seed") or 0)
+
+    @property
+    def is_incomplete(self) -> bool:
+        """Whether all was run, but not every outcome is in the journal."""
+        return records.INCOMPLETE in self.state
+
+    @property
+    def known(self) -> str:
+        """``12 of 20 outcomes are known``."""
+        return f"{self.done} of {self.planned} outcomes are known"
+
+    @property
+    def done(self) -> int:
+        """Number of (mutant, round) pairs that have an outcome."""
+        return sum(len(result.outcomes) for result in self.mutants)
+
+
+def killers(outcome: Outcome) -> list[tuple[str, By | None]]:
+    """The tests that noticed a mutant, as far as they are known, and by what."""
+    if not outcome.verdict.is_killed:
+        return []
+    first = [(outcome.test, outcome.by)] if outcome.test is not None else []
+    return [*first, *((one.test, one.by) for one in outcome.kills)]
+
+
+def find_mutant(results: Results, name: str) -> MutantResult:
+    """The mutant with this number or id, or the only one that ``name`` fits as ``--only`` would take it.
+
+    A part of an id will do. Raises SelectionError, naming the nearest id, or the mutants that it fits.
+    """
+    everything = results.everything
+    for result in everything:
+        if name in (result.mutant.id, str(result.mutant.number)):
+            return result
+    if not everything:
+        raise SelectionError("the journal holds no mutants", unknown=[name])
+    if name.isdigit():
+        problem = f"there is no mutant {name}; they are numbered 1 to {everything[-1].mutant.number}"
+        raise SelectionError(problem, unknown=[name])
+    found = [one for one in everything if name in one.mutant.id or fits(name, one.mutant)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise SelectionError(_several(name, found), unknown=[name])
+    problem = unknown_name_text("mutant", name, (result.mutant.id for result in everything))
+    raise SelectionError(problem, unknown=[name])
+
+
+def _several(name: str, found: Sequence[MutantResult]) -> str:
+    lines = [f"{one.mutant.number:>6}  {one.mutant.id}" for one in found[:_SHOWN]]
+    more = [f"        and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
+    return "\n".join([f"{name!r} fits {len(found)} mutants; give a number or a whole id:", *lines, *more])
+
+
+#: what a campaign says about itself under the name that it has in ``Results``
+_TOLD = {one.name for one in fields(Results)} & (records.FACTS.keys() - records.PLAIN.keys())
+
+
+def results_at(path: Path, *, earlier: bool = False) -> Results:
+    """What the journal at a path holds. Raises JournalError."""
+    with JournalReader.open(path) as journal:
+        return read_results(journal, earlier=earlier)
+
+
+def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
+    """Put together what the journal holds now: the last campaign, and all that is known if ``earlier``."""
+    meta, mutants = journal.meta(), journal.mutants()
+    planned = {mutant.id for mutant in mutants}
+    outcomes = [outcome for outcome in journal.outcomes() if outcome.mutant in planned]
+    rounds = _number_of_rounds(meta, outcomes)
+    outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
+    vocabulary = journal.vocabulary
+    told: dict[str, Any] = {key: from_data(records.FACTS[key], meta[key]) for key in _TOLD if key in meta}
+    drawing, shard = told.get(records.DRAWING), told.get(records.SHARD)
+    groups = groups_of(mutants, outcomes, rounds, drawing)
+    is_whole = _is_whole(mutants, outcomes, rounds)
+    drawn = groups if drawing is not None else ()
+    old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
+    if old.outcomes:
+        mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
+        outcomes = [*outcomes, *old.outcomes]
+        groups = groups_of(mutants, outcomes, rounds, None)
+    graded = {mutant.id for mutant in mutants if mutant.has_sizes}
+    old_ids = {outcome.mutant for outcome in old.outcomes}
+    by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
+
+    def result(mutant: Mutant) -> MutantResult:
+        row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
+        why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
+        quantity = quantity_of(mutant, vocabulary)
+        return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, mutant.id in old.outdated)
+
+    texts = {file: journal.source(file) for file in sorted({one.site.span.file for one in mutants})}
+    found = Results(
+        meta=meta,
+        state="",
+        rounds=rounds,
+        mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
+        graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
+        groups=groups,
+        all=RoundScores.of([one for one in outcomes if one.mutant not in graded], rounds),
+        left_out=tuple(journal.left_out()),
+        controls=tuple(journal.controls()),
+        baseline=tuple(journal.tests()),
+        drawn=drawn,
+        attempt=_attempt(journal),
+        sources={file: text for file, text in texts.items() if text is not None},
+        **told,
+    )
+    # what rows hold is known now that they are read
+    set_aside = tuple(journal.set_aside)
+    state = _state(journal, shard, is_whole=is_whole and not set_aside)
+    return replace(found, state=state, set_aside=set_aside)
+
+
+@frozen
+class _Earlier:
+    """What earlier campaigns found that the last one did not.
+
+    Attributes:
+        mutants: those that the last campaign did not plan.
+        outcomes: of these, and of planned ones that have not been run yet.
+        outdated: ids of mutants that depend on something that has changed since.
+    """
+
+    mutants: tuple[Mutant, ...] = ()
+    outcomes: tuple[Outcome, ...] = ()
+    outdated: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(
+        cls, journal: JournalReader, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
+    ) -> _Earlier:
+        done = {(outcome.mutant, outcome.round) for outcome in outcomes}
+        meta = journal.meta()
+        known = {mutant.id: (mutant, outdated) for mutant, outdated in journal.known()}
+        wanted = {mutant.id for mutant in planned} | known.keys()
+        found = [
+            outcome
+            for outcome in journal.kept_outcomes()
+            if outcome.mutant in wanted
+            and outcome.round < rounds
+            and (outcome.mutant, outcome.round) not in done
+        ]
+        ids = {outcome.mutant for outcome in found}
+        mutants = tuple(mutant for mutant, _ in known.values() if mutant.id in ids)
+        # what was planned and would still hold has been taken over, unless everything is to be run again, or
+        # another shard is to look at it
+        planned_may_hold = bool(meta.get("fresh")) or records.SHARD in meta
+        outdated = {name for name in ids if (known[name][1] if name in known else not planned_may_hold)}
+        return cls(mutants, tuple(found), frozenset(outdated))
+
+
+def _number_of_rounds(meta: Mapping[str, Any], outcomes: list[Outcome]) -> int:
+    said = meta.get("rounds")
+    return said if isinstance(said, int) else max((one.round + 1 for one in outcomes), default=0)
+
+
+def _attempt(journal: JournalReader) -> str | None:
+    found = journal.attempt
+    if found:
+        return found
+    if found is None:
+        return None
+    return "running" if is_written(journal.path) else "killed"
+
+
+def _is_whole(mutants: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int) -> bool:
+    """Whether each mutant has an outcome in each round; those of ladders need not be run."""
+    known = {(outcome.mutant, outcome.round) for outcome in outcomes}
+    alone = (mutant.id for mutant in mutants if not mutant.has_sizes)
+    return all((name, round) in known for name in alone for round in range(rounds))
+
+
+def _state(journal: JournalReader, shard: records.ShardOf | None, *, is_whole: bool) -> str:
+    state = journal.finished or ("running" if is_written(journal.path) else "killed")
+    if state == "complete" and not is_whole and (shard is None or shard.of == 1):
+        return records.INCOMPLETE
+    if shard is None or shard.of == 1:
+        return state
+    # a part of a campaign is never complete, whatever has become of it
+    return shard.words if state == "complete" else f"{shard.words}, {state}"
+
+
+@frozen
+class Unlooked:
+    """A part of what an operation reads for the tests.
+
+    Attributes:
+        operation: the operation, as the vocabulary names it.
+        quantity: the part, as the vocabulary names it.
+        places: ``file:line:column`` of the calls.
+        mutants: how many mutants of it there were, none of which was noticed.
+    """
+
+    operation: str
+    quantity: str
+    places: tuple[str, ...]
+    mutants: int
+
+    @property
+    def text(self) -> str:
+        """``tests/sensors.py:12:5 tracker:robot_position .y: none of its 3 mutants was noticed``."""
+        more = f" and {len(self.places) - 1} more" if len(self.places) > 1 else ""
+        which = "its only mutant was not" if self.mutants == 1 else f"none of its {self.mutants} mutants was"
+        return f"{self.places[0]}{more} {self.operation} {self.quantity}: {which} noticed"
+
+
+def unlooked(results: Iterable[MutantResult]) -> tuple[Unlooked, ...]:
+    """Such readings of the oracle, in the order of their mutants; only those that were judged count.
+
+    Of a reading with a mutant that is still to be run, as in another shard, nothing is said.
+    """
+    groups: dict[tuple[str, str], list[MutantResult]] = {}
+    open_ones: set[tuple[str, str]] = set()
+    for one in results:
+        mutant = one.mutant
+        is_reading = mutant.site.role is Role.ORACLE and mutant.operation and mutant.quantity
+        key = (mutant.operation, mutant.quantity or "")
+        if is_reading and not one.outdated and one.kill_rate.valid:
+            groups.setdefault(key, []).append(one)
+        elif is_reading and not one.outcomes and not mutant.ladder:  # of a ladder, a search runs some
+            open_ones.add(key)
+    return tuple(
+        Unlooked(*key, tuple(dict.fromkeys(one.mutant.site.place for one in found)), len(found))
+        for key, found in groups.items()
+        if key not in open_ones and not any(one.kill_rate.killed for one in found)
+    )
+
+
+#: what the facts of a class are, where they are others than its fields: a line, or a function
+Facts = Mapping[type, str | Callable[[Any], dict[str, Any]]]
+
+
+#: what needs no look at what it is
+_PLAIN = {str, int, float, bool, type(None)}
+
+
+def fact(one: Any, path: Sequence[str]) -> Any:
+    """The attribute at ``("site", "span", "file")``; None where something on the way is None."""
+    for name in path:
+        if one is None:
+            return None
+        one = getattr(one, name)
+    return one
+
+
+class Encoder:
+    """Makes JSON-like data of objects. Fields that are None are left out where a class has no facts here.
+
+    A line of facts has words for attributes: ``name``, ``key=path`` for another name, ``*path`` for all facts
+    of what is there, and ``*`` for the fields. ``path+1`` counts from 1, ``path?`` is null where it is empty,
+    ``path#`` is a list whose items have their number as ``round``.
+    """
+
+    def __init__(self, known: Facts) -> None:
+        self._known = known
+
+    def __call__(self, value: Any) -> Any:
+        """The data of any value."""
+        if type(value) in _PLAIN:
+            return value
+        known = self._known.get(type(value))
+        if known is not None:
+            return self.facts(value, known) if isinstance(known, str) else known(value)
+        if isinstance(value, Enum):
+            return value.value
+        if isinstance(value, Mapping):
+            return {str(key): self(item) for key, item in value.items()}
+        if isinstance(value, tuple | list):
+            return [self(item) for item in value]
+        return self._fields(value) if is_dataclass(value) else value
+
+    def facts(self, one: object, line: str) -> dict[str, Any]:
+        """The facts of an object that a line names, in its order."""
+        found: dict[str, Any] = {}
+        for key, path, kind in _words(line):
+            if kind == "*":
+                found |= self(fact(one, path)) if path else self._fields(one)
+            else:
+                found[key] = self._fact(fact(one, path), kind)
+        return found
+
+    def _fact(self, value: Any, kind: str) -> Any:
+        if kind == "+1":
+            return value + 1
+        if kind == "#":
+            items = enumerate(map(self, value), start=1)
+            return [{"round": number, **(item or {"verdict": None})} for number, item in items]
+        return None if kind == "?" and not value else self(value)
+
+    def _fields(self, value: Any) -> dict[str, Any]:
+        pairs = ((one.name, getattr(value, one.name)) for one in fields(value))
+        return {name: self(item) for name, item in pairs if item is not None}
+
+
+@cache
+def _words(line: str) -> tuple[tuple[str, tuple[str, ...], str], ...]:
+    """Of each word its key, its path and what is made of the value there."""
+    found: list[tuple[str, tuple[str, ...], str]] = []
+    for word in line.split():
+        if word.startswith("*"):
+            found.append(("", tuple(word[1:].split(".")) if word[1:] else (), "*"))
+            continue
+        name, _, path = word.rpartition("=")
+        kind = next((one for one in ("+1", "?", "#") if path.endswith(one)), "")
+        path = path.removesuffix(kind)
+        found.append((name or path, tuple(path.split(".")), kind))
+    return tuple(found)

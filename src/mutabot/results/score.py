@@ -1,0 +1,195 @@
+"""Scores: how many of the valid mutants were killed. A score always carries its counts."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import field
+from statistics import fmean
+
+from mutabot.frozen import frozen
+from mutabot.journal.records import Drawing
+from mutabot.model import By, Mutant, Outcome, Verdict
+from mutabot.results.statistics import Interval, crossed, sampled, wilson
+
+
+@frozen
+class Score:
+    """What a number of outcomes comes to.
+
+    Which verdict stands where in the score is decided in ``model.outcome`` alone.
+
+    Attributes:
+        counts: outcomes per verdict; verdicts that did not occur are missing.
+        by_check: kills by an assertion of the test or a monitor.
+    """
+
+    counts: Mapping[Verdict, int] = field(default_factory=dict)
+    by_check: int = 0
+
+    @classmethod
+    def of(cls, outcomes: Iterable[Outcome]) -> Score:
+        """The score of these outcomes."""
+        outcomes = list(outcomes)
+        return cls(Counter(one.verdict for one in outcomes), sum(map(_is_found, outcomes)))
+
+    @property
+    def of_each(self) -> dict[Verdict, int]:
+        """Outcomes per verdict, also of those that did not occur."""
+        return {verdict: self.counts.get(verdict, 0) for verdict in Verdict}
+
+    @property
+    def valid(self) -> int:
+        """The denominator."""
+        return sum(count for verdict, count in self.counts.items() if verdict.is_valid)
+
+    @property
+    def killed(self) -> int:
+        """The numerator of the score; time-outs are in it and also shown apart."""
+        return sum(count for verdict, count in self.counts.items() if verdict.is_killed)
+
+    @property
+    def timeouts(self) -> int:
+        """The part of ``killed`` that only ran out of its budget."""
+        return self.counts.get(Verdict.TIMEOUT, 0)
+
+    @property
+    def score(self) -> float | None:
+        """Killed / valid, 0 … 1; None when nothing was valid."""
+        return self.killed / self.valid if self.valid else None
+
+    @property
+    def check_score(self) -> float | None:
+        """Killed by a check / valid, 0 … 1; None when nothing was valid."""
+        return self.by_check / self.valid if self.valid else None
+
+    @property
+    def interval(self) -> Interval | None:
+        """Wilson's interval of the score of one mutant, over rounds; None with fewer than two."""
+        return wilson(self.killed, self.valid) if self.valid > 1 else None
+
+
+@frozen
+class RoundScores:
+    """The scores of a group of mutants, round by round.
+
+    Attributes:
+        rounds: one score per round.
+        interval, check_interval: of the mean score and of the mean check score, over rounds and mutants; None
+            with fewer than two rounds or two mutants that were valid.
+        sample_interval, sample_check_interval: of the scores that all mutants would have had in these rounds,
+            where only a sample of them was run; None if all were, or if fewer than two were valid.
+    """
+
+    rounds: tuple[Score, ...]
+    interval: Interval | None = None
+    check_interval: Interval | None = None
+    sample_interval: Interval | None = None
+    sample_check_interval: Interval | None = None
+
+    @classmethod
+    def of(cls, outcomes: Iterable[Outcome], rounds: int, *, population: int | None = None) -> RoundScores:
+        """The scores of these outcomes in rounds 0 … ``rounds`` − 1.
+
+        ``population`` is how many mutants those that were run are a random sample of; None if they are all.
+        """
+        by_round: list[list[Outcome]] = [[] for _ in range(rounds)]
+        by_mutant: dict[str, list[Outcome | None]] = {}
+        for outcome in outcomes:
+            by_round[outcome.round].append(outcome)
+            by_mutant.setdefault(outcome.mutant, [None] * rounds)[outcome.round] = outcome
+        killed = [[_share(one, _is_killed) for one in row] for row in by_mutant.values()]
+        found = [[_share(one, _is_found) for one in row] for row in by_mutant.values()]
+        return cls(
+            tuple(Score.of(one) for one in by_round),
+            crossed(killed),
+            crossed(found),
+            sampled(killed, population) if population is not None else None,
+            sampled(found, population) if population is not None else None,
+        )
+
+    @property
+    def total(self) -> Score:
+        """All rounds in one: its counts are of (mutant, round) pairs."""
+        counts: Counter[Verdict] = Counter()
+        for score in self.rounds:
+            counts.update(score.counts)
+        return Score(counts, sum(score.by_check for score in self.rounds))
+
+    @property
+    def mean(self) -> float | None:
+        """Mean of the rounds' scores; rounds without a valid mutant have none. None if no round has one."""
+        return _mean([score.score for score in self.rounds])
+
+    @property
+    def mean_check(self) -> float | None:
+        """Mean of the rounds' check scores, likewise."""
+        return _mean([score.check_score for score in self.rounds])
+
+
+@frozen
+class Group:
+    """The scores of one family in one role. Groups are never added up to one score.
+
+    Attributes:
+        family: the operators' family.
+        role: ``program`` or ``oracle``.
+        mutants: number of planned mutants.
+        scores: round by round.
+        population: number of mutants that these are a random sample of; None if they are all.
+    """
+
+    family: str
+    role: str
+    mutants: int
+    scores: RoundScores
+    population: int | None = None
+
+
+def groups_of(
+    mutants: Sequence[Mutant], outcomes: Iterable[Outcome], rounds: int, drawing: Drawing | None = None
+) -> tuple[Group, ...]:
+    """One group per family and role, in the order in which they first occur in the plan.
+
+    Graded mutants have none: the magnitudes of a ladder are no population of faults.
+    ``drawing`` says how the mutants were drawn, if they were.
+    """
+    key_of = {
+        mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants if not mutant.has_sizes
+    }
+    sizes = Counter(key_of.values())
+    found: dict[tuple[str, str], list[Outcome]] = {key: [] for key in key_of.values()}
+    for outcome in outcomes:
+        if outcome.mutant in key_of:
+            found[key_of[outcome.mutant]].append(outcome)
+    return tuple(
+        _group(family, role, sizes[family, role], those, rounds, drawing)
+        for (family, role), those in found.items()
+    )
+
+
+def _group(
+    family: str, role: str, size: int, outcomes: Iterable[Outcome], rounds: int, drawing: Drawing | None
+) -> Group:
+    stratum = drawing.stratum(family, role) if drawing is not None and drawing.sample is not None else None
+    population = stratum.population if stratum is not None else None
+    return Group(family, role, size, RoundScores.of(outcomes, rounds, population=population), population)
+
+
+def _mean(scores: Sequence[float | None]) -> float | None:
+    known = [score for score in scores if score is not None]
+    return fmean(known) if known else None
+
+
+def _is_killed(outcome: Outcome) -> bool:
+    return outcome.verdict.is_killed
+
+
+def _is_found(outcome: Outcome) -> bool:
+    """Whether a check killed it."""
+    return outcome.verdict is Verdict.KILLED and outcome.by is By.CHECK
+
+
+def _share(outcome: Outcome | None, counts: Callable[[Outcome], bool]) -> float | None:
+    """A cell of the table that an interval is made from: 1, 0, or None outside the score."""
+    return float(counts(outcome)) if outcome is not None and outcome.verdict.is_valid else None

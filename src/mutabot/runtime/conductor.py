@@ -1,0 +1,293 @@
+"""The conductor: makes pytest run a job, itself or in copies of its process."""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import sys
+from collections.abc import Generator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import _pytest.pathlib
+import pytest
+
+from mutabot import extensions
+from mutabot.frozen import compile_all
+from mutabot.model import Role, process_time
+from mutabot.model.events import SessionEnd, TestEnd
+from mutabot.model.job import Branching, Job, read_job
+from mutabot.operators.registry import preload
+from mutabot.runtime import seeds
+from mutabot.runtime.event_file import EventFile, Held
+from mutabot.runtime.evidence import limit_memory
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.isolation.files import Apart, PrivateFiles
+from mutabot.runtime.isolation.fork_parent import FAILED as BRANCH_FAILED
+from mutabot.runtime.isolation.fork_parent import Trunk
+from mutabot.runtime.isolation.forkable import track_event_loops
+from mutabot.runtime.isolation.lifeline import die_with_parent, nobody_listens
+from mutabot.runtime.observation.compared import Assertions, Comparisons
+from mutabot.runtime.processes.member import watch_forks
+from mutabot.runtime.processes.members import Members
+from mutabot.runtime.program_text.returns import Returns
+from mutabot.runtime.running import Running, is_no_program
+from mutabot.runtime.seeds import node_id
+from mutabot.runtime.session import Session
+from mutabot.runtime.targets.target import prepare
+from mutabot.runtime.test_end import classify
+
+if TYPE_CHECKING:
+    from mutabot.runtime.isolation.copies import Commission, CopyServer
+
+
+#: where a process keeps what it prints, in its home
+LOG = "log.txt"
+
+
+class Conductor:
+    """Pytest's hooks for one job: the collection of its tests, and the session around them.
+
+    Args:
+        job: the job at hand.
+        pipe: what takes the events; those of a server's session wait for its copies.
+        server: forks a copy of this process for each job that comes; None if it runs its job itself.
+
+    Attributes:
+        running: the hooks for each of its tests.
+    """
+
+    def __init__(self, job: Job, pipe: EventFile, server: CopyServer | None = None) -> None:
+        self.locator = Locator(job.root, job.program, job.oracle)
+        self._held = Held()
+        self.session = Session(job, pipe if server is None else self._held, self.locator)
+        self.running = Running(self.session, self.locator)
+        self._server = server
+        self._collected: tuple[str, ...] = ()
+        self._errors = self.running.branch.errors
+        self._not_private: str | None = None
+        self._files: PrivateFiles | None = None
+
+    @property
+    def job(self) -> Job:
+        """The job at hand."""
+        return self.session.job
+
+    @classmethod
+    def from_files(cls, job_file: str, descriptor: int) -> Conductor:
+        """Read the job, set the limits of the process and put the interception in place."""
+        die_with_parent()
+        if nobody_listens(descriptor):  # the controller died before the kernel was asked
+            os._exit(BRANCH_FAILED)
+        home = os.path.dirname(job_file)
+        job = read_job(home)
+        extensions.use(job.extensions)
+        _say_where_on_signal(home)  # before anybody notes which files are open
+        if job.memory is not None:
+            limit_memory(job.memory)
+        # what the program draws while it is imported is the same in all rounds: a server imports it once
+        seeds.seed_all(seeds.derive(job.seed, "import"))
+        pipe = EventFile.of_session(home, job.key, descriptor)
+        if job.serving is not None:
+            from mutabot.runtime.isolation.copies import CopyServer  # noqa: PLC0415  # of no use to other jobs
+
+            preload()
+            conductor = cls(
+                job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG), job.private_files)
+            )
+        else:
+            conductor = cls(job, pipe)
+            if job.pictures is not None:  # before its folder is hidden from this process
+                conductor.session.recording.film(job.pictures)
+            conductor._make_private(job, home)
+        conductor.session.returns = Returns(conductor.locator)
+        conductor.session.install()
+        conductor.look_at_checks()
+        if job.serving is None:
+            conductor._begin(home)
+        return conductor
+
+    def _make_private(self, job: Job, home: str) -> None:
+        if job.private_files:
+            root = os.path.realpath(job.root)
+            files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
+            self._not_private = files.make()
+            self._files = files if self._not_private is None else None
+            if self._files is not None:
+                # it removes old folders of pytest's, which are there again for the next process
+                _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
+            die_with_parent()  # a process that changes its rights loses that wish
+
+    def _begin(self, home: str) -> None:
+        has_nodes = prepare(self.job.root, home, self.job.vocabulary)
+        members = self.running.members = Members(home, self.session)
+        watch_forks(members.folder, self.session)
+        if self.job.mutant is not None:
+            self.running.branch.left_out.become(self.job, [self.job.mutant.id])
+        if self.job.branching is not None:
+            preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
+            self.grow(self.job.branching, home, members, has_nodes=has_nodes)
+
+    def grow(self, branching: Branching, home: str, members: Members, *, has_nodes: bool) -> None:
+        """Be a trunk: fork a branch for every mutant."""
+        compile_all()
+        log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
+        assert isinstance(pipe, EventFile)
+        file = os.path.join(home, process_time.FILE)
+        track_event_loops()
+        why = self._not_private or (None if self._files is not None else "private_files is switched off")
+        apart = Apart(
+            (log.st_dev, log.st_ino), home, self._files, f"its files are not private: {why}" if why else None
+        )
+        branch = self.running.branch
+        branch.expect()
+
+        def where_is(pid: int) -> str | None:
+            return process_time.ask(pid, file, self.job.root)
+
+        trunk = Trunk(
+            branching, self.job.tests or (), pipe, apart, branch, where_is, has_nodes, members.have_begun
+        )
+        self.session.grow(trunk)
+
+    def look_at_checks(self) -> None:
+        """Note what tests check."""
+        looks, root = self.running.looks, self.job.root
+        Assertions(root, self._is_of_tests, looks).install()
+        Comparisons(root, looks).install()
+        self.session.call_sites.hook_pytest()
+
+    def _is_of_tests(self, path: str) -> bool:
+        """Whether a file is the project's own, and not the program's."""
+        relative = self.locator.relative(path)
+        is_foreign = relative.startswith("..") or "site-packages" in relative
+        return not is_foreign and self.locator.role(path) is not Role.PROGRAM
+
+    def seed_of(self, name: str) -> int:
+        """The seed of a test or shared fixture in this round."""
+        return seeds.derive(self.job.seed, self.job.round, name)
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Keep the job's tests, in the job's order."""
+        self._collected = tuple(node_id(item) for item in items)
+        self._select(items)
+
+    def _select(self, items: list[pytest.Item]) -> None:
+        if self.job.tests is None:
+            return
+        by_id = {node_id(item): item for item in items}
+        alike = {node_id(item) for item in items if by_id[node_id(item)].nodeid != item.nodeid}
+        self._errors += [f"several tests are called {name} once that is written in UTF-8" for name in alike]
+        missing = [test for test in self.job.tests if test not in by_id]
+        if missing:
+            self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
+        items[:] = [by_id[test] for test in self.job.tests if test in by_id]
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_make_collect_report(
+        self, collector: pytest.Collector
+    ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+        """Note whose doing it is that something cannot be collected."""
+        report = yield
+        call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
+        if report.failed and call is not None and call.excinfo is not None:
+            error = call.excinfo.value
+            is_wrapped = isinstance(error, collector.CollectError) and error.__cause__ is not None
+            self.import_failed(error.__cause__ if is_wrapped else error, node_id(collector))
+        return report
+
+    def import_failed(self, error: BaseException | None, node: str) -> None:
+        """Test files cannot be imported. If the mutant did something meanwhile, their tests noticed it.
+
+        Args:
+            error: what was raised.
+            node: id of what could not be collected; empty for all there is.
+        """
+        evidence = self.session.evidence
+        if error is None or not evidence.acted:
+            return
+        below = (f"{node}::", f"{node}/") if node not in ("", ".") else ("",)
+        tests = [test for test in self.job.tests or () if test.startswith(below)]
+        branch = self.running.branch
+        for test in tests[:1] if self.job.stop_at_kill else tests:
+            file = os.path.join(self.job.root, test.partition("::")[0])
+            ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
+            end = TestEnd(
+                test, "failed", ending.by, ending.phase, ending.exception, ending.message, ending.place,
+                failure=evidence.failure or ending.failure, refused=ending.refused or evidence.said,
+                invalid=evidence.invalid or is_no_program(evidence, ending),
+                hits=evidence.hits, acted=evidence.acted, example=evidence.example,
+            )  # fmt: skip
+            if branch.is_one:
+                branch.end_test(end)
+            else:
+                self.session.pipe.send(end)
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """Note what could not be collected."""
+        if report.failed:
+            self._errors.append(f"{node_id(report)}: {str(report.longrepr)[-1500:]}")
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
+        """All tests are collected: run them, or fork a copy of this process for every job."""
+        commission = self._server.serve() if self._server is not None else None
+        if commission is not None:
+            self._take_on(session, commission)
+        if self._server is not None:
+            session.items.clear()
+            return (yield)
+        self.session.look_ahead()
+        seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
+        result = yield
+        drop_idle_plugins(session.config)
+        return result
+
+    def _take_on(self, session: pytest.Session, commission: Commission) -> None:
+        """Become the session of a job."""
+        job = read_job(commission.home)
+        self._server = None
+        self._make_private(job, commission.home)
+        pipe = EventFile.of_session(commission.home, job.key, commission.descriptor)
+        self.session.take_on(job, pipe)
+        for event in self._held.events:
+            pipe.send(event)
+        self._select(session.items)
+        cache = getattr(session.config, "cache", None)
+        if cache is not None:  # what one job keeps there, others must not find
+            cache._cachedir = Path(commission.home, "cache")
+        _say_where_on_signal(commission.home)
+        self._begin(commission.home)
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(self, exitstatus: int) -> None:
+        """Everything has run."""
+        if self._server is None:
+            self._say_goodbye(int(exitstatus))
+
+    def _say_goodbye(self, status: int) -> None:
+        """Say what is left to say, and goodbye."""
+        branch = self.running.branch
+        if branch.is_one:
+            branch.finish()
+            return
+        members = self.running.members
+        self.session.finish(members.texts_seen() if members is not None else ())
+        if members is not None and members.doubt is not None:
+            self._errors.append(members.doubt)
+        self.session.pipe.send(SessionEnd(status, self._collected, tuple(self._errors), self._not_private))
+
+
+def drop_idle_plugins(config: pytest.Config) -> None:
+    """Hypothesis's plugin imports all of hypothesis for its summary, even if no test has used it."""
+    plugin = config.pluginmanager.get_plugin("hypothesispytest")
+    if plugin is not None and "hypothesis" not in sys.modules:
+        config.pluginmanager.unregister(plugin)
+
+
+def _say_where_on_signal(home: str) -> None:
+    """Let this process, and its branches, write their stack into their home on ``stack.SIGNAL``."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
+    descriptor = os.open(os.path.join(home, process_time.FILE), flags, 0o600)
+    faulthandler.register(process_time.SIGNAL, file=descriptor, all_threads=True)

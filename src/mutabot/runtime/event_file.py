@@ -1,0 +1,142 @@
+"""The file in which a process tells what it does: see ``model.event_file``."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, UNWRITTEN, sealed
+from mutabot.model.events import Event, ForkEnded, Serving, TestEnd, TestStart
+
+#: what the controller is to hear of at once; it finds all else when it looks
+_PROMPT = (TestStart, TestEnd, ForkEnded, Serving)
+
+
+class Sink(Protocol):
+    """What takes the events of a process."""
+
+    def send(self, event: Event) -> None:
+        """Take one event."""
+
+
+class EventFile:
+    """The file of this process.
+
+    Every event is written whole and at once, so that a process that dies loses only what it had not told yet.
+
+    Args:
+        folder: where the file is.
+        name: its name, without its ending; it is made if it is not there.
+        key: of the seals.
+        fail: called if something could not be written; by default it ends the process, of which nobody could
+            know anything any more.
+        bell: descriptor of the pipe by which the controller is told that there is something to read.
+    """
+
+    def __init__(
+        self,
+        folder: str,
+        name: str,
+        key: str,
+        fail: Callable[[], None] = lambda: os._exit(UNWRITTEN),
+        bell: int | None = None,
+    ) -> None:
+        self._folder, self.name, self._key, self._fail = folder, name, key, fail
+        self._bell = bell
+        self._lock = threading.RLock()
+        self._last = self.forks = 0
+        self._file = -1
+        self._status: os.stat_result
+        self._open()
+        if bell is not None:
+            os.set_inheritable(bell, False)
+            os.set_blocking(bell, False)
+
+    @classmethod
+    def of_session(cls, home: str, key: str, bell: int) -> EventFile:
+        """That of the test process whose home this is."""
+        return cls(os.path.join(home, FOLDER), SESSION, key, bell=bell)
+
+    def send(self, event: Event) -> None:
+        """Write one event."""
+        with self._lock:
+            if not self._is_open():  # daemons close all that they find open
+                self._open()
+            number = 0
+            while number != self._last + 1:  # handlers of signals may write, too
+                number = self._last + 1
+                line = sealed(event, number, self.name, self._key, plain)
+            self._last = number
+            try:
+                is_written = os.write(self._file, line) == len(line)
+            except OSError:
+                is_written = False
+        if not is_written:
+            self._fail()
+        elif self._bell is not None and isinstance(event, _PROMPT):
+            self._ring(self._bell)
+
+    def go_on_apart(self) -> None:
+        """In a process that was just forked: go on with a file of its own.
+
+        Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
+        """
+        os.close(self._file)
+        self.name = f"{self.name}.{self.forks}"
+        self._last = self.forks = 0
+        self._open()
+
+    def close(self) -> None:
+        """Let go of the file, and of the pipe."""
+        os.close(self._file)
+        if self._bell is not None:
+            os.close(self._bell)
+
+    @staticmethod
+    def _ring(bell: int) -> None:
+        """Tell that there is something to read; nothing depends on what is in the pipe."""
+        try:
+            os.write(bell, b"\n")
+        except BlockingIOError:
+            pass  # it will be heard
+        except BrokenPipeError:
+            os._exit(70)  # there is nobody to tell anything
+
+    def _open(self) -> None:
+        path = os.path.join(self._folder, self.name + SUFFIX)
+        try:
+            self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o600)
+            self._status = os.fstat(self._file)
+        except OSError:
+            self._fail()
+
+    def _is_open(self) -> bool:
+        """Whether the descriptor still leads to the file, and not to another's by now."""
+        try:
+            return os.path.samestat(os.fstat(self._file), self._status)
+        except OSError:
+            return False
+
+
+class Held:
+    """Stands for the file of a process that does not know its job yet: keeps the events."""
+
+    def __init__(self) -> None:
+        self.events: list[Event] = []
+
+    def send(self, event: Event) -> None:
+        """Keep one event."""
+        self.events.append(event)
+
+
+def plain(value: Any) -> Any:
+    """JSON-like stand-in for a value that JSON does not know."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "backslashreplace")
+    if isinstance(value, set | frozenset | tuple):
+        return list(value)
+    return repr(value)

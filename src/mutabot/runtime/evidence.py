@@ -1,0 +1,224 @@
+"""Evidence of a mutant at work: what it met, did and was refused.
+
+What a test may use: operations, simulated time, memory.
+"""
+
+from __future__ import annotations
+
+import resource
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.errors import MutabotError
+from mutabot.model.job import Budget
+from mutabot.model.outcome import added
+from mutabot.model.path import class_name
+
+#: classes that are told by their names, since their modules may not be loaded, with what they hold
+_WRAPPED, _SEVERAL = "doctest:UnexpectedException", "_pytest.doctest:MultipleDoctestFailures"
+
+
+def leaves(error: BaseException) -> list[BaseException]:
+    """What was really raised, in order; the exception itself if it holds no others."""
+    held = _held(error)
+    return [leaf for one in held for leaf in leaves(one)] if held else [error]
+
+
+def everything(error: BaseException) -> Iterator[BaseException]:
+    """The exception, all that it holds, and all that these were caused by or raised beside."""
+    seen: set[int] = set()
+    waiting = [error]
+    while waiting:
+        link = waiting.pop()
+        if id(link) in seen:
+            continue
+        seen.add(id(link))
+        yield link
+        cause = _cause(link)
+        waiting += [*_held(link), *([cause] if cause is not None else [])]
+
+
+def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
+    """What went wrong in the tool or the machine, as far as an exception tells; None if nothing did.
+
+    ``failures``: names of exceptions that the vocabulary says mean nothing else.
+    """
+    from mutabot.runtime.targets.target import is_named  # noqa: PLC0415  # few exceptions are looked at
+
+    for link in everything(error):
+        if isinstance(link, MemoryError):
+            return "the memory limit was reached"
+        if isinstance(link, MutabotError) or is_named(link, failures):
+            return f"{type(link).__name__}: {link}"
+    return None
+
+
+def is_due_to(error: BaseException, culprits: frozenset[int]) -> bool:
+    """Whether an exception is one of the culprits (by ``id``), or caused by them and by nothing else.
+
+    A group is so if all that it holds are, or if it was made of one: with ``raise … from``, or while a
+    culprit was handled. What a group was raised beside says nothing otherwise: a task group ends beside
+    the cancellation of its body.
+    """
+    return _is_due(error, culprits, frozenset())
+
+
+def _is_due(error: BaseException | None, culprits: frozenset[int], above: frozenset[int]) -> bool:
+    """``above``: what led here; a chain of exceptions may be a circle."""
+    if error is None or id(error) in above:
+        return False
+    if id(error) in culprits:
+        return True
+    above |= {id(error)}
+    held = _held(error)
+    if not held:
+        return _is_due(_cause(error), culprits, above)
+    if all(_is_due(one, culprits, above) for one in held) or _is_due(error.__cause__, culprits, above):
+        return True
+    return id(_cause(error)) in culprits.difference(map(id, leaves(error)))
+
+
+def _held(error: BaseException) -> tuple[BaseException, ...]:
+    if isinstance(error, BaseExceptionGroup):
+        return error.exceptions
+    names = {class_name(kind) for kind in type(error).__mro__}
+    if _WRAPPED in names:
+        return (error.exc_info[1],)  # type: ignore[attr-defined]  # see above
+    return tuple(error.failures) if _SEVERAL in names else ()  # type: ignore[attr-defined]
+
+
+def _cause(error: BaseException) -> BaseException | None:
+    return error.__cause__ or (None if error.__suppress_context__ else error.__context__)
+
+
+#: refusals of one test that are kept
+REFUSALS = 16
+
+
+@dataclass(slots=True)
+class Evidence:
+    """What a mutant did in the running test.
+
+    Attributes:
+        hits: calls at its site.
+        acted: hits at which it changed something.
+        example: value before and after, at the first hit at which it acted.
+        refusals: the exceptions by which the robot refused mutated calls, the latest last; not all of many.
+        said: how the robot refused a mutated call by data, in words; None if it did not.
+        invalid: whether a mutated call rejected its arguments' types.
+        failure: what went wrong in the tool or the operator itself, or None.
+        is_of_text: whether the mutant is one of the program text, which makes no calls itself: a refusal
+            then counts only if it ends the test.
+        is_unknown: whether what the robot refused is no command at all.
+        away: hits at which it stayed away, by the reason, as far as the operator says.
+    """
+
+    hits: int = 0
+    acted: int = 0
+    example: tuple[Any, ...] | None = None
+    refusals: tuple[BaseException, ...] = ()
+    said: str | None = None
+    invalid: bool = False
+    failure: str | None = None
+    is_of_text: bool = False
+    is_unknown: bool = False
+    away: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def culprits(self) -> frozenset[int]:
+        """The refusals and all that they hold, each by its ``id``."""
+        return frozenset(id(leaf) for refusal in self.refusals for leaf in (refusal, *leaves(refusal)))
+
+    @property
+    def refusal(self) -> str | None:
+        """How the robot refused a mutated call, in its own words; None if it did not."""
+        return str(leaves(self.refusals[-1])[0]) if self.refusals else self.said
+
+
+def together(found: Sequence[Evidence]) -> Evidence:
+    """The evidence of several mutants that are one: it acts if all of them do."""
+    if len(found) == 1:
+        return found[0]
+    return Evidence(
+        hits=min((one.hits for one in found), default=0),
+        acted=min((one.acted for one in found), default=0),
+        example=next((one.example for one in found if one.example is not None), None),
+        refusals=tuple(refusal for one in found for refusal in one.refusals),
+        said=next((one.said for one in found if one.said is not None), None),
+        invalid=any(one.invalid for one in found),
+        failure=next((one.failure for one in found if one.failure is not None), None),
+        is_of_text=any(one.is_of_text for one in found),
+        is_unknown=any(one.is_unknown for one in found),
+        away=added(one.away for one in found),
+    )
+
+
+class BudgetExceeded(BaseException):  # it is no error of the program's
+    """A test used more than its budget. Not an ``Exception``, so that no program handles it by mistake."""
+
+
+@dataclass(slots=True)
+class Meter:
+    """What the running test has used so far.
+
+    Attributes:
+        budget: its limits.
+        operations: intercepted calls so far.
+        started, now: simulated time at the test's first tick and at its last one, s; None before.
+        used: simulated time that earlier clocks of the same test counted, s.
+        exceeded: the first limit that was exceeded, in words.
+    """
+
+    budget: Budget
+    operations: int = 0
+    started: float | None = None
+    now: float | None = None
+    used: float = 0.0
+    exceeded: str | None = None
+
+    def count(self) -> None:
+        """One more operation. Raises BudgetExceeded beyond the limit."""
+        self.operations += 1
+        limit = self.budget.operations
+        if limit is not None and self.operations > limit:
+            self._exceed(f"more than {limit} operations")
+
+    def tick(self, time: float) -> None:
+        """The simulation has advanced to ``time`` (s). Raises BudgetExceeded beyond the limit."""
+        if self.started is None or self.now is None:
+            self.started = time
+        elif time < self.now:  # a new simulation began in the same test
+            self.used += self.now - self.started
+            self.started = time
+        self._reach(time)
+
+    def advance(self, seconds: float) -> None:
+        """The simulation has advanced by a step (s). Raises BudgetExceeded beyond the limit."""
+        if self.started is None or self.now is None:
+            self.started = self.now = 0.0
+        self._reach(self.now + seconds)
+
+    def _reach(self, time: float) -> None:
+        self.now = time
+        limit = self.budget.simulated
+        if limit is not None and (self.simulated or 0.0) > limit:
+            self._exceed(f"more than {limit:.6g} s of simulated time")
+
+    @property
+    def simulated(self) -> float | None:
+        """Simulated seconds so far; None without a clock."""
+        if self.started is None or self.now is None:
+            return None
+        return self.used + self.now - self.started
+
+    def _exceed(self, text: str) -> None:
+        self.exceeded = self.exceeded or text
+        raise BudgetExceeded(text)
+
+
+def limit_memory(limit: int) -> None:
+    """Let allocations beyond ``limit`` bytes of address space fail in this process."""
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    allowed = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (allowed, hard))

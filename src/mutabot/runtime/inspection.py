@@ -1,0 +1,206 @@
+"""Whether the vocabulary fits the program: what it names is there, and can be used the way it is meant."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from mutabot.errors import PathError
+from mutabot.model import Call, Operation, Vocabulary
+from mutabot.model.events import Event, Problem, Remark
+from mutabot.model.quantity import Value
+from mutabot.runtime.observation.probes import is_bound, needed_arguments
+from mutabot.runtime.targets.callables import not_imported
+from mutabot.runtime.targets.target import Finding, Interception, NotFoundError, resolve
+
+
+class Inspection:
+    """What is wrong with a vocabulary, told once each.
+
+    Args:
+        vocabulary: what is looked at.
+        is_asked: whether all of it is to be looked at; else only what comes up is told.
+        send: where it is told.
+
+    Attributes:
+        elsewhere: modules that processes below the tests have, and that may not be importable here.
+    """
+
+    def __init__(self, vocabulary: Vocabulary, is_asked: bool, send: Callable[[Event], None]) -> None:
+        self._vocabulary = vocabulary
+        self.is_asked = is_asked
+        self._send = send
+        self.elsewhere: set[str] = set()
+        self._told: set[tuple[str, str]] = set()
+        self._askers: dict[str, type | None] = {}
+        self._unfit: dict[tuple[str, str], Callable[[], None]] = {}
+        self._fit: dict[str, set[str]] = {}
+
+    def note(self, call: Call, read: Mapping[str, Value]) -> None:
+        """A call was made, and these values were read from its result."""
+        self._fit.setdefault(call.operation.target, set()).update(read)
+        instance = call.payload.instance
+        self._askers[call.operation.target] = None if instance is None else type(instance)
+
+    def target_is_wrong(self, target: str, finding: Finding) -> None:
+        """A target of the vocabulary turned out wrong when it was found."""
+        self.tell(self._source_of(target), finding)
+
+    def path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
+        """A path does not fit what a call was given, or what it returned."""
+        # only a path has names to choose from
+        finding = Finding(key, str(error), error.step if error.path else None, error.known)
+
+        def tell() -> None:
+            if key.partition(".")[2] not in self._fit.get(operation.target, ()):
+                self.tell(operation.source, finding)
+
+        if operation.message is not None or not key.startswith("result."):
+            tell()
+        elif self.is_asked:  # one result may lack what others have
+            self._unfit.setdefault((operation.source, key), tell)
+
+    def tell(self, source: str, finding: Finding) -> None:
+        """Say what was found out about an entry of the vocabulary, unless something was said before."""
+        if (source, finding.key) in self._told:
+            return
+        self._told.add((source, finding.key))
+        if finding.is_remark:
+            self._send(Remark(source, finding.key, finding.text))
+        else:
+            self._send(Problem(source, finding.key, finding.text, finding.name, finding.known))
+
+    def look_ahead(self, interception: Interception) -> None:
+        """The tests are about to begin: say what can be said about the targets that are there already."""
+        if self.is_asked:
+            for operation in self._vocabulary.operations:
+                self.check_target(operation, interception)
+
+    def check_target(self, operation: Operation, interception: Interception) -> None:
+        """Say what of an operation does not fit its target."""
+        for finding in interception.of(operation.kind).check(operation):
+            self.tell(operation.source, finding)
+
+    def inspect(self, interception: Interception) -> None:
+        """Find what no test led to, so that every target of the vocabulary is looked at."""
+        for targets in interception.kinds:
+            for target, finding in targets.seek():
+                self.tell(self._source_of(target), finding)
+        for operation in self._vocabulary.operations:
+            self.check_target(operation, interception)
+            self._check_current(operation)
+            for finding in interception.of("messages").unheard(operation):
+                self.tell(operation.source, finding)
+        for tell in self._unfit.values():
+            tell()
+        self._check_idle()
+        self._check_exceptions()
+        self._check_probes()
+
+    def tell_uncovered(self, interception: Interception) -> None:
+        """Say which overriding methods cannot be wrapped."""
+        for operation in self._vocabulary.operations:
+            uncovered = interception.of(operation.kind).uncovered(operation.target)
+            if operation.overrides and uncovered:
+                self.tell(operation.source, Finding("overrides", "; ".join(uncovered), is_remark=True))
+
+    def _check_current(self, operation: Operation) -> None:
+        if operation.target not in self._askers:
+            return
+        for current in operation.currents:
+            reading = self._vocabulary.operation(current)
+            if reading is not None and reading.named is not None:
+                continue  # nothing is asked: what came last tells
+            try:
+                why = why_not_asked(current, self._askers[operation.target])
+            except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own
+                continue
+            if why is not None:
+                self.tell(operation.source, Finding("current", why))
+
+    def _check_idle(self) -> None:
+        """Functions that make the answer of a command that is left out."""
+        for operation in self._vocabulary.operations:
+            for idle in (operation.idle, *(pattern.idle for pattern in operation.patterns)):
+                call = idle.get("call") if isinstance(idle, dict) else None
+                found = self._look_up(operation.source, "idle", call) if call is not None else None
+                if found is not None and not callable(found):
+                    text = f"{call} is {type(found).__name__}, not a function"
+                    self.tell(operation.source, Finding("idle", text))
+
+    def _check_exceptions(self) -> None:
+        """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
+        for key in ("refusals", "checks", "failures"):
+            for name in getattr(self._vocabulary, key):
+                self._check_exception("vocabulary", key, name)
+        for operation in self._vocabulary.operations:
+            for name in operation.refusals:
+                self._check_exception(operation.source, "refusals", name)
+
+    def _check_exception(self, source: str, key: str, name: str) -> None:
+        found = self._look_up(source, f"{key} {name}", name)
+        if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
+            self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
+
+    def _check_probes(self) -> None:
+        for probe in self._vocabulary.probes:
+            # what its objects have is not known to a class
+            owner = self._look_up(probe.source, "call", probe.owner or probe.target)
+            if owner is not None and probe.owner and not isinstance(owner, type):
+                self._look_up(probe.source, "call", probe.target)
+
+    def _look_up(self, source: str, key: str, target: str) -> Any:
+        """What ``module:qualified.name`` names; None, and a problem, if there is no such thing."""
+        module, _, qualname = target.partition(":")
+        try:
+            owner, name, _ = resolve(importlib.import_module(module), qualname)
+            return getattr(owner, name)
+        except NotFoundError as error:
+            self.tell(source, Finding(key, str(error), error.name, error.known))
+        except Exception as error:  # the user's module may fail in any way; say which and how
+            if module not in self.elsewhere:
+                self.tell(source, not_imported(module, error, key))
+        return None
+
+    def _source_of(self, target: str) -> str:
+        operation = self._vocabulary.operation(target)
+        if operation is not None:
+            return operation.source
+        clock = self._vocabulary.clock
+        if clock is not None and clock.tick == target:
+            return clock.source
+        return next((probe.source for probe in self._vocabulary.probes if probe.target == target), "")
+
+
+def why_not_asked(reading: str, asker: type | None) -> str | None:
+    """Why an operation's ``current`` cannot be asked where the robot is, and what is needed; None if it can.
+
+    Args:
+        reading: the callable that reads it.
+        asker: the class of the object that the operation is called on; None for a function.
+    """
+    module, _, qualname = reading.partition(":")
+    owner, name, _ = resolve(sys.modules[module], qualname)
+    if asker is not None and "." in qualname and hasattr(asker, name):
+        return _why_not_called(asker, name, reading)
+    if isinstance(owner, type) and is_bound(owner, name):
+        of = f"the operation is called on {asker.__name__}" if asker else "the operation is a function"
+        return (
+            f"{reading} is read from an object of {owner.__name__}, but {of}; "
+            f"name {'a method of that class' if asker else 'a function'} that needs no arguments"
+        )
+    return _why_not_called(owner, name, reading)
+
+
+def _why_not_called(owner: Any, name: str, reading: str) -> str | None:
+    found = getattr(owner, name)
+    if not callable(found):
+        return None
+    needed = needed_arguments(found)
+    if isinstance(owner, type) and is_bound(owner, name):
+        needed = needed[1:]  # self
+    if not needed:
+        return None
+    return f"{reading} needs {', '.join(needed)}, but it is asked without arguments"

@@ -1,0 +1,171 @@
+"""What befalls a call beside other values: it is late, cancelled, fails, or its process dies of it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from importlib import import_module
+from typing import Any, NoReturn
+
+from mutabot.model import Call, Mishap, Reply
+from mutabot.model.operation import ANSWERED, COMING
+from mutabot.runtime.interception.arguments import copied
+from mutabot.runtime.targets.messages import Delivery
+from mutabot.runtime.targets.target import Means, resolve
+
+#: says to a process that it was begun anew, by its id, which stays the same
+RESTARTED = "MUTABOT_RESTARTED"
+_NO_SECOND = "who waits for one message hears no second"
+_FOLDER = os.getcwd()
+_SAYS = "no reading (planted by mutabot)"
+
+
+def why_not(means: Means | None, mishap: Mishap) -> str:
+    """Why something cannot befall a call here; empty if it can."""
+    if means is None:
+        return "it is no call of a middleware"
+    if mishap is Mishap.CANCELLED and means.cancel is None:
+        return "what it begins cannot be cancelled"
+    if mishap is Mishap.JUMPED and means.jump is None:
+        return "the program's clock cannot be moved"
+    if mishap in (Mishap.KILLED, Mishap.RESTARTED):
+        if not _is_node():
+            return "the program runs in the tests' own process"
+        if os.environ.get(RESTARTED) == str(os.getpid()):
+            return "the process was begun anew already"
+    return ""
+
+
+async def before(call: Call, at_end: Callable[[], None]) -> None:
+    """What befalls a call before it is made; ``at_end`` is told before this process dies of it."""
+    if not call.mishaps:
+        return
+    means = _means(call)
+    if Mishap.JUMPED in call.mishaps and means.jump is not None:
+        means.jump(call.mishaps[Mishap.JUMPED])
+    if Mishap.KILLED in call.mishaps or Mishap.RESTARTED in call.mishaps:
+        at_end()
+        _end(anew=Mishap.RESTARTED in call.mishaps)
+    if Mishap.LATE in call.mishaps and _is_answered(call):
+        await means.sleep(call.mishaps[Mishap.LATE])
+
+
+def timed(call: Call, perform: Callable[[], Any]) -> Callable[[], Any]:
+    """``perform``, or what has it done later: what goes out without an answer is not waited for."""
+    if Mishap.LATE not in call.mishaps or _is_answered(call):
+        return perform
+    return lambda: _means(call).goes_out(call.mishaps[Mishap.LATE], partial(_quietly, perform))
+
+
+async def after(call: Call, result: Any) -> None:
+    """What befalls what a call began; ``result`` is what it returned."""
+    cancel = _means(call).cancel if Mishap.CANCELLED in call.mishaps else None
+    if cancel is not None:
+        await cancel(result)
+
+
+def heard_of(call: Call, reply: Reply) -> Reply:
+    """What the program hears of a reply: who waits for one message hears no other after it."""
+    means: Means | None = call.payload.means
+    if means is None or not means.once or not reply.more:
+        return reply
+    first = replace(reply.parts[0], more=()) if reply.parts else reply
+    return first.as_is(_NO_SECOND)
+
+
+def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Callable[[], Awaitable[Any]]:
+    """How the program gets a reply; ``result`` makes its object of one.
+
+    Raises LookupError where nobody knows how. What is returned raises what the middleware raises for an
+    answer that never comes, and what the program gets in the stead of a reading.
+    """
+    if reply.error:
+        return partial(_raised, missing(reply.error))
+    named = call.operation.named
+    comes = named is not None and named.form in COMING
+    means = None if reply.comes_as_usual else _means(call)
+    if means is not None and reply.lost and not comes and means.lost is None:
+        raise LookupError(f"nobody knows how {call.operation.name} loses its answer")
+    if means is not None and comes:
+        parts = [(part.late, result(part)) for part in reply.parts]
+        # the program may change what it got, and would find that in what comes next
+        got: Any = Delivery((*parts[:1], *((late, copied(one)) for late, one in parts[1:])))
+    else:
+        got = None if reply.lost else result(reply)
+
+    async def handed() -> Any:
+        if means is None or comes:
+            return got
+        if reply.late:
+            await means.sleep(reply.late)
+        return await means.lost() if reply.lost and means.lost is not None else got
+
+    return handed
+
+
+def missing(name: str) -> BaseException:
+    """What the program gets in the stead of a reading: an exception of this class (``module:Name``).
+
+    Raises LookupError if there is none, or if it is no exception.
+    """
+    module, _, qualname = name.partition(":")
+    try:
+        kind: Any = resolve(import_module(module), qualname)[2]
+    except (ImportError, LookupError) as error:
+        raise LookupError(f"missing = {name!r} names nothing: {error}") from error
+    if not (isinstance(kind, type) and issubclass(kind, BaseException)):
+        raise LookupError(f"missing = {name!r} is no exception")
+    for given in ((_SAYS,), ()):
+        try:
+            return kind(*given)
+        except TypeError:  # it wants other arguments
+            continue
+    bare: BaseException = kind.__new__(kind)
+    return bare
+
+
+async def _raised(error: BaseException) -> NoReturn:
+    raise error
+
+
+def _means(call: Call) -> Means:
+    means: Means | None = call.payload.means
+    if means is None:
+        raise LookupError(f"nobody knows what can befall {call.operation.name}")
+    return means
+
+
+def _is_answered(call: Call) -> bool:
+    named = call.operation.named
+    return named is None or named.form in ANSWERED
+
+
+def _quietly(perform: Callable[[], Any]) -> None:
+    """What goes out late may find its node gone: then it is lost."""
+    with suppress(Exception):
+        perform()
+
+
+def _is_node() -> bool:
+    """Whether this process was started by the tests, and is not the one that runs them."""
+    member = sys.modules.get("mutabot.runtime.processes.member")  # it stands on this module
+    return member is not None and bool(member.is_member())
+
+
+def _end(*, anew: bool) -> NoReturn:
+    if anew:
+        os.environ[RESTARTED] = str(os.getpid())
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(Exception):
+                stream.flush()
+        os.chdir(_FOLDER)
+        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+    os.kill(os.getpid(), signal.SIGKILL)
+    while True:  # the signal is on its way
+        time.sleep(1.0)

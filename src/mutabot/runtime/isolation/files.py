@@ -1,0 +1,465 @@
+"""Cutting a branch off from what it shares with its trunk: output, temporary files, random state.
+
+Private files: a process, and all it starts, sees the project as it is on disk, and its own changes to it.
+
+The process enters a mount namespace of its own and lays an overlay over each folder: what it writes, renames
+or deletes there goes into a layer that nobody else sees. An ordinary user needs a user namespace for that,
+which some systems and most containers refuse. Mount flags: <linux/mount.h>; clone flags: <linux/sched.h>.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import os
+import random
+import re
+import shutil
+import stat
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.frozen import frozen
+from mutabot.runtime.isolation.forkable import go_on_running, own_event_loops, running_loop
+
+_CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
+_MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
+_SHARED_MEMORY = "/dev/shm"
+#: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
+#: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
+_LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
+#: attributes that an overlay gives to a file of its upper layer, and that hold for no copy of it
+_OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overlay.nlink")
+
+
+def private_folders(root: str) -> tuple[str, ...]:
+    """The folders that become private: the project, and those of temporary files and of shared memory."""
+    folders = [os.path.realpath(root), os.path.realpath(tempfile.gettempdir())]
+    if os.path.isdir(_SHARED_MEMORY):
+        folders.append(os.path.realpath(_SHARED_MEMORY))
+    outer = [one for one in folders if any(is_below(other, one) for other in folders if other != one)]
+    return tuple(dict.fromkeys([*outer, *folders]))
+
+
+@dataclass(slots=True)
+class PrivateFiles:
+    """The private files of a process.
+
+    Args:
+        root: absolute path of the project.
+        home: the process's own folder, beside those of other processes, which it cannot touch.
+        shared: the folder that stays common to all processes, but for those folders.
+    """
+
+    root: str
+    home: str
+    shared: str
+    _own: str = ""
+    _is_privileged: bool = False
+    _covered: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._own = self.home
+
+    def make(self) -> str | None:
+        """Make them.
+
+        Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if
+        it is done.
+        """
+        try:
+            self._is_privileged = _enter_namespace()
+            _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
+            self._lay()
+        except OSError as error:
+            self._uncover()
+            return f"{error.strerror or error}"
+        with suppress(OSError):  # the same folder, but seen through its new layers
+            os.chdir(os.getcwd())
+        return None
+
+    def go_on_apart(self, folder: str) -> PrivateFiles:
+        """In a process that was just forked, while its parent waits: go on with files of its own.
+
+        What the parent did to its files is copied. ``folder`` lies in the home, which both have. Returns what
+        it has now.
+
+        Raises OSError if that is not possible.
+        """
+        place = os.getcwd()
+        for layers in (os.path.join(self._own, name) for name in (_LAYERS, _IN_MEMORY)):
+            for number in os.listdir(layers) if os.path.isdir(layers) else ():
+                upper = os.path.join(layers, number, _UPPER)
+                if os.listdir(upper):
+                    copied = os.path.join(folder, _LAYERS, number)
+                    os.makedirs(copied)
+                    copy_tree(upper, os.path.join(copied, _UPPER))
+        if ctypes.CDLL(None, use_errno=True).unshare(_CLONE_NEWNS) != 0:
+            raise _last_error("this system allows no private mounts")
+        self._own = folder
+        self._uncover()
+        self._lay()
+        os.chdir(place)
+        return self
+
+    def _lay(self) -> None:
+        """Lay an overlay over each private folder."""
+        folders = [folder for folder in private_folders(self.root) if not is_below(folder, self.shared)]
+        below = _mounts_below(folders, self.shared)
+        numbers = [n for n, folder in enumerate(folders) if not _is_part(folder, folders, below)]
+        beside = os.path.dirname(self.home)
+        in_memory = self._has_memory()
+        with _opened([*folders, self.shared, beside, self.home, self._own]) as opened:
+            *lowers, common, others, home, own = opened
+            with _opened(below) as kept:
+                again = [*zip(below, kept, strict=True), (self.shared, common)]
+                for number in numbers:
+                    folder, lower = folders[number], lowers[number]
+                    is_memory = in_memory and folder == os.path.realpath(_SHARED_MEMORY)
+                    _lay_over(folder, lower, _layers(own, number, in_memory=is_memory))
+                    self._covered.append(folder)
+                    # what is mounted in it comes back before the next folder, which may lie in such a one
+                    for inner, descriptor in again:
+                        if inner != folder and is_below(inner, folder):
+                            _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
+                            self._covered.append(inner)
+            if beside != self.shared:
+                _lay_over(beside, others, _layers(own, len(folders), in_memory=in_memory))
+                self._covered.append(beside)
+                _mount(_path(home), self.home, None, _MS_BIND | _MS_REC)
+                self._covered.append(self.home)
+
+    def _has_memory(self) -> bool:
+        """Mount a file system in memory in the process's own folder, if that can hold layers."""
+        if not self._is_privileged:  # many kernels keep no attributes there for ordinary users
+            return False
+        folder = os.path.join(self._own, _IN_MEMORY)
+        os.makedirs(folder, exist_ok=True)
+        try:
+            _mount("tmpfs", folder, "mode=700", 0, kind="tmpfs")
+        except OSError:
+            return False
+        self._covered.append(folder)
+        return True
+
+    def _uncover(self) -> None:
+        """Take back what was laid over these folders, the last first."""
+        libc = ctypes.CDLL(None, use_errno=True)
+        while self._covered:
+            libc.umount2(os.fsencode(self._covered.pop()), _MNT_DETACH)
+
+
+def may_be_private() -> bool:
+    """Whether this system lets a process have files of its own; a child tries it."""
+    pid = os.fork()
+    if pid == 0:
+        try:
+            _enter_namespace()
+            os._exit(0)
+        finally:
+            os._exit(1)
+    return os.waitpid(pid, 0)[1] == 0
+
+
+def copy_tree(source: str, target: str) -> None:
+    """Copy the upper layer of an overlay: with what it deletes and hides, owners, times and rights."""
+    os.mkdir(target)
+    links: dict[tuple[int, int], str] = {}
+    with os.scandir(source) as entries:
+        for entry in entries:
+            _copy_entry(entry.path, f"{target}/{entry.name}", links)
+    _copy_status(source, target, os.stat(source))
+
+
+def _copy_entry(source: str, target: str, links: dict[tuple[int, int], str]) -> None:
+    status = os.lstat(source)
+    identity = (status.st_dev, status.st_ino)
+    if identity in links:
+        os.link(links[identity], target, follow_symlinks=False)
+        return
+    if stat.S_ISDIR(status.st_mode):
+        os.mkdir(target)
+        with os.scandir(source) as entries:
+            for entry in entries:
+                _copy_entry(entry.path, f"{target}/{entry.name}", links)
+    elif stat.S_ISLNK(status.st_mode):
+        os.symlink(os.readlink(source), target)
+    elif stat.S_ISREG(status.st_mode):
+        shutil.copyfile(source, target)
+    elif stat.S_ISCHR(status.st_mode) or stat.S_ISFIFO(status.st_mode):  # what was deleted is such a device
+        os.mknod(target, status.st_mode, status.st_rdev)
+    else:  # nobody is at the other end of a socket
+        return
+    if status.st_nlink > 1 and not stat.S_ISDIR(status.st_mode):
+        links[identity] = target
+    _copy_status(source, target, status)
+
+
+def _copy_status(source: str, target: str, status: os.stat_result) -> None:
+    if os.geteuid() == 0:
+        with suppress(PermissionError, OSError):
+            os.chown(target, status.st_uid, status.st_gid, follow_symlinks=False)
+    if stat.S_ISLNK(status.st_mode):
+        return
+    if not stat.S_ISCHR(status.st_mode):
+        for name in os.listxattr(source):
+            if not name.endswith(_OF_THE_LAYER):
+                with suppress(OSError):
+                    os.setxattr(target, name, os.getxattr(source, name))
+        os.chmod(target, stat.S_IMODE(status.st_mode))
+    os.utime(target, ns=(status.st_atime_ns, status.st_mtime_ns))
+
+
+def _enter_namespace() -> bool:
+    """Enter a mount namespace; True if that needed no user namespace."""
+    user, group = os.geteuid(), os.getegid()
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.unshare(_CLONE_NEWNS) == 0:
+        return True
+    if libc.unshare(_CLONE_NEWNS | _CLONE_NEWUSER) != 0:
+        raise _last_error("this system allows no private mounts")
+    for name, text in (
+        ("setgroups", "deny"),
+        ("uid_map", f"{user} {user} 1"),
+        ("gid_map", f"{group} {group} 1"),
+    ):
+        with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
+            file.write(text)
+    return False
+
+
+def _is_part(folder: str, folders: list[str], mounted: list[str]) -> bool:
+    """Whether the overlay over one of the other folders covers this one: no file system lies in between."""
+    between = [point for point in mounted if is_below(folder, point)]
+    return any(
+        is_below(folder, other) and not any(point != other and is_below(point, other) for point in between)
+        for other in folders
+        if other != folder
+    )
+
+
+def _layers(own: int, number: int, *, in_memory: bool) -> str:
+    """Where the layers over a folder lie; what was copied from the parent lies on the disk."""
+    on_disk = f"{_path(own)}/{_LAYERS}/{number}"
+    return f"{_path(own)}/{_IN_MEMORY}/{number}" if in_memory and not os.path.isdir(on_disk) else on_disk
+
+
+def _lay_over(folder: str, lower: int, layers: str) -> None:
+    """Cover a folder by an overlay with these layers."""
+    for name in (_UPPER, "work"):
+        os.makedirs(f"{layers}/{name}", exist_ok=True)
+    status = os.fstat(lower)
+    os.chmod(f"{layers}/upper", status.st_mode & 0o7777)
+    with _opened([f"{layers}/upper", f"{layers}/work"]) as (upper, work):
+        options = f"lowerdir={_path(lower)},upperdir={_path(upper)},workdir={_path(work)}"
+        try:
+            _mount("overlay", folder, options + ",redirect_dir=on", 0, kind="overlay")
+        except OSError:  # without privileges, folders that were there cannot be renamed
+            _mount("overlay", folder, options + ",userxattr", 0, kind="overlay")
+
+
+def _mounts_below(folders: list[str], shared: str) -> list[str]:
+    """File systems that are mounted below these folders, the outer ones first: an overlay would hide them."""
+    with open("/proc/self/mountinfo", "rb") as file:
+        points = [mount_point(line) for line in file]
+    found = dict.fromkeys(
+        point
+        for point in sorted(points)
+        if not is_below(point, shared)
+        and any(point != folder and is_below(point, folder) for folder in folders)
+    )
+    return list(found)
+
+
+def mount_point(line: bytes) -> str:
+    """Where a file system is mounted, by a line of ``/proc/self/mountinfo``: in bytes, some of them octal."""
+    field = line.split(b" ")[4]
+    return os.fsdecode(re.sub(rb"\\([0-7]{3})", lambda match: bytes([int(match[1], 8)]), field))
+
+
+@contextmanager
+def _opened(paths: list[str]) -> Iterator[list[int]]:
+    """Descriptors that stand for these folders, whatever is mounted over their names meanwhile."""
+    descriptors: list[int] = []
+    try:
+        descriptors.extend(os.open(path, os.O_PATH | os.O_CLOEXEC) for path in paths)
+        yield descriptors
+    finally:
+        for descriptor in descriptors:
+            os.close(descriptor)
+
+
+def _path(descriptor: int) -> str:
+    return f"/proc/self/fd/{descriptor}"
+
+
+def _mount(source: str, target: str, options: str | None, flags: int, kind: str = "") -> None:
+    libc = ctypes.CDLL(None, use_errno=True)
+    data = options.encode() if options is not None else None
+    if libc.mount(os.fsencode(source), os.fsencode(target), kind.encode() or None, flags, data) != 0:
+        raise _last_error(f"{target} cannot be covered")
+
+
+def _last_error(what: str) -> OSError:
+    number = ctypes.get_errno()
+    return OSError(number, f"{what} ({os.strerror(number)})")
+
+
+def is_below(path: str, folder: str) -> bool:
+    """Whether a path is a folder or lies in it."""
+    return path == folder or path.startswith(folder.rstrip("/") + "/")
+
+
+_CHUNK = 1 << 16
+#: bytes up to which a copy of a deleted file stays in memory, which is quicker
+_SMALL = 1 << 20
+#: where forks have their folders, in that of the process
+_FORKS = "forks"
+#: device, inode, position and flags of an open file: descriptors that agree in them share one opening
+_Shared = tuple[int, int, int, int]
+
+
+class Foot:
+    """What a fork would change and a branch must have as the trunk had it."""
+
+    def __init__(self) -> None:
+        # random registers a hook that seeds anew in every child
+        self._random: Any = random.getstate()
+        self._loop = running_loop()
+        sys.stdout.flush()
+        sys.stderr.flush()
+
+    def restore(self) -> None:
+        """In the branch: put it back."""
+        random.setstate(self._random)
+        go_on_running(self._loop)
+
+
+@frozen
+class Apart:
+    """How a process that is forked is kept apart from its parent.
+
+    Attributes:
+        log: device and inode of the parent's log; what leads there leads nowhere in a fork.
+        home: the folder of the process's own.
+        files: its private files; None if they are not.
+        why_not: why it cannot be forked at all, in words, or None.
+        folder: the process's own among its forks, in a fork.
+    """
+
+    log: tuple[int, int] | None
+    home: str
+    files: PrivateFiles | None
+    why_not: str | None = None
+    folder: str = ""
+
+    def reason(self) -> str | None:
+        """Why this process cannot be forked now as far as its files are concerned; None if it can."""
+        if self.files is None:
+            return self.why_not or "its files are not private"
+        folders = private_folders(self.files.root)
+        for path, mode in _written():
+            if is_below(path, self.files.home):
+                continue
+            if mode == os.O_RDWR:  # a database knows which file it has opened, and a fork has another one
+                return f"{path} is open for reading and writing"
+            if not any(is_below(path, one) for one in folders):
+                return f"{path} is open for writing"
+        return None
+
+    def go(self, name: str) -> Apart:
+        """In a process that was just forked, while its parent waits: share nothing with it any more.
+
+        ``name``: unlike that of any other fork. Raises OSError if that is not possible.
+        """
+        assert self.files is not None
+        folder = os.path.join(self.home, _FORKS, name)
+        os.makedirs(folder)
+        files = self.files.go_on_apart(folder)
+        isolate_files(self.log)
+        own_event_loops()
+        return Apart(self.log, self.home, files, folder=folder)
+
+
+def _written() -> Iterator[tuple[str, int]]:
+    """Paths of the files that are open for writing and have a name, and how they are open."""
+    for descriptor, status in _descriptors():
+        is_named = stat.S_ISREG(status.st_mode) and status.st_nlink > 0
+        mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
+        if is_named and mode != os.O_RDONLY:
+            yield os.readlink(f"/proc/self/fd/{descriptor}"), mode
+
+
+def _descriptors() -> Iterator[tuple[int, os.stat_result]]:
+    for name in os.listdir("/proc/self/fd"):
+        with suppress(OSError):  # the descriptor of the listing itself
+            yield int(name), os.fstat(int(name))
+
+
+def isolate_files(log: tuple[int, int] | None, instead: int | None = None) -> None:
+    """In a process that was just forked: stop reading and writing where its parent does.
+
+    An open file has one position for parent and child; the child opens its own. Of a deleted temporary file,
+    such as those that pytest captures output in, it makes a copy. What leads to the parent's log leads
+    elsewhere.
+
+    Args:
+        log: device and inode of the parent's log; None if there is none.
+        instead: descriptor of the child's own log; None for nowhere.
+    """
+    found = list(_descriptors())  # before any is opened here
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    copies: dict[_Shared, int] = {}
+    for descriptor, status in found:
+        if (status.st_dev, status.st_ino) == log:
+            target = nowhere if instead is None else instead
+            os.dup2(target, descriptor, inheritable=os.get_inheritable(descriptor))
+        elif stat.S_ISREG(status.st_mode):
+            _renew(descriptor, status, copies)
+    for descriptor in (nowhere, *copies.values()):
+        os.close(descriptor)
+
+
+def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) -> None:
+    """Let a descriptor lead to the same file, but to an opening of it that is this process's own."""
+    position, flags = os.lseek(descriptor, 0, os.SEEK_CUR), fcntl.fcntl(descriptor, fcntl.F_GETFL)
+    shared = (status.st_dev, status.st_ino, position, flags)
+    if shared not in copies:
+        is_deleted = status.st_nlink == 0
+        if is_deleted and flags & os.O_ACCMODE == os.O_RDONLY:
+            return
+        opened = _copy(descriptor) if is_deleted else _opened_again(descriptor, status, position, flags)
+        if opened is None:
+            return
+        copies[shared] = opened
+    os.dup2(copies[shared], descriptor, inheritable=os.get_inheritable(descriptor))
+
+
+def _opened_again(descriptor: int, status: os.stat_result, position: int, flags: int) -> int | None:
+    """The same file opened once more; None if it is ours, in a folder that tests do not see."""
+    path = os.readlink(f"/proc/self/fd/{descriptor}")
+    try:
+        opened = os.open(path, flags & ~(os.O_CREAT | os.O_EXCL | os.O_TRUNC) | os.O_CLOEXEC)
+    except FileNotFoundError:
+        return None
+    os.lseek(opened, position, os.SEEK_SET)
+    return opened
+
+
+def _copy(descriptor: int) -> int:
+    """A private copy of a file, at the same position."""
+    position = os.lseek(descriptor, 0, os.SEEK_CUR)
+    if os.fstat(descriptor).st_size <= _SMALL:
+        copied = os.memfd_create("copy")
+    else:
+        with tempfile.TemporaryFile(buffering=0) as file:
+            copied = os.dup(file.fileno())
+    offset = 0
+    while chunk := os.pread(descriptor, _CHUNK, offset):
+        offset += os.pwrite(copied, chunk, offset)
+    os.lseek(copied, position, os.SEEK_SET)
+    return copied

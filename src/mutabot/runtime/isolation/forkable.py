@@ -1,0 +1,232 @@
+"""Whether this process can be forked right now without breaking what it shares with the world.
+
+Event loops of asyncio in a process that was forked: the descriptors by which they wait must be its own.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import select
+import selectors
+import stat
+import sys
+import weakref
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+import wrapt
+
+_loops: weakref.WeakSet[Any] = weakref.WeakSet()
+_is_on = False
+
+
+def track_event_loops() -> None:
+    """Note the loops that are made from now on."""
+    global _is_on  # noqa: PLW0603  # what is patched stays patched
+    if _is_on:
+        return
+    _is_on = True
+    # most processes have no loop, and need not import asyncio for it
+    wrapt.register_post_import_hook(_track, "asyncio.selector_events")
+
+
+def _track(selector_events: Any) -> None:
+    kind = selector_events.BaseSelectorEventLoop
+    make = kind._make_self_pipe
+
+    def made(loop: Any) -> None:
+        make(loop)
+        _loops.add(loop)
+
+    kind._make_self_pipe = made
+
+
+def open_loops() -> list[Any]:
+    """The loops that are not closed."""
+    return [loop for loop in list(_loops) if not loop.is_closed()]
+
+
+def descriptors_of_loops() -> set[int]:
+    """The descriptors by which loops wait."""
+    return {
+        end.fileno()
+        for loop in open_loops()
+        for end in (loop._ssock, loop._csock, loop._selector)
+        if end is not None
+    }
+
+
+def running_loop() -> Any:
+    """The loop that runs in this thread, or None; to be asked before a fork."""
+    events = sys.modules.get("asyncio.events")
+    return events._get_running_loop() if events is not None else None
+
+
+def go_on_running(loop: Any) -> None:
+    """In a process that was just forked while this loop ran: it runs here, too."""
+    if loop is not None:
+        events: Any = sys.modules["asyncio.events"]
+        events._set_running_loop(loop)
+        events.set_event_loop(loop)
+
+
+def own_event_loops() -> None:
+    """In a process that was just forked: every loop waits by descriptors of its own."""
+    for loop in open_loops():
+        old, new = loop._selector, selectors.DefaultSelector()
+        for key in list(old.get_map().values()):
+            if key.fd != loop._ssock.fileno():
+                new.register(key.fileobj, key.events, key.data)
+        loop._selector = new
+        old.close()
+        loop._ssock.close()
+        loop._csock.close()
+        loop._internal_fds -= 1
+        loop._make_self_pipe()
+
+
+#: why no fork is made where processes have already done their work as the original
+STARTED = "processes of the program were started before any test"
+#: libraries whose loading means that a graphics context may exist, which does not survive a fork
+_GRAPHICS = ("libEGL", "libGL.", "libGLX", "libOSMesa", "libvulkan")
+_SELF = "/proc/self"
+#: devices that keep nothing
+_NOBODYS = ("/dev/null", "/dev/urandom", "/dev/random", "/dev/zero")
+#: what tells of processes, and can be asked by any number of them
+_HARMLESS = ("/proc/", "anon_inode:[pidfd]", "pidfd:")
+#: what threads of LTTng, which comes with ROS 2, wait at
+_TRACER = "/dev/shm/lttng-ust-wait"
+#: how often, and for how many seconds each, to wait for threads that are about to end
+_TRIES, _PAUSE = 10, 0.002
+
+
+def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> str | None:
+    """Why forking is not safe, in words; None if it is.
+
+    Args:
+        own_children: processes that this one forked as branches.
+        known: what was open before the user's code ran, as ``open_now`` gives it.
+    """
+    checks: tuple[Callable[[], str | None], ...] = (
+        _threads,
+        lambda: subprocesses(own_children),
+        lambda: _open_since(known),
+        _graphics,
+    )
+    return next((reason for check in checks if (reason := check()) is not None), None)
+
+
+def _threads() -> str | None:
+    count = count_threads()
+    threading = sys.modules.get("threading")
+    names = [thread.name for thread in threading.enumerate()[1:]] if threading is not None else []
+    tries = 0 if names else _TRIES
+    while count > 1 and tries > 0:  # one that was joined may take a moment to leave
+        select.select([], [], [], _PAUSE)  # a simulation may have taken over time.sleep
+        count, tries = count_threads(), tries - 1
+    if count == 1:
+        return None
+    named = f", such as {names[0]}" if names else ", started by native code"
+    return f"{count - 1} more {'thread' if count == 2 else 'threads'}{named}"
+
+
+def count_threads() -> int:
+    """How many threads there are, bar those that wait for a tracer."""
+    threads = os.listdir(f"{_SELF}/task")
+    if len(threads) == 1:
+        return 1
+    waiting = _tracer_areas()
+    return sum(not _waits_in(thread, waiting) for thread in threads) if waiting else len(threads)
+
+
+def _tracer_areas() -> list[tuple[int, int]]:
+    """Where threads of a tracer wait to be asked. They do nothing until then, so a fork does without."""
+    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
+        areas = [line.split(maxsplit=1)[0].split("-") for line in file if _TRACER in line]
+    return [(int(start, 16), int(end, 16)) for start, end in areas]
+
+
+def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
+    try:
+        with open(f"{_SELF}/task/{thread}/syscall", encoding="ascii") as file:
+            words = file.read().split()
+    except OSError:  # it has just ended, or the kernel does not tell
+        return False
+    if len(words) < 2 or not words[1].startswith("0x"):
+        return False
+    place = int(words[1], 16)
+    return any(start <= place < end for start, end in areas)
+
+
+def subprocesses(own: Iterable[int]) -> str | None:
+    """How many processes this one has started, in words, bar those of its ``own``; None if there are none."""
+    try:
+        with open(f"{_SELF}/task/{os.getpid()}/children", encoding="ascii") as file:
+            children = {int(pid) for pid in file.read().split()}
+    except OSError:  # a kernel that does not list them
+        return None
+    others = children.difference(own)
+    return f"{len(others)} subprocess{'es' if len(others) > 1 else ''} in flight" if others else None
+
+
+def _open_since(known: frozenset[tuple[int, str]]) -> str | None:
+    loops = descriptors_of_loops()
+    found = [name for descriptor, name in open_now() - known if descriptor not in loops]
+    sockets = sum(name.startswith("socket:") for name in found)
+    if sockets:
+        return f"{sockets} open socket{'s' if sockets > 1 else ''}"
+    return min(found, default=None)
+
+
+def open_now() -> frozenset[tuple[int, str]]:
+    """What of this process a fork would share, bar files and folders, which can be opened again."""
+    return frozenset([*_open(), *_shared_memory()])
+
+
+def _open() -> Iterator[tuple[int, str]]:
+    for name in os.listdir(f"{_SELF}/fd"):
+        try:
+            mode, link = os.fstat(int(name)).st_mode, os.readlink(f"{_SELF}/fd/{name}")
+        except OSError:  # the descriptor of the listing itself
+            continue
+        is_file = stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode)
+        if not is_file and link not in _NOBODYS and not link.startswith(_HARMLESS):
+            yield int(name), link
+
+
+def _shared_memory() -> Iterator[tuple[int, str]]:
+    """Memory to which a fork and its parent would both write: where it is, in the place of a descriptor."""
+    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
+        for line in file:
+            place, rights = line.split(maxsplit=2)[:2]
+            if rights[1] == "w" and rights[3] == "s":
+                yield (
+                    -int(place.partition("-")[0], 16),
+                    f"memory shared with others {line[73:].strip()}".rstrip(),
+                )
+
+
+def _graphics() -> str | None:
+    loaded = b"\n".join(loaded_libraries()).decode("utf-8", "replace")
+    found = next((name for name in _GRAPHICS if name in loaded), None)
+    return f"a graphics library is loaded ({found.rstrip('.')})" if found is not None else None
+
+
+class _LoadedObject(ctypes.Structure):
+    """The beginning of ``struct dl_phdr_info``, <link.h>."""
+
+    _fields_ = (("address", ctypes.c_void_p), ("name", ctypes.c_char_p))
+
+
+def loaded_libraries() -> list[bytes]:
+    """Files of all shared libraries of this process, from the linker; /proc/self/maps takes far longer."""
+    names: list[bytes] = []
+
+    def add(found: Any, size: int, data: Any) -> int:
+        names.append(found.contents.name or b"")
+        return 0
+
+    kind = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(_LoadedObject), ctypes.c_size_t, ctypes.c_void_p)
+    ctypes.CDLL(None).dl_iterate_phdr(kind(add), None)
+    return names

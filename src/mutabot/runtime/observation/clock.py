@@ -1,0 +1,191 @@
+"""The program's time: read where it is simulated, and as mutants ask for it.
+
+Simulated time is read at every call that advances the simulation, or counted in fixed steps.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import isfinite
+from types import CoroutineType
+from typing import Any
+
+from mutabot.errors import PathError
+from mutabot.model import Clock, Vocabulary
+from mutabot.model.path import Path
+from mutabot.model.units import convert
+from mutabot.runtime.evidence import Meter
+from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.targets.target import Handler, resolve
+
+
+@dataclass(slots=True)
+class ClockReader:
+    """Tells a meter about the calls of the clock's tick.
+
+    Attributes:
+        clock: what the vocabulary says.
+        meter: the meter of the running test; None between tests.
+        on_problem: told why a call gives no time: (key, text).
+    """
+
+    clock: Clock
+    meter: Callable[[], Meter | None]
+    on_problem: Callable[[str, str], None]
+    _path: Path = field(init=False)
+    _step: float | None = field(init=False)
+
+    def __post_init__(self) -> None:
+        clock = self.clock
+        self._path = Path.parse(clock.time, rooted=clock.rooted)
+        self._step = None if clock.step is None else convert(clock.step, clock.unit, "s")
+
+    def handler(self) -> Handler:
+        """What stands around the tick."""
+        is_direct = not self.clock.time and self._step is None and self.clock.unit == "s"
+
+        def handle(
+            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+        ) -> Any:
+            __tracebackhide__ = True
+            result = wrapped(*args, **kwargs)
+            if is_direct and type(result) is float and isfinite(result):  # the way of most simulators
+                meter = self.meter()
+                if meter is not None:
+                    meter.tick(result)
+                return result
+            if isinstance(result, CoroutineType):  # nothing has happened yet
+                return self._awaited(result, wrapped, instance, args, kwargs)
+            self._told(result, wrapped, instance, args, kwargs)
+            return result
+
+        return handle
+
+    async def _awaited(self, result: Any, *call: Any) -> Any:
+        __tracebackhide__ = True
+        result = await result
+        self._told(result, *call)
+        return result
+
+    def _told(self, result: Any, *call: Any) -> None:
+        __tracebackhide__ = True
+        meter = self.meter()
+        if meter is None:
+            return
+        if self._step is not None:
+            meter.advance(self._step)
+            return
+        time = self._time(result, *call)
+        if time is not None:
+            meter.tick(time)
+
+    def _time(
+        self,
+        result: Any,
+        wrapped: Callable[..., Any],
+        instance: Any,
+        args: tuple[Any, ...],
+        kwargs: dict[str, Any],
+    ) -> float | None:
+        """Simulated time in s after the call; None, and a problem, if there is none."""
+        try:
+            rooted = self._path.root is not None
+            value = self._path.get(self._start(wrapped, instance, args, kwargs) if rooted else result)
+        except PathError as error:
+            self._wrong(str(error))
+            return None
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            number = float("nan")
+        if not isfinite(number):
+            self._wrong(f"{self._where()} gives {_shown(value)}, which is no number")
+            return None
+        return convert(number, self.clock.unit, "s")
+
+    def _start(
+        self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> Any:
+        """The object or argument at which the path begins. Raises PathError if the call has none."""
+        root = self._path.root or ""
+        if root == "self":
+            if instance is None:
+                raise self._missing(f"{self.clock.tick} is no method, so it has no self", ())
+            return instance
+        try:
+            bound = inspect.signature(wrapped).bind(*args, **kwargs)
+        except (TypeError, ValueError):
+            raise self._missing(f"{self.clock.tick} does not tell its arguments", ()) from None
+        bound.apply_defaults()
+        if root not in bound.arguments:
+            raise self._missing(f"{self.clock.tick} has no argument {root!r}", tuple(bound.arguments))
+        return bound.arguments[root]
+
+    def _missing(self, text: str, known: tuple[str, ...]) -> PathError:
+        names = f"; it has {', '.join(known)}" if known else ""
+        root = self._path.root or ""
+        return PathError(f"{text}{names}", path=self.clock.time, step=root, found="", known=known)
+
+    def _wrong(self, text: str) -> None:
+        self.on_problem(
+            "time", f"{text}; name a path that gives the time as a number, or write step = … instead"
+        )
+
+    def _where(self) -> str:
+        return f"the path {self.clock.time!r}" if self.clock.time else f"what {self.clock.tick} returns"
+
+
+def _shown(value: Any) -> str:
+    try:
+        text = repr(value)
+    except Exception:  # the user's object may fail to print itself in any way
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= 60 else f"{text[:59]}…"
+
+
+@dataclass(slots=True)
+class ProgramTime:
+    """The time of the running test.
+
+    Attributes:
+        vocabulary: names the clock, and what lets time pass.
+        meter: the meter of the running test; None between tests.
+        instances: the objects that the program uses.
+    """
+
+    vocabulary: Vocabulary
+    meter: Callable[[], Meter | None]
+    instances: Instances
+
+    def now(self) -> float:
+        """Simulated seconds since the test's first tick, 0 before. Raises LookupError without a clock."""
+        meter = self.meter()
+        if self.vocabulary.clock is None or meter is None:
+            raise LookupError("the vocabulary names no clock")
+        return meter.simulated or 0.0
+
+    def now_if_known(self) -> float | None:
+        """The same; None without a clock."""
+        return self.now() if self.vocabulary.clock is not None and self.meter() is not None else None
+
+    async def wait(self, seconds: float) -> None:
+        """Let so much time pass. Raises LookupError where the vocabulary does not say how."""
+        wait = self.vocabulary.wait
+        if wait is None:
+            raise LookupError("the vocabulary does not say what lets the program's time pass (wait = …)")
+        module, _, qualname = wait.target.partition(":")
+        found: Any
+        if module not in sys.modules:
+            raise LookupError(f"{module}, which lets the program's time pass, is not imported")
+        owner, name, found = resolve(sys.modules[module], qualname)
+        if isinstance(owner, type):
+            objects = self.instances.of(wait.owner)
+            if not objects:
+                raise LookupError(f"the program has no object of {wait.owner}, which lets its time pass")
+            found = getattr(objects[-1], name)
+        waited = found(convert(seconds, "s", wait.unit))
+        if inspect.isawaitable(waited):
+            await waited

@@ -1,0 +1,227 @@
+"""What could be read in a test: noted by lines that ``mutabot suggest`` adds to a copy of it.
+
+A probe on ``values`` carries it out of the process. Nothing here ever lets a test fail.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from types import ModuleType
+from typing import Any
+
+from mutabot.model.quantity import step_of
+
+#: parts that are noted of one reading, how deep, and how long a sequence may be
+_PARTS, _DEPTH, _LENGTH = 24, 3, 8
+#: characters of a text that may be a label
+_LABEL = 60
+_PLAIN = (bool, int, float, str, type(None))
+
+#: values of one reading along the way that are kept, and that may be told one by one
+_MOST, _TOLD = 5000, 10
+_CALL = " (call)"
+
+_noted: dict[str, dict[str, Any]] = {}
+_seen: dict[str, dict[str, list[Any]]] = {}
+
+
+def note(
+    names: Mapping[str, Any],
+    readings: Sequence[tuple[str, Callable[[], Any]]] = (),
+    classes: Sequence[str] = (),
+) -> None:
+    """Note all that can be read now.
+
+    Args:
+        names: what is at hand in the test, by name.
+        readings: expressions of the program text, each with what evaluates it.
+        classes: readings of objects, ``module:Class.name``: taken of each object at hand.
+    """
+    found: dict[str, Any] = {}
+    for text, read in readings:
+        found.update(_parts_of(text, read))
+    for text, value in _at_hand(names):
+        found.update(_parts_of(text, lambda value=value: value))  # type: ignore[misc]
+        for more, read in _of_object(text, value, classes):
+            found.update(_parts_of(more, read))
+    found.update(_along_the_way())
+    _noted.clear()
+    _noted[_test()] = found
+
+
+def at_end(test: Callable[..., Any], end: Callable[[Callable[[str], Any]], None]) -> Callable[..., Any]:
+    """A test function with ``end`` behind it, which is given what knows the fixtures that the test had.
+
+    For tests that another tool makes, which have no text to add to.
+    """
+    own = inspect.signature(test)
+    asks = [inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY)]
+    if "request" in own.parameters:
+        asks = []
+
+    @functools.wraps(test)
+    def with_end(**given: Any) -> None:
+        request = given.pop("request") if asks else given["request"]
+        test(**given)
+        had = request._fixture_defs  # no other fixture is to be made now
+        end(lambda name: request.getfixturevalue(name) if name in had else None)
+
+    with_end.__signature__ = own.replace(parameters=[*own.parameters.values(), *asks])  # type: ignore[attr-defined]
+    return test if inspect.iscoroutinefunction(test) else with_end
+
+
+def watch(
+    commands: Sequence[tuple[str, str, str]],
+    looks: Sequence[tuple[str, Callable[[], Any]]] = (),
+    classes: Sequence[str] = (),
+) -> None:
+    """Look after each of these commands, from now on and in every test.
+
+    Args:
+        commands: module, class (empty for what the module has itself) and name.
+        looks: expressions, each with what evaluates it.
+        classes: readings of objects, ``module:Class.name``, of the object that was commanded.
+    """
+    for module, owner, name in commands:
+        holder: Any = sys.modules.get(module)
+        for part in filter(None, owner.split(".")):
+            holder = getattr(holder, part, None)
+        command = getattr(holder, name, None)
+        if callable(command) and not hasattr(command, "_mutabot_watched"):
+            setattr(holder, name, _watched(command, looks, classes))
+
+
+def _watched(
+    command: Callable[..., Any], looks: Sequence[tuple[str, Callable[[], Any]]], classes: Sequence[str]
+) -> Callable[..., Any]:
+    def and_seen(*args: Any, **kwargs: Any) -> Any:
+        __tracebackhide__ = True
+        result = command(*args, **kwargs)
+        _look(args[0] if args else None, looks, classes)
+        return result
+
+    and_seen._mutabot_watched = True  # type: ignore[attr-defined]
+    return and_seen
+
+
+def _look(commanded: Any, looks: Sequence[tuple[str, Callable[[], Any]]], classes: Sequence[str]) -> None:
+    if not os.environ.get("PYTEST_CURRENT_TEST", "").endswith(_CALL):
+        return
+    if _test() not in _seen:
+        _seen.clear()
+    seen = _seen.setdefault(_test(), {})
+    for text, read in (*looks, *_of_object("args[0]", commanded, classes, deep=False)):
+        for key, value in _parts_of(text, read).items():
+            series = seen.setdefault(key, [])
+            if len(series) < _MOST:
+                series.append(value)
+
+
+def _along_the_way() -> Iterator[tuple[str, Any]]:
+    """Of each reading along the way the extremes; what is no number is told whole."""
+    for text, series in _seen.get(_test(), {}).items():
+        if all(isinstance(value, int | float) and not isinstance(value, bool) for value in series):
+            yield f"max {text}", max(series)
+            yield f"min {text}", min(series)
+            yield f"step {text}", step_of(series)
+        elif len(series) <= _TOLD:
+            yield f"all {text}", repr(series)
+
+
+def values() -> dict[str, Any]:
+    """What the running test has noted: expression to number, text or truth value."""
+    return _noted.get(_test(), {})
+
+
+def _test() -> str:
+    return os.environ.get("PYTEST_CURRENT_TEST", "").rpartition(" ")[0]
+
+
+def _at_hand(names: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    for name, value in names.items():
+        if name == "self":
+            yield from ((f"self.{one}", held) for one, held in _attributes(value))
+        elif not name.startswith(("_", "@")) and not isinstance(value, ModuleType | type):
+            yield name, value
+
+
+def _attributes(value: Any) -> Iterator[tuple[str, Any]]:
+    """The public attributes that an object has itself: asking for them runs nothing of the user's."""
+    try:
+        held = dict(vars(value))
+    except TypeError:
+        return
+    yield from ((name, one) for name, one in held.items() if not name.startswith("_"))
+
+
+def _of_object(
+    text: str, value: Any, targets: Sequence[str], *, deep: bool = True
+) -> Iterator[tuple[str, Callable[[], Any]]]:
+    """Readings that the vocabulary names, of an object at hand or (``deep``) of one that it holds."""
+    held_by_it = _attributes(value) if deep else ()
+    for where, held in ((text, value), *((f"{text}.{name}", one) for name, one in held_by_it)):
+        for target in targets:
+            module, _, qualname = target.partition(":")
+            owner, _, name = qualname.rpartition(".")
+            known: Any = sys.modules.get(module)
+            for part in owner.split("."):
+                known = getattr(known, part, None)
+            if isinstance(known, type) and isinstance(held, known):
+                call = "()" if callable(getattr(known, name, None)) else ""
+                yield f"{where}.{name}{call}", _reader(held, name, call=bool(call))
+
+
+def _reader(held: Any, name: str, *, call: bool) -> Callable[[], Any]:
+    return lambda: getattr(held, name)() if call else getattr(held, name)
+
+
+def _parts_of(text: str, read: Callable[[], Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    try:
+        whole = read()
+        if inspect.iscoroutine(whole):  # nobody awaits it here
+            whole.close()
+        for key, value in _parts(text, whole, _DEPTH):
+            found[key] = value
+            if len(found) >= _PARTS:
+                break
+    except Exception:  # what cannot be read is no reading
+        return {}
+    return found
+
+
+def _parts(text: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
+    """Plain values below a value, each with the expression that reads it."""
+    if isinstance(value, _PLAIN) and type(value) in _PLAIN:
+        if not isinstance(value, str) or len(value) <= _LABEL:
+            yield text, value
+        return
+    if hasattr(value, "tolist") and getattr(value, "size", 0) <= _LENGTH:
+        value = value.tolist()
+        if not isinstance(value, list):  # one number
+            yield from _parts(text, value, depth)
+            return
+    if depth == 0:
+        return
+    for path, item in _items(value):
+        yield from _parts(f"{text}{path}", item, depth - 1)
+
+
+def _items(value: Any) -> Iterator[tuple[str, Any]]:
+    if hasattr(value, "_fields"):
+        yield from ((f".{name}", getattr(value, name)) for name in value._fields)
+    elif is_dataclass(value) and not isinstance(value, type):
+        yield from ((f".{one.name}", getattr(value, one.name)) for one in fields(value))
+    elif isinstance(value, Mapping):
+        yield from ((f"[{_quoted(key)}]", item) for key, item in value.items() if isinstance(key, str | int))
+    elif isinstance(value, list | tuple) and len(value) <= _LENGTH:
+        yield from ((f"[{index}]", item) for index, item in enumerate(value))
+
+
+def _quoted(key: str | int) -> str:
+    return f'"{key}"' if isinstance(key, str) and '"' not in key and "\\" not in key else repr(key)

@@ -1,0 +1,475 @@
+"""Probes: readings that mutabot itself takes, to compare a mutant's world with the original's.
+
+Along the way of a test they are read after its commands: the first after every ``stride``-th command; once
+there are many, after every second of these, and so on. So the original and its mutants are read at the same
+moments, however busy the machine is.
+
+What the user's objects hold, as plain data that can be compared between processes.
+
+The recording of the running test: what feeds tell of the world.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+import random
+import re
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from enum import Enum
+from functools import cached_property
+from time import perf_counter  # tests may replace those of the module
+from types import FunctionType
+from typing import Any
+
+from mutabot.errors import nearest_name
+from mutabot.evidence import tape as tapes
+from mutabot.evidence.recording import Told, to_text
+from mutabot.evidence.tape import FilmWriter, Tape
+from mutabot.frozen import frozen
+from mutabot.model import Probe
+from mutabot.model.job import Pictures
+from mutabot.model.path import class_name
+from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.targets.target import resolve
+
+#: parts reported per probe; a probe is meant to be a handful of numbers
+LIMIT = 200
+_MISSING = object()
+_PLAIN = frozenset({float, int, str, bool, type(None)})
+
+
+class UnreadableError(Exception):
+    """A probe cannot be read; the text says why, and what would be needed."""
+
+
+@dataclass(slots=True)
+class Reading:
+    """All probes at one moment.
+
+    Attributes:
+        values: flat, ``target.part`` to number, text or truth value; a probe of the second object of its
+            class is ``target#2``.
+        unread: target to why it could not be read, for the others.
+    """
+
+    values: dict[str, Any] = field(default_factory=dict)
+    unread: dict[str, str] = field(default_factory=dict)
+
+
+def take(probes: tuple[Probe, ...], instances: Instances) -> Reading:
+    """All probes as they are now. Whatever the user's probe does, the test's outcome stands."""
+    reading = Reading()
+    for probe in probes:
+        try:
+            for name, found in _read(probe.target, instances):
+                reading.values.update(flatten(found, name) if found is not None else {})
+        except UnreadableError as error:
+            reading.unread[probe.target] = str(error)
+        except Exception as error:  # as above
+            reading.unread[probe.target] = f"{type(error).__name__}: {error}"
+    return reading
+
+
+def _read(target: str, instances: Instances) -> Iterator[tuple[str, Any]]:
+    """The probe's values, each under its name."""
+    module_name, _, qualname = target.partition(":")
+    module = sys.modules.get(module_name)
+    if module is None:
+        raise UnreadableError(f"no test has imported its module {module_name!r}")
+    parent, _, name = qualname.rpartition(".")
+    owner: Any = module
+    if parent:
+        holder, last, _ = resolve(module, parent)
+        owner = getattr(holder, last)
+    if not isinstance(owner, type) or not is_bound(owner, name):
+        yield target, _value(_attribute(owner, name))
+        return
+    found = instances.of(f"{module_name}:{parent}")
+    if not found:
+        raise UnreadableError(f"no object of {owner.__name__} is known: the test makes none, and calls none")
+    for number, instance in enumerate(found, start=1):
+        yield target if number == 1 else f"{target}#{number}", _value(_attribute(instance, name))
+
+
+def is_bound(owner: type, name: str) -> bool:
+    """Whether what a class has under this name is read from one of its objects."""
+    raw = next((vars(base)[name] for base in owner.__mro__ if name in vars(base)), _MISSING)
+    if raw is _MISSING:
+        return not hasattr(owner, name)  # an attribute that its objects may have
+    while hasattr(raw, "__wrapped__") and not isinstance(raw, classmethod | staticmethod):
+        raw = raw.__wrapped__
+    if isinstance(raw, classmethod | staticmethod):
+        return False
+    return isinstance(raw, FunctionType | property | cached_property) or hasattr(type(raw), "__get__")
+
+
+def _attribute(owner: Any, name: str) -> Any:
+    try:
+        return getattr(owner, name)
+    except AttributeError:
+        if hasattr(type(owner), name):  # a property of its own accord
+            raise
+        near = nearest_name(name, [one for one in dir(owner) if not one.startswith("_")])
+        of = owner.__name__ if hasattr(owner, "__name__") else type(owner).__name__
+        hint = f"; did you mean {near!r}?" if near else ""
+        raise UnreadableError(f"{of} has no {name!r}{hint}") from None
+
+
+def _value(found: Any) -> Any:
+    """What a callable without arguments returns; anything else is a value itself."""
+    if not callable(found):
+        return found
+    needed = needed_arguments(found)
+    if needed:
+        raise UnreadableError(
+            f"it needs {', '.join(needed)}; a probe is called without arguments: name a function, method, "
+            "property or attribute that needs none"
+        )
+    value = found()
+    if inspect.iscoroutine(value):
+        value.close()
+        raise UnreadableError("it is a coroutine function; a probe must be a plain function")
+    return value
+
+
+def needed_arguments(found: Callable[..., Any]) -> list[str]:
+    """The arguments that must be given."""
+    if _needs_none(found):
+        return []
+    try:
+        parameters = inspect.signature(found).parameters.values()
+    except (TypeError, ValueError):  # a native function: its call will say
+        return []
+    variable = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    return [one.name for one in parameters if one.default is one.empty and one.kind not in variable]
+
+
+def _needs_none(found: Callable[..., Any]) -> bool:
+    """Whether that can be seen at a glance: probes are read often, and signatures are slow."""
+    function = getattr(found, "__func__", found)
+    if type(function) is not FunctionType or hasattr(function, "__wrapped__"):
+        return False
+    given = len(function.__defaults__ or ()) + (function is not found)
+    code = function.__code__
+    return code.co_argcount <= given and code.co_kwonlyargcount <= len(function.__kwdefaults__ or ())
+
+
+def flatten(value: Any, name: str) -> dict[str, Any]:
+    """A nested value as flat parts. Raises UnreadableError for what is no plain data."""
+    parts: dict[str, Any] = {}
+    for key, part in _parts(value, name):
+        parts[key] = part
+        if len(parts) >= LIMIT:
+            break
+    return parts
+
+
+def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
+    if type(value) in _PLAIN:  # the most of them
+        yield name, value
+        return
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if is_dataclass(value) and not isinstance(value, type):
+        value = {field.name: getattr(value, field.name) for field in fields(value)}
+    elif hasattr(value, "_asdict"):
+        value = value._asdict()
+    if isinstance(value, Mapping | list | tuple) and not value:
+        yield name, {} if isinstance(value, Mapping) else []
+    elif isinstance(value, Mapping):
+        for key, item in value.items():
+            yield from _parts(item, f"{name}.{key}")
+    elif isinstance(value, list | tuple):
+        for index, item in enumerate(value):
+            yield from _parts(item, f"{name}[{index}]")
+    elif isinstance(value, int | float | str | bool | None):
+        yield name, value
+    elif "__repr__" not in {name for base in type(value).__mro__[:-1] for name in vars(base)}:
+        kind = class_name(type(value))
+        raise UnreadableError(
+            f"it reads an object of {kind}, which is no plain data such as numbers, texts, lists, dataclasses"
+        )
+    else:
+        yield name, repr(value)
+
+
+#: readings before the first thinning, and between any later two
+FIRST, NEXT = 100, 50
+#: seconds beyond which a reading is too slow to be repeated
+_SLOW = 0.05
+#: how often a quick reading is timed once more: the least counts
+_MORE = 2
+
+
+@dataclass(slots=True)
+class Along:
+    """The readings of the running test.
+
+    Attributes:
+        read: reads the probes.
+        entries: number of the call after which it was read, parts that differ from the reading before, and
+            whether these are all parts there are.
+    """
+
+    read: Callable[[], Reading]
+    entries: list[tuple[int, dict[str, Any], bool]] = field(default_factory=list)
+    _step: int = 0
+    _commands: int = 0
+    _thins_at: int = FIRST
+    _last: dict[str, Any] | None = None
+
+    def start(self, stride: int) -> None:
+        """A new test begins; it is not read along the way if ``stride`` is 0."""
+        self.entries, self._last = [], None
+        self._step, self._commands, self._thins_at = stride, 0, FIRST
+
+    def stop(self) -> None:
+        """What comes now is no more part of the test."""
+        self._step = 0
+
+    def after(self, call: int) -> None:
+        """A command, the test's ``call``-th call, is over."""
+        self._commands += 1
+        if not self._step or self._commands % self._step:
+            return
+        if threading.current_thread() is not threading.main_thread():
+            return
+        values = self.read().values
+        last = self._last
+        if last is not None and last.keys() == values.keys():
+            changed = {key: value for key, value in values.items() if value != last[key]}
+            self.entries.append((call, changed, False))
+        else:
+            self.entries.append((call, values, True))
+        self._last = values
+        if len(self.entries) >= self._thins_at:
+            self._thins_at += NEXT
+            self._step *= 2
+
+
+@frozen
+class Rehearsal:
+    """What is known of reading the probes once more.
+
+    Attributes:
+        seconds: of processor time; None if they cannot be read along the way.
+        why_not: why not, or None.
+    """
+
+    seconds: float | None = None
+    why_not: str | None = None
+
+
+def rehearse(read: Callable[[], Reading]) -> tuple[Reading, Rehearsal]:
+    """The probes, and whether they could be read along the way as well: reading them must change nothing."""
+    first, took, _ = _timed(read)
+    if not first.values:
+        return first, Rehearsal()
+    drawn = _random_state()
+    second, took_again, seconds = _timed(read)
+    slow = min(took, took_again)  # the system may do other things meanwhile
+    if slow > _SLOW:
+        return first, Rehearsal(None, f"reading them takes {1e3 * slow:.0f} ms")
+    seconds = min(seconds, *(_timed(read)[2] for _ in range(_MORE)))
+    if drawn != _random_state():
+        return first, Rehearsal(None, "reading them draws random numbers")
+    for key in first.values.keys() | second.values.keys():
+        if not _is_same(first.values.get(key), second.values.get(key)):
+            return first, Rehearsal(None, f"{key} changes when it is read twice")
+    return first, Rehearsal(seconds)
+
+
+def _timed(read: Callable[[], Reading]) -> tuple[Reading, float, float]:
+    """The probes, and the seconds that reading them took: of wall clock, and of processor time."""
+    began, used = perf_counter(), time.thread_time()
+    reading = read()
+    return reading, perf_counter() - began, time.thread_time() - used
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    return repr(one) == repr(other)  # NaN is as good as NaN
+
+
+def _random_state() -> Any:
+    numpy = sys.modules.get("numpy.random")
+    state = numpy.get_state() if numpy is not None and hasattr(numpy, "get_state") else ()
+    return random.getstate(), [part.tobytes() if hasattr(part, "tobytes") else part for part in state]
+
+
+#: values within one value that are told; of more only whether they are all the same
+LEAVES = 200
+#: values within one value beyond which it is not looked at
+MOST = 20_000
+#: characters of a text that are told
+_CHARACTERS = 300
+_DEPTH = 20
+_AS_TEXT = (complex, range, slice)
+#: modules whose objects are told as texts; they are not imported for this
+_TOLD = ("datetime", "decimal", "fractions")
+#: what differs between equal runs in different processes
+_ACCIDENTS = re.compile(r"0x[0-9a-fA-F]{6,}|pytest-\d+")
+
+
+def plain(value: Any) -> Any:
+    """The value as JSON-like data.
+
+    What is no plain data becomes ``{"opaque": type}``, so that two of them are equal whatever they hold. A
+    digest stands for what is large.
+    """
+    reader = _Reader()
+    found = reader.read(value, 0)
+    if reader.leaves > MOST:
+        return opaque(value)
+    if reader.leaves > LEAVES:
+        return {"digest": _digest(json.dumps(found, sort_keys=True).encode())}
+    return found
+
+
+def text_of_error(error: BaseException) -> str:
+    """An exception in words, without what differs between equal runs."""
+    kind = class_name(type(error))
+    return f"{kind.removeprefix('builtins:')}: {_ACCIDENTS.sub('…', str(error))[:_CHARACTERS]}"
+
+
+class _Reader:
+    def __init__(self) -> None:
+        self.leaves = 0
+
+    def read(self, value: Any, depth: int) -> Any:
+        self.leaves += 1
+        if value is None or isinstance(value, bool):
+            return value
+        if isinstance(value, Enum):
+            return f"{type(value).__name__}.{value.name}"
+        if isinstance(value, int | float):
+            return float(value) if isinstance(value, float) else int(value)
+        if isinstance(value, str | bytes | bytearray):
+            return _text(value)
+        if isinstance(value, _AS_TEXT) or type(value).__module__ in _TOLD:
+            return repr(value)
+        return opaque(value) if depth > _DEPTH or self.leaves > MOST else self._container(value, depth + 1)
+
+    def _container(self, value: Any, depth: int) -> Any:
+        if hasattr(value, "tolist") and hasattr(value, "dtype"):
+            return self._array(value, depth)
+        if hasattr(value, "_asdict"):
+            value = value._asdict()
+        elif is_dataclass(value) and not isinstance(value, type):
+            value = {field.name: getattr(value, field.name, None) for field in fields(value)}
+        if isinstance(value, Mapping):
+            return {_key(key): self.read(item, depth) for key, item in value.items()}
+        if isinstance(value, set | frozenset):
+            value = sorted(value, key=repr)
+        if isinstance(value, list | tuple):
+            return [self.read(item, depth) for item in value]
+        return opaque(value)
+
+    def _array(self, value: Any, depth: int) -> Any:
+        if value.dtype.hasobject:
+            return opaque(value)
+        if getattr(value, "size", 1) <= LEAVES:
+            return self.read(value.tolist(), depth)
+        return {"array": list(value.shape), "digest": _digest(value.tobytes())}
+
+
+def _key(key: Any) -> str:
+    return key if isinstance(key, str) else json.dumps(_Reader().read(key, 0))
+
+
+def _text(value: str | bytes | bytearray) -> Any:
+    if len(value) <= _CHARACTERS:
+        return value if isinstance(value, str) else repr(bytes(value))
+    return {"digest": _digest(value.encode("utf-8", "replace") if isinstance(value, str) else bytes(value))}
+
+
+def opaque(value: Any) -> dict[str, str]:
+    """What stands for a value that is no plain data."""
+    return {"opaque": class_name(type(value))}
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:16]
+
+
+class TestRecording:
+    """The recording of the running test; nothing is recorded where it is not asked for."""
+
+    __test__ = False
+
+    def __init__(self) -> None:
+        self._tape: Tape | None = None
+        self._film: FilmWriter | None = None
+        self._filmed: str | None = None
+
+    def film(self, pictures: Pictures) -> None:
+        """Film a test that is still to come."""
+        self._film, self._filmed = FilmWriter(pictures.file), pictures.test
+
+    def start(
+        self,
+        is_wanted: bool,
+        test: str,
+        clock: Callable[[], float | None],
+        aside: Callable[[], AbstractContextManager[object]],
+        *,
+        is_simulated: bool,
+    ) -> None:
+        """A test begins.
+
+        Args:
+            test: its node id.
+            clock: tells its simulated time, s, as long as no feed does.
+            aside: what feeds read in this context is none of the program's calls.
+            is_simulated: whether it is known that there is such a time.
+        """
+        tapes.stop()
+        film = self._film if test == self._filmed else None
+        self._tape = tapes.begin(film) if is_wanted else None
+        if self._tape is not None:
+            self._tape.aside = aside
+            self._tape.clock, self._tape.is_simulated = clock, is_simulated
+
+    def stop(self) -> None:
+        """The test is over; its world may be taken down."""
+        tape = tapes.running()
+        if tape is not None:
+            tape.finish()
+        tapes.stop()
+
+    def clock(self) -> float | None:
+        """The time, as the tape has it; None where nothing is recorded."""
+        tape = tapes.running()
+        return tape.now if tape is not None else None
+
+    def since(self, moment: float) -> float | None:
+        """A moment of the clock of ``time.monotonic`` as a time of the tape; None without one."""
+        return self._tape.at_wall(moment) if self._tape is not None else None
+
+    def note_fault(self, calls: int, time: float | None) -> None:
+        """The mutant has changed something, for the first time or once more, after so many calls."""
+        if self._tape is not None and self._tape.recording.faulty_call is None:
+            self._tape.recording.faulty_call = calls
+            self._tape.recording.fault = time
+
+    def text(self, calls: Sequence[Told]) -> str | None:
+        """All of it and the calls, as ``TestEnd.recording``; None where nothing is recorded."""
+        if self._tape is None:
+            return None
+        tape, recording = self._tape, self._tape.recording
+        recording.is_simulated = tape.is_simulated
+        recording.fault = tape.seconds(recording.fault)
+        timed = (replace(one, began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
+        recording.calls = sorted(timed, key=lambda one: one.began or 0.0)
+        try:
+            return to_text(recording)
+        except (TypeError, ValueError, RecursionError) as error:  # values of the user's may be anything
+            tape.problem(f"the calls of a test cannot be recorded: {type(error).__name__}: {error}")
+            recording.calls = []
+            return to_text(recording)

@@ -1,0 +1,228 @@
+"""Plug-ins that would run tests elsewhere, again or in another order, or measure coverage: switched off.
+
+Their options may stand in a project's ``addopts``, their settings in its configuration, their fixtures and
+markers in its tests. So something stands in for each: it declares what the plug-in declares, by the plug-in's
+own functions, and does nothing. What the options say is forgotten.
+
+Limits of wall clock that the suite brings along: they must mean the same to every engine.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import importlib
+import re
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import monotonic  # before a simulation takes over the clock
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from mutabot.frozen import frozen
+from mutabot.model.events import Watched
+from mutabot.runtime.seeds import node_id
+
+
+@frozen
+class Plugin:
+    """A plug-in to switch off.
+
+    Attributes:
+        package: its name as a requirement.
+        entries: names under which pytest loads it, with the module behind each.
+        markers: markers that it declares.
+    """
+
+    package: str
+    entries: tuple[tuple[str, str], ...]
+    markers: tuple[str, ...] = ()
+
+
+PLUGINS = (
+    Plugin(
+        "pytest-xdist",
+        (("xdist", "xdist.plugin"), ("xdist.looponfail", "xdist.looponfail")),
+        ("xdist_group(name)",),
+    ),
+    Plugin("pytest-cov", (("pytest_cov", "pytest_cov.plugin"),), ("no_cover",)),
+    Plugin("pytest-rerunfailures", (("rerunfailures", "pytest_rerunfailures"),), ("flaky(reruns)",)),
+    Plugin("flaky", (("flaky", "flaky.flaky_pytest_plugin"),), ("flaky",)),
+    Plugin("pytest-retry", (("pytest-retry", "pytest_retry.retry_plugin"),), ("flaky(retries)",)),
+    Plugin("pytest-randomly", (("randomly", "pytest_randomly"),)),
+    Plugin(
+        "pytest-random-order", (("random_order", "random_order.plugin"),), ("random_order(disabled=True)",)
+    ),
+    Plugin("pytest-forked", (("pytest_forked", "pytest_forked"),), ("forked",)),
+    Plugin("pytest-parallel", (("parallel", "pytest_parallel"),)),
+    Plugin(
+        "pytest-run-parallel",
+        (("run-parallel", "pytest_run_parallel.plugin"),),
+        (
+            "parallel_threads(n)", "parallel_threads_limit(n)", "force_parallel_threads(n)", "iterations(n)",
+            "thread_unsafe",
+        ),
+    ),
+    Plugin("pytest-testmon", (("pytest-testmon", "testmon.pytest_testmon"),)),
+)  # fmt: skip
+#: hooks by which a plug-in only declares something
+_DECLARING = ("pytest_addhooks", "pytest_addoption")
+#: where a requirement's name ends
+_NAME = re.compile(r"[A-Za-z0-9._-]+")
+
+
+def switch_off(manager: pytest.PytestPluginManager) -> None:
+    """Switch off what is installed of these plug-ins; pytest has not loaded any by itself yet."""
+    config: Any = manager.get_plugin("pytestconfig")
+    found = [plugin for plugin in PLUGINS if _replace(manager, config, plugin)]
+    if found:
+        manager.register(_Markers(found), "mutabot-markers")
+        _need_no_more(config, {_normal(plugin.package) for plugin in found})
+
+
+def _replace(manager: pytest.PytestPluginManager, config: Any, plugin: Plugin) -> bool:
+    return True in [_replace_entry(manager, config, *entry) for entry in plugin.entries]
+
+
+def _replace_entry(manager: pytest.PytestPluginManager, config: Any, entry: str, module: str) -> bool:
+    """Block a plug-in and let something stand in for it; False if it is not installed."""
+    was_named = any(manager.has_plugin(name) for name in (entry, module))  # by ``-p``, before us
+    for name in (entry, module):
+        manager.set_blocked(name)
+    try:
+        plugin = importlib.import_module(module)
+    except Exception:  # not there, or broken: then pytest could not use it either
+        return False
+    hooks = () if was_named else _DECLARING  # nothing can be declared twice
+    manager.register(_stand_in(plugin, hooks), f"mutabot-stands-in-for-{entry}")
+    defaults = vars(config.option)  # nothing else yet
+    forgotten = {name: defaults[name] for name in _options(plugin) if name in defaults}
+    manager.register(_Forgetting(forgotten), f"mutabot-forgets-{entry}")
+    return True
+
+
+def _options(plugin: ModuleType) -> set[str]:
+    """The names under which a plug-in's options are kept."""
+    parser = _Parser()
+    with contextlib.suppress(Exception):  # it asks for more than it has to
+        getattr(plugin, "pytest_addoption", lambda parser: None)(parser)
+    return parser.options
+
+
+class _Parser:
+    """Stands for pytest's parser, and for a group of options in it: notes what options there are."""
+
+    def __init__(self) -> None:
+        self.options: set[str] = set()
+
+    def getgroup(self, *names: str, **more: Any) -> _Parser:
+        return self
+
+    def addoption(self, *names: str, **attributes: Any) -> None:
+        own = next((name for name in names if name.startswith("--")), names[0])
+        self.options.add(attributes.get("dest") or own.lstrip("-").replace("-", "_"))
+
+    _addoption = addoption
+
+    def addini(self, *names: str, **attributes: Any) -> None:
+        pass
+
+
+def _stand_in(plugin: ModuleType, hooks: tuple[str, ...]) -> ModuleType:
+    """A plug-in with the declarations and fixtures of another."""
+    found = ModuleType(f"stand-in for {plugin.__name__}")
+    for name, value in vars(plugin).items():
+        if name in hooks or _is_fixture(value):
+            setattr(found, name, value)
+    return found
+
+
+def _is_fixture(value: Any) -> bool:
+    # before pytest 8.4, a fixture is a function with a mark
+    return type(value).__name__ == "FixtureFunctionDefinition" or hasattr(value, "_pytestfixturefunction")
+
+
+def _need_no_more(config: Any, packages: set[str]) -> None:
+    """The project's configuration may require them."""
+    required = config.getini("required_plugins")
+    required[:] = [text for text in required if _normal(text) not in packages]
+
+
+def _normal(requirement: str) -> str:
+    name = _NAME.match(requirement.strip())
+    return re.sub(r"[._-]+", "-", name[0]).lower() if name else ""
+
+
+class _Forgetting:
+    """Nobody is told what the options say: all have their defaults."""
+
+    def __init__(self, defaults: dict[str, Any]) -> None:
+        self._defaults = defaults
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_cmdline_main(self, config: pytest.Config) -> None:
+        """The command line was read."""
+        vars(config.option).update(self._defaults)
+
+
+class _Markers:
+    """Declares the markers of plug-ins."""
+
+    def __init__(self, plugins: list[Plugin]) -> None:
+        self._plugins = plugins
+
+    def pytest_configure(self, config: pytest.Config) -> None:
+        """Tell pytest that these are no mistakes."""
+        for plugin in self._plugins:
+            for marker in plugin.markers:
+                config.addinivalue_line("markers", f"{marker}: of {plugin.package}, without effect here")
+
+
+if TYPE_CHECKING:
+    import pytest  # processes below the tests need none
+
+
+@contextmanager
+def alarm_held() -> Iterator[None]:
+    """Stop the process's alarm for the time of a block, and let a process forked in it have what is left.
+
+    A fork inherits no alarm; and a trunk that waits for its branches has not used that time itself.
+    """
+    left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0)
+    try:
+        yield
+    finally:
+        if left:
+            signal.setitimer(signal.ITIMER_REAL, left, interval)
+
+
+def watched(test: str, seconds: float, by: str) -> Watched:
+    """The report that ``by`` ends this process with exit code 1 unless ``test`` ends in time."""
+    return Watched(test, monotonic() + seconds, f"no end after {seconds:g} s of wall clock ({by})")
+
+
+def watched_by_faulthandler(item: pytest.Item) -> Watched | None:
+    """The same for pytest's own limit; None if there is none, or it only prints."""
+    seconds, ends = _faulthandler(item.config)
+    return watched(node_id(item), seconds, "faulthandler_timeout") if seconds > 0 and ends else None
+
+
+def drop_idle_watchdog(item: pytest.Item) -> None:
+    """Where faulthandler would only print, its thread must not keep a trunk from forking."""
+    seconds, ends = _faulthandler(item.config)
+    if seconds > 0 and not ends:
+        faulthandler.cancel_dump_traceback_later()
+
+
+def _faulthandler(config: pytest.Config) -> tuple[float, bool]:
+    try:
+        seconds = float(config.getini("faulthandler_timeout") or 0.0)
+    except (ValueError, KeyError):  # pytest's plug-in is switched off
+        return 0.0, False
+    try:
+        return seconds, bool(config.getini("faulthandler_exit_on_timeout"))
+    except (ValueError, KeyError):  # an older pytest only prints
+        return seconds, False

@@ -1,0 +1,368 @@
+"""A process below the tests that is part of a campaign: it runs the session of its test process's job.
+
+It finds, mutates and records calls as the test process does. What it sees goes into its own file at once.
+Which test runs is looked up at each call, since a process may outlive the test that started it.
+
+What a process below the tests runs of a job without operations: the program text alone.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+import threading
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from mutabot.model.event_file import ANYBODY
+from mutabot.model.events import (
+    Acted,
+    Began,
+    Did,
+    Event,
+    Found,
+    NotInstrumented,
+    PlacesReached,
+    Problem,
+    Raised,
+    Remark,
+    SessionEnd,
+    Signalled,
+    SiteSeen,
+    TextsSeen,
+    Used,
+)
+from mutabot.model.job import Budget, Job, read_job
+from mutabot.runtime import FOLDER as OURS
+from mutabot.runtime.event_file import EventFile
+from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves, together
+from mutabot.runtime.processes.environment import Now, carry, starts_a_killer
+from mutabot.runtime.program_text.loading import hook_script
+from mutabot.runtime.program_text.session_text import SessionText
+
+if TYPE_CHECKING:
+    from mutabot.runtime.event_file import Sink
+
+
+def is_of_text_alone(job: Job) -> bool:
+    """Whether a job has nothing to do with calls, so that what sees them need not be loaded."""
+    return not (job.vocabulary.operations or job.vocabulary.clock or job.faults)
+
+
+class TextOnly:
+    """What ``runtime.session.Session`` is of a job that has nothing to do with calls.
+
+    Args:
+        job: what to do.
+        pipe: where reports go.
+
+    Attributes:
+        text: the program text, if it is instrumented.
+        test: node id of the running test.
+        meter: what the running test has used.
+        commands, sites, branch: of calls there are none.
+    """
+
+    commands = 0
+    sites: tuple[SiteSeen, ...] = ()
+    branch: str | None = None
+
+    def __init__(self, job: Job, pipe: Sink) -> None:
+        self.job, self.pipe = job, pipe
+        self.text: SessionText | None = None
+        self.test = ""
+        self.meter = Meter(Budget())
+
+    def install(self) -> None:
+        """Instrument the program from now on, and the mutant with it."""
+        self.text = SessionText.of(self.job, self.pipe, self._acted)
+
+    def start_test(self, test: str) -> None:
+        """A test begins."""
+        self.test = test
+        self.meter = Meter(self.job.budgets.get(test, Budget()))
+        if self.text is not None:
+            self.text.start_test(test, None, {})
+
+    def look_back(self, *, at_all: bool = False) -> None:
+        """No mutant has handed out anything."""
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the mutant did in the running test."""
+        return together([self.text.evidence] if self.text is not None and self.text.is_mutant else [])
+
+    def _acted(self) -> None:
+        self.pipe.send(Acted(self.test))
+
+
+if TYPE_CHECKING:  # of no use to a job that has nothing to do with calls
+    from mutabot.runtime.processes.members import CallsTold
+    from mutabot.runtime.session import Session
+
+#: the member that this process is; None in all others
+_member: Member | None = None
+
+
+def join(folder: str) -> None:
+    """Be a member of the campaign whose processes have this folder."""
+    global _member  # noqa: PLW0603  # one process, one member
+    if _member is None:
+        job = read_job(os.path.dirname(folder))
+        _member = Member(folder, job)
+        _member.begin()
+
+
+def is_member() -> bool:
+    """Whether this process is one below the tests, and not the one that runs them."""
+    return _member is not None
+
+
+def note_node(name: str) -> None:
+    """A node of this resolved name was made in this process."""
+    if _member is not None:
+        _member.file.send(Found(nodes=(name,)))
+
+
+class Member:
+    """This process, as part of a campaign. Also what a session sends its events to.
+
+    Args:
+        folder: the folder of the campaign's processes.
+        job: the job of the test process.
+        session: the session that goes on, in a process that was forked; None to make one.
+    """
+
+    def __init__(self, folder: str, job: Job, session: Session | TextOnly | None = None) -> None:
+        self._folder = folder
+        self._now = Now(folder)
+        self._test = self._now.number
+        now = time.monotonic()
+        name = f"{os.getpid()}-{int(now * 1e6)}"
+        self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
+        command = tuple(getattr(sys, "orig_argv", sys.argv))
+        self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
+        self.session = session or _session(job, self)
+        self._calls: CallsTold | None = None
+        self._told = Evidence()
+        self._places: set[int] = set()
+        self._exceeded = False
+        self._is_over = False
+
+    def begin(self) -> None:
+        """Put the session in place."""
+        carry(self._folder)
+        self.session.install()
+        hook_script()
+        self._attend()
+        self.session.start_test(self._now.name_of(self._test))
+        self._watch_text()
+
+    def go_on(self) -> None:
+        """In a process that was forked: go on with the session that it has, and tell of it."""
+        session = self.session
+        for site in session.sites:
+            self.file.send(site)
+        self._told = _copy_of(session.evidence)
+        self._attend()
+        session.pipe, session.branch = self, None  # it tells its own sites, also below a branch
+        if session.text is not None:
+            session.text.pipe = self
+        self._watch_text()
+
+    def _attend(self) -> None:
+        session = self.session
+        watch_forks(self._folder, session)
+        if not isinstance(session, TextOnly):
+            from mutabot.runtime.processes.members import CallsTold  # noqa: PLC0415  # see above
+
+            self._calls = CallsTold(session, self.file, self.poll)
+            session.passing.turn = self.turn
+        atexit.register(self.end)
+        self._watch_exits()
+
+    def turn(self) -> None:
+        """Look whether another test has begun."""
+        if self._now.number != self._test:
+            self.session.look_back(at_all=True)
+            self.poll()
+            self._use()
+            self._test = self._now.number
+            self._told, self._exceeded = Evidence(), False
+            self._places.clear()
+            self.session.start_test(self._now.name_of(self._test))
+
+    def send(self, line: Event) -> None:
+        """What the session tells: written down, as far as it is news."""
+        match line:
+            case SiteSeen() | NotInstrumented() | Problem() | Remark() | TextsSeen():
+                self.file.send(line)
+            case Acted(in_call=None):
+                self.poll()
+            case Acted():
+                self.file.send(line)
+            case PlacesReached():
+                self._reached(line.places)
+            case _:  # the test process tells of its tests itself
+                pass
+
+    def poll(self) -> None:
+        """Tell what the mutant did since the last time, and what was found."""
+        session = self.session
+        now, before = session.evidence, self._told
+        if now.hits != before.hits or now != before:
+            self._told = _copy_of(now)
+            self.file.send(self._did(before, now))
+        if self._calls is not None:
+            self._calls.tell_found()
+        meter = session.meter
+        if meter is not None and meter.exceeded is not None and not self._exceeded:
+            self._exceeded = True
+            self._use()
+
+    def _did(self, before: Evidence, now: Evidence) -> Did:
+        away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
+        is_refused = now.refusals != before.refusals or now.said != before.said
+        return Did(
+            self.session.test,
+            hits=now.hits - before.hits,
+            acted=now.acted - before.acted,
+            away={why: count for why, count in away.items() if count},
+            example=now.example if before.example is None else None,
+            invalid=now.invalid and not before.invalid,
+            failure=now.failure if before.failure is None else None,
+            refused=now.refusal if is_refused and not now.is_of_text else None,
+            is_final=now.said is not None,
+        )
+
+    def _use(self) -> None:
+        meter = self.session.meter
+        if meter is not None:
+            self.file.send(Used(meter.operations, self.session.commands, meter.simulated, meter.exceeded))
+
+    def _watch_text(self) -> None:
+        """Places of the program text are told when they are reached first: the process may die any time."""
+        text = self.session.text
+        if text is None:
+            return
+        if text.hook.sightings is not None:
+            text.hook.sightings.tell_first(lambda place: self._reached((place,)))
+        else:
+            text.hook.alternatives.on_first = lambda place: self.poll()
+
+    def _reached(self, places: tuple[int, ...]) -> None:
+        self.turn()
+        new = set(places) - self._places
+        if new:
+            self._places |= new
+            self.file.send(PlacesReached(self.session.test, tuple(sorted(new))))
+
+    def end(self) -> None:
+        """The process ends: tell what is left to tell."""
+        if self._is_over or _member is not self:
+            return
+        self._is_over = True
+        self.session.look_back(at_all=True)
+        self.poll()
+        self._use()
+        if self.session.text is not None:
+            self.session.text.finish()
+        self.file.send(Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
+        self.file.send(SessionEnd())
+
+    def _modules_of_vocabulary(self) -> set[str]:
+        vocabulary = self.session.job.vocabulary
+        names = [one.target for one in vocabulary.operations if one.named is None]
+        names += [*vocabulary.refusals, *vocabulary.checks, *vocabulary.failures]
+        names += [name for one in vocabulary.operations for name in one.refusals]
+        return {module for name in names if (module := name.partition(":")[0]) in sys.modules}
+
+    def _watch_exits(self) -> None:
+        """Exceptions that nobody catches, ends without clearing up, and signals sent to others."""
+        main, thread, leave = sys.excepthook, threading.excepthook, os._exit
+
+        def in_main(kind: type[BaseException], error: BaseException, traceback: Any) -> None:
+            self._raised(error, in_thread=False)
+            main(kind, error, traceback)
+
+        def in_thread(arguments: Any) -> None:
+            if arguments.exc_value is not None:
+                self._raised(arguments.exc_value, in_thread=True)
+            thread(arguments)
+
+        def leave_at_once(status: int) -> None:
+            self.end()
+            leave(status)
+
+        sys.excepthook, threading.excepthook = in_main, in_thread
+        os._exit = leave_at_once  # type: ignore[assignment]
+        sys.addaudithook(self._hear)
+
+    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        if event in ("os.kill", "os.killpg") and _member is self:
+            self.file.send(Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
+        elif event == "os.exec" and _member is self:
+            self.end()
+        if _member is self and starts_a_killer(event, arguments):
+            self.file.send(Signalled(ANYBODY))
+
+    def _raised(self, error: BaseException, *, in_thread: bool) -> None:
+        if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
+            return
+        self.poll()
+        culprits = self.session.evidence.culprits
+        first = leaves(error)[0]
+        if isinstance(first, BudgetExceeded):
+            return
+        self.file.send(
+            Raised(
+                f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
+                is_refusal=bool(culprits) and is_due_to(error, culprits),
+                failure=failure_in(error, self.session.job.vocabulary.failures),
+                in_thread=in_thread,
+            )
+        )
+
+
+def _session(job: Job, pipe: Member) -> Session | TextOnly:
+    text = job.instrumentation
+    if text is not None and not (text.active or text.record):
+        text = None  # a trunk's processes are the original, and fork for nobody
+    job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
+    if is_of_text_alone(job):
+        return TextOnly(job, pipe)
+    from mutabot import extensions  # noqa: PLC0415  # see above
+    from mutabot.runtime.interception.trace import Locator  # noqa: PLC0415
+    from mutabot.runtime.session import Session  # noqa: PLC0415
+
+    extensions.use(job.extensions)
+    return Session(job, pipe, Locator(job.root, job.program, job.oracle))
+
+
+def _copy_of(evidence: Evidence) -> Evidence:
+    return replace(evidence, away=dict(evidence.away))
+
+
+_watched: tuple[str, Session | TextOnly] | None = None
+
+
+def watch_forks(folder: str, session: Session | TextOnly) -> None:
+    """Let each process that the program forks off this one be a member of its own."""
+    global _watched  # noqa: PLW0603  # hooks cannot be taken back: the last one watched counts
+    if _watched is None:
+        os.register_at_fork(after_in_child=_after_fork)
+    _watched = folder, session
+
+
+def _after_fork() -> None:
+    if _watched is not None and not sys._getframe(1).f_code.co_filename.startswith(OURS):
+        _forked(*_watched)
+
+
+def _forked(folder: str, session: Session | TextOnly) -> None:
+    """In a process that a program has forked: it is a member of its own from now on."""
+    global _member  # noqa: PLW0603  # see above
+    _member = Member(folder, session.job, session)
+    _member.go_on()

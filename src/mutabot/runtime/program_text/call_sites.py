@@ -1,0 +1,388 @@
+"""Calls that may be those of operations are seen where they are written.
+
+Files of the program and of the oracle are compiled with a question at each call whose last name is that of an
+operation: ``x.f(args)`` becomes ``S[17](x)(args)``, and ``f(args)`` becomes ``S[17](f)(args)``. The answer is
+what is called: the very object that stands there, or what makes the call a site. So no frame is added to a
+call that is left alone, and lines and columns stay the user's. ``S`` is a plain list under a built-in name.
+In files of the program an operation may also be handed on without being called (``handed_on``).
+
+Which expressions of the text hand on what they read, and to which call.
+
+An operation need not be called where it is read: ``go = arm.move``, ``Thread(target=arm.move)``,
+``{"home": arm.home}``. What is compared, or only looked at, is not handed on.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import copy
+import sys
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from types import FrameType
+from typing import Any, Protocol
+
+import wrapt
+
+from mutabot.languages.python import extent_of
+from mutabot.model import Role
+from mutabot.model.mutant import Extent
+from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.instrument import declare_global, is_ours
+from mutabot.runtime.program_text.returns import Function, is_translated
+
+_PLACE = "handed_to"
+
+
+def note_parts(node: ast.AST) -> None:
+    """Note of the parts of a node, before these are visited, where they are handed over."""
+    for part in _parts(node):
+        setattr(part, _PLACE, _place(node))
+
+
+def is_handed_on(node: ast.expr) -> bool:
+    """Whether the value of an expression is handed on."""
+    return isinstance(getattr(node, "ctx", None), ast.Load) and hasattr(node, _PLACE)
+
+
+def place_of(node: ast.expr) -> ast.expr:
+    """The call that it is given to; the expression itself if it is given to none."""
+    place: ast.expr | None = getattr(node, _PLACE, None)
+    return node if place is None else place
+
+
+def _place(node: ast.AST) -> ast.expr | None:
+    if isinstance(node, ast.Call) and not is_ours(node.func):
+        return node
+    return getattr(node, _PLACE, None)
+
+
+def _parts(node: ast.AST) -> Iterator[ast.expr]:
+    match node:
+        case ast.Call():
+            if hasattr(node, _PLACE) or not is_ours(node.func):
+                yield from (*node.args, *(one.value for one in node.keywords))
+        case ast.Assign(targets=[ast.Name(id=name), *_]) if name.startswith("@"):  # pytest's own
+            return
+        case ast.Assign() | ast.NamedExpr():
+            yield node.value
+        case ast.AnnAssign() | ast.Return() | ast.Yield():
+            if node.value is not None:
+                yield node.value
+        case ast.Lambda():
+            yield node.body
+        case ast.arguments():
+            yield from (*node.defaults, *(one for one in node.kw_defaults if one is not None))
+        case ast.Dict() | ast.BoolOp():
+            yield from node.values
+        case ast.List() | ast.Tuple() | ast.Set():
+            yield from node.elts
+        case ast.IfExp() if hasattr(node, _PLACE):
+            yield from (node.body, node.orelse)
+
+
+#: the built-in name of the list
+CALLS = "__mutabot_calls__"
+_WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
+#: of all sites of this process: text that was loaded before is asked as before
+_entries: list[Any] = []
+#: the most arguments that Python gives a method without binding it first
+_MOST_OF_METHOD = 30
+
+
+@dataclass(slots=True, eq=False)
+class CallSite:
+    """A call in the text, or a place where something is handed on.
+
+    Attributes:
+        path: its file, as code objects name it.
+        role: whose file it is.
+        name: the last name of what is called.
+        extent: where it stands, as the interpreter tells of the running call.
+        is_awaited: whether it is awaited where it stands.
+        is_given: whether what is handed on is given to the call that stands there.
+    """
+
+    path: str
+    role: Role
+    name: str
+    extent: Extent
+    is_awaited: bool = False
+    is_given: bool = False
+
+
+class Stands(Protocol):
+    """Decides what is called at a site."""
+
+    def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """What is called in place of ``found``, which may be itself.
+
+        ``receiver`` is the object that it was read from; ``NOTHING`` where it was read from a name.
+        """
+
+
+#: the receiver of what was read from a name
+NOTHING = object()
+
+
+class CallSites:
+    """Puts the questions into files, and answers them. See ``loading.Step``.
+
+    Args:
+        names: last names of the operations.
+        role: whose file a path is.
+        stands: decides what is called.
+        sees_itself: handlers of what sees its calls itself: of that nothing is asked.
+        hands: decides what is handed on; None to leave that as it is.
+
+    Attributes:
+        loaded: files that were given questions.
+    """
+
+    def __init__(
+        self,
+        names: Collection[str],
+        role: Callable[[str], Role | None],
+        stands: Stands,
+        sees_itself: Collection[Any] = (),
+        hands: Stands | None = None,
+    ) -> None:
+        self._names = frozenset(names)
+        self._role = role
+        self._stands = stands
+        self._sees_itself = sees_itself
+        self._hands = hands
+        self.loaded: list[str] = []
+        self._numbers: dict[tuple[str, Extent, str], int] = {}
+
+    def install(self) -> None:
+        """Put questions into all files that are loaded from now on."""
+        if self._names:
+            setattr(builtins, CALLS, _entries)
+            loading.add(self)
+
+    def remove(self) -> None:
+        """Ask no more: what is called is what stands there."""
+        if self._names:
+            loading.remove(self)
+        self._names = frozenset()
+        self._stands = self._hands = lambda site, found, receiver, frame: found
+
+    def hook_pytest(self) -> None:
+        """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
+        rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
+        if rewriting is None or not self._names:
+            return
+        rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
+
+        def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
+            rewrite(tree, source, path, *rest)
+            if path is not None:
+                self.instrument(tree, path)
+
+        def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
+            return None if self.wants(str(source)) else read(source, *rest, **named)
+
+        rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
+
+    def wants(self, path: str) -> bool:
+        """Whether a file may have sites."""
+        return self._role(path) is not None
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Put questions into a file."""
+        self.instrument(tree, path)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """It is compiled without: its calls are seen by what they call."""
+
+    def instrument(self, tree: ast.Module, path: str) -> None:
+        """Put questions into the tree of a file, which pytest may have rewritten."""
+        role = self._role(path)
+        if role is None:
+            return
+        are_handed = self._hands is not None and role is Role.PROGRAM
+        writer = _Writer(self._names, partial(self._number, path, role), are_handed=are_handed)
+        writer.visit(tree)
+        if writer.written:
+            declare_global(tree, CALLS)
+            self.loaded.append(path)
+
+    def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
+        key = (path, extent_of(node), form)
+        number = self._numbers.get(key)
+        if number is None:
+            number = self._numbers[key] = len(_entries)
+            place = place_of(node) if form.startswith("handed") else node
+            site = CallSite(path, role, name, extent_of(place))
+            site.is_awaited, site.is_given = bool(getattr(node, "is_awaited", False)), place is not node
+            _entries.append(getattr(self, f"_{form}")(site))
+        return number
+
+    def _attribute(self, site: CallSite) -> Callable[[Any], Any]:
+        name, seen, frame_of = site.name, self._sees_itself, sys._getframe
+
+        def read(receiver: Any) -> Any:
+            __tracebackhide__ = True
+            found = getattr(receiver, name)
+            if type(found) in _WRAPPERS and found._self_wrapper in seen:
+                return found
+            return self._stands(site, found, receiver, frame_of(1))
+
+        return read
+
+    def _name(self, site: CallSite) -> Callable[[Any], Any]:
+        seen, frame_of = self._sees_itself, sys._getframe
+
+        def read(found: Any) -> Any:
+            if type(found) in _WRAPPERS and found._self_wrapper in seen:
+                return found
+            return self._stands(site, found, NOTHING, frame_of(1))
+
+        return read
+
+    def _pair(self, site: CallSite) -> Callable[[Any, Any], Any]:
+        seen, frame_of = self._sees_itself, sys._getframe
+
+        def read(found: Any, receiver: Any) -> Any:
+            if type(found) in _WRAPPERS and found._self_wrapper in seen:
+                return found
+            return self._stands(site, found, receiver, frame_of(1))
+
+        return read
+
+    def _handed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
+        name, frame_of = site.name, sys._getframe
+
+        def read(receiver: Any) -> Any:
+            __tracebackhide__ = True
+            found = getattr(receiver, name)
+            hands = self._hands
+            return found if hands is None else hands(site, found, receiver, frame_of(1))
+
+        return read
+
+    def _handed_name(self, site: CallSite) -> Callable[[Any], Any]:
+        frame_of = sys._getframe
+
+        def read(found: Any) -> Any:
+            hands = self._hands
+            return found if hands is None else hands(site, found, NOTHING, frame_of(1))
+
+        return read
+
+    def _handed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
+        frame_of = sys._getframe
+        sites = {name: replace(site, name=name) for name in self._names}
+
+        def read(function: Any) -> Any:
+            is_ours = function is getattr and self._hands is not None
+            return partial(self._got, sites, frame_of(1)) if is_ours else function
+
+        return read
+
+    def _got(
+        self, sites: dict[str, CallSite], frame: FrameType, /, receiver: Any, name: str, *default: Any
+    ) -> Any:
+        __tracebackhide__ = True
+        found = getattr(receiver, name, *default)
+        if self._hands is None or name not in sites:
+            return found
+        return self._hands(sites[name], found, receiver, frame)
+
+
+class _Writer(ast.NodeTransformer):
+    """Writes the questions.
+
+    What pytest has rewritten reads an attribute into a variable and calls that: ``S[17](variable, x)``, since
+    its messages show the variable.
+    """
+
+    def __init__(
+        self, names: Collection[str], number: Callable[[ast.expr, str, str], int], *, are_handed: bool
+    ) -> None:
+        self._names = names
+        self._number = number
+        self._are_handed = are_handed
+        self._read: dict[str, ast.expr] = {}
+        self.written = False
+
+    def visit(self, node: ast.AST) -> Any:
+        if isinstance(node, Function) and is_translated(node):
+            return node
+        if self._are_handed:
+            note_parts(node)
+        return super().visit(node)
+
+    def visit_Await(self, node: ast.Await) -> ast.AST:  # the name that ast looks for
+        if isinstance(node.value, ast.Call):
+            node.value.is_awaited = True  # type: ignore[attr-defined]
+        return self.generic_visit(node)
+
+    def visit_Assign(self, node: ast.Assign) -> ast.AST:  # as above
+        self.generic_visit(node)
+        target = node.targets[0]
+        if isinstance(target, ast.Name) and target.id.startswith("@py_"):
+            self._read[target.id] = node.value
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:  # as above
+        function = node.func
+        self.generic_visit(node)
+        read = self._read.get(function.id, function) if isinstance(function, ast.Name) else function
+        if is_ours(read):
+            return node
+        if isinstance(read, ast.Attribute) and read.attr in self._names:
+            if read is function:
+                _as_compiled(node, read)
+                node.func = self._question(self._number(node, read.attr, "attribute"), function, [read.value])
+            else:
+                given = [function, copy.deepcopy(read.value)]
+                node.func = self._question(self._number(node, read.attr, "pair"), function, given)
+        elif isinstance(read, ast.Name) and read.id == "getattr" and self._are_handed:
+            node.func = self._question(self._number(node, "", "handed_by_name"), function, [function])
+        elif isinstance(read, ast.Name) and read.id in self._names:
+            node.func = self._question(self._number(node, read.id, "name"), function, [function])
+        return node
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
+        self.generic_visit(node)
+        if is_handed_on(node) and node.attr in self._names and not is_ours(node):
+            number = self._number(node, node.attr, "handed_attribute")
+            return self._question(number, node, [node.value])
+        return node
+
+    def visit_Name(self, node: ast.Name) -> ast.AST:  # as above
+        if is_handed_on(node) and node.id in self._names:
+            return self._question(self._number(node, node.id, "handed_name"), node, [node])
+        return node
+
+    def _question(self, number: int, function: ast.expr, given: list[ast.expr]) -> ast.expr:
+        self.written = True
+        entry = ast.Subscript(ast.Name(CALLS, ast.Load()), ast.Constant(number), ast.Load())
+        for part in ast.walk(entry):
+            if isinstance(part, ast.expr):
+                ast.copy_location(part, given[0])
+        return ast.copy_location(ast.Call(entry, given, []), function)
+
+
+def _as_compiled(node: ast.Call, function: ast.Attribute) -> None:
+    """Move a call, and the attribute it calls, to where the compiler says that they stand.
+
+    In a chain over several lines that is from the attribute's name on; for the call only where its method is
+    not bound first.
+    """
+    if (
+        function.end_lineno is None
+        or function.end_col_offset is None
+        or function.lineno == function.end_lineno
+    ):
+        return
+    start = max(function.end_col_offset - len(function.attr), 0)
+    is_method = len(node.args) + len(node.keywords) + bool(node.keywords) < _MOST_OF_METHOD
+    is_plain = not any(isinstance(one, ast.Starred) for one in node.args)
+    if is_method and is_plain and all(one.arg is not None for one in node.keywords):
+        node.lineno, node.col_offset = function.end_lineno, start
+    function.lineno, function.col_offset = function.end_lineno, start

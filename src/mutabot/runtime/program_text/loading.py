@@ -1,0 +1,177 @@
+"""How source files are compiled while they are imported: whatever changes them takes its turn here.
+
+Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
+``importlib``, ``runpy.run_module``. That is the one place that is patched; loader, spec and module stay what
+they are without it. Files that are run without being imported come here by way of ``scripts``. Of a file that
+a step wants, no compiled form is read or written.
+
+Program files that are run rather than imported: as the script of a process, or by ``runpy.run_path``.
+
+Python compiles these without asking a loader. The script of a process it runs by way of a loader if a path
+hook claims it, as it does with a zip file; what the script sees of itself is then put right before its first
+statement. ``runpy`` compiles in one function, which is patched.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import runpy
+import sys
+import warnings
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec, SourceFileLoader
+from importlib.util import spec_from_file_location
+from types import CodeType, ModuleType
+from typing import Any, Protocol
+
+
+class Step(Protocol):
+    """Something that changes source files on their way."""
+
+    def wants(self, path: str) -> bool:
+        """Whether it has anything to do with a file."""
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Change the tree of a file that it wants, in place.
+
+        Raises RecursionError, SyntaxError or ValueError if it cannot.
+        """
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A file that it was to change is compiled without it; it may raise the error instead."""
+
+
+#: in the order of their turns
+_steps: list[Step] = []
+_original = SourceFileLoader.get_code
+
+
+def add(step: Step) -> None:
+    """Let a step take the last turn at all files that are imported from now on."""
+    _steps.append(step)
+    # get_code is inherited; it is put where the inherited one is found last
+    SourceFileLoader.get_code = _get_code  # type: ignore[method-assign, assignment]
+
+
+def remove(step: Step) -> None:
+    """Import without a step from now on."""
+    _steps.remove(step)
+    if not _steps and "get_code" in vars(SourceFileLoader):
+        del SourceFileLoader.get_code
+
+
+def is_wanted(path: str) -> bool:
+    """Whether any step has anything to do with a file."""
+    return any(step.wants(path) for step in _steps)
+
+
+def compile_tree(tree: ast.Module, path: str) -> CodeType:
+    """The code of a changed file. Raises what ``compile`` raises."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SyntaxWarning)  # what was put in may look as if it were a slip
+        return compile(tree, path, "exec", dont_inherit=True)
+
+
+def _get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
+    path = self.get_filename(fullname)
+    steps = [step for step in _steps if step.wants(path)]
+    while steps:
+        source = self.get_data(path)
+        try:
+            tree = ast.parse(source, path)
+            for step in steps:
+                step.change(tree, source, path)
+            return compile_tree(tree, path)
+        except (RecursionError, SyntaxError, ValueError) as error:
+            steps.pop(0).give_up(path, error)
+    return _original(self, fullname)
+
+
+def hook_runpy() -> None:
+    """Let ``runpy`` compile files that it runs as files are compiled that are imported."""
+    module: Any = runpy
+    original = module._get_code_from_file
+    if getattr(original, "is_of_mutabot", False):
+        return
+
+    def code_of(*arguments: Any) -> Any:  # the name of the module came before the file in older versions
+        path = os.path.abspath(os.fspath(arguments[-1]))
+        if not is_wanted(path):
+            return original(*arguments)
+        code = SourceFileLoader("__main__", path).get_code("__main__")
+        return (code, arguments[-1]) if len(arguments) > 1 else code
+
+    code_of.is_of_mutabot = True  # type: ignore[attr-defined]
+    module._get_code_from_file = code_of
+
+
+def hook_script() -> None:
+    """If the script that this process is about to run is wanted, let it be compiled as modules are.
+
+    To be called before Python looks for the script: while it is still setting itself up.
+    """
+    script = getattr(sys, "argv", [""])[0]
+    if script in ("", "-c", "-m") or not is_wanted(os.path.abspath(script)):
+        return
+    path = os.path.abspath(script)
+    add(_AsScript(path))
+
+    def claim(entry: str) -> _Importer:
+        if entry not in (script, path):  # as it was given, or as newer versions complete it
+            raise ImportError(entry)
+        return _Importer(path)
+
+    sys.path_hooks.insert(0, claim)
+    for entry in (script, path):
+        sys.path_importer_cache.pop(entry, None)
+
+
+class _Importer:
+    """Finds one module: the script."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:
+        """The script, if it is asked for."""
+        if name != "__main__":
+            return None
+        if sys.path and os.path.abspath(sys.path[0]) == self._path:  # where a script has its own folder
+            sys.path[0] = os.path.dirname(os.path.realpath(self._path))
+        return spec_from_file_location(name, self._path, loader=SourceFileLoader(name, self._path))
+
+
+class _AsScript:
+    """Lets a script see itself as one: not as a module that was found somewhere. See ``loading.Step``."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def wants(self, path: str) -> bool:
+        """Only that script."""
+        return path == self._path
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Forget its spec before its first statement."""
+        forget = ast.parse("__spec__ = __package__ = __cached__ = None").body
+        for node in ast.walk(forget[0]):
+            if isinstance(node, ast.expr | ast.stmt):
+                node.lineno = node.end_lineno = 1
+                node.col_offset = node.end_col_offset = 0
+        tree.body[_beginning(tree.body) : _beginning(tree.body)] = forget
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """It runs as a module that was found."""
+
+
+def _beginning(body: Sequence[ast.stmt]) -> int:
+    """Where the first statement may stand: behind the docstring and what must come first."""
+    count = 0
+    for number, statement in enumerate(body):
+        is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+        is_future = isinstance(statement, ast.ImportFrom) and statement.module == "__future__"
+        if not (is_future or (is_text and number == 0)):
+            break
+        count += 1
+    return count

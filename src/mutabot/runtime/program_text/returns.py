@@ -1,0 +1,203 @@
+"""What the program returns to its tests: its functions are compiled with a note at their ends.
+
+``return E`` becomes ``return __mutabot_returned__(E)``, and what a function raises passes a note on its way
+out: no function stands around another, so recursion, tracebacks and identities stay what they are. Only
+functions of modules and their classes are looked at; generators, and what a compiler of its own translates,
+are left alone.
+
+A value counts where it leaves the program: the nearest frame of the project around the function is not one of
+the program's files, but a test, a fixture or one of their helpers.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any, TypeVar
+
+from mutabot.model import Role
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.observation.probes import plain, text_of_error
+from mutabot.runtime.program_text import loading
+
+RETURNED, RAISED = "__mutabot_returned__", "__mutabot_raised__"
+#: values per test that are noted
+LIMIT = 1000
+#: words in decorators of functions that are not run as Python
+_TRANSLATED = ("jit", "vectorize", "kernel", "cfunc", "stencil")
+_LIBRARIES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+_Node = TypeVar("_Node", bound=ast.AST)
+
+
+class Returns:
+    """The notes of one process.
+
+    Attributes:
+        entries: of the running test: name of the function and what it returned (``[value]``) or raised
+            (``{"raised": text}``).
+        prepared: how many of them are from before the test itself began: from its fixtures.
+        truncated: whether there were more.
+    """
+
+    def __init__(self, locator: Locator) -> None:
+        self.entries: list[tuple[str, Any]] = []
+        self.prepared = 0
+        self.truncated = False
+        self.is_on = False
+        self._locator = locator
+        self._own: set[str] = set()
+        self._others: dict[str, bool] = {}
+
+    def install(self) -> None:
+        """Compile program files with notes from now on."""
+        setattr(builtins, RETURNED, self._returned)
+        setattr(builtins, RAISED, self._raised)
+        loading.add(self)
+
+    def remove(self) -> None:
+        """Compile program files without notes from now on."""
+        loading.remove(self)
+
+    def is_program(self, path: str) -> bool:
+        """Whether a file is one of the program's."""
+        if path.startswith(sys.base_prefix) or any(part in path for part in _LIBRARIES):
+            return False
+        return self._locator.role(path) is Role.PROGRAM
+
+    def wants(self, path: str) -> bool:
+        """Whether a file gets notes."""
+        return self.is_program(path)
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Put notes into the functions of a program file."""
+        for function in _functions(tree):
+            if not _is_generator(function) and not is_translated(function):
+                _add_notes(function)
+        self._own.add(path)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A program file is compiled without notes: its import will say, or it is nested too deeply."""
+        self._own.discard(path)
+
+    def start(self) -> None:
+        """A test begins, before its fixtures."""
+        self.entries, self.prepared, self.truncated, self.is_on = [], 0, False, True
+
+    def begin_call(self) -> None:
+        """Its fixtures are set up."""
+        self.prepared = len(self.entries)
+
+    @contextmanager
+    def pause(self) -> Iterator[None]:
+        """Note nothing for the moment."""
+        was, self.is_on = self.is_on, False
+        try:
+            yield
+        finally:
+            self.is_on = was
+
+    def stop(self) -> None:
+        """What comes now is no more part of the test."""
+        self.is_on = False
+
+    def _returned(self, value: Any) -> Any:
+        if self.is_on:
+            function = sys._getframe(1)
+            around = function.f_back
+            if around is not None and around.f_code.co_filename not in self._own and self._leaves(around):
+                self._note(function, lambda: [plain(value)])
+        return value
+
+    def _raised(self) -> None:
+        if self.is_on:
+            function, error = sys._getframe(1), sys.exc_info()[1]
+            around = function.f_back
+            if isinstance(error, Exception) and around is not None and self._leaves(around):
+                self._note(function, lambda: {"raised": text_of_error(error)})
+
+    def _note(self, function: FrameType, value: Callable[[], Any]) -> None:
+        if len(self.entries) >= LIMIT:
+            self.truncated = True
+            return
+        try:
+            self.entries.append((function.f_code.co_qualname, value()))
+        except Exception as error:  # objects of the user's may fail to show what is in them
+            self.entries.append((function.f_code.co_qualname, [{"opaque": type(error).__name__}]))
+
+    def _leaves(self, frame: FrameType | None) -> bool:
+        """Whether the nearest frame of the project is one of the tests'."""
+        while frame is not None:
+            name = frame.f_code.co_filename
+            if name in self._own:
+                return False
+            is_test = self._others.get(name)
+            if is_test is None:
+                is_test = self._others[name] = self._is_test(name)
+            if is_test:
+                return True
+            frame = frame.f_back
+        return False
+
+    def _is_test(self, name: str) -> bool:
+        if name.startswith("<") or any(part in name for part in _LIBRARIES):
+            return False
+        return not self._locator.relative(name).startswith("..") and not self.is_program(name)
+
+
+def _functions(tree: ast.Module) -> Iterator[Function]:
+    """Functions of a module and methods of its classes, not what is defined within functions."""
+    stack: list[ast.AST] = [tree]
+    while stack:
+        for node in ast.iter_child_nodes(stack.pop()):
+            if isinstance(node, Function):
+                yield node
+            elif isinstance(node, ast.stmt | ast.ExceptHandler | ast.match_case):
+                stack.append(node)
+
+
+def _own_nodes(function: Function) -> Iterator[ast.AST]:
+    """What belongs to a function and to none within it."""
+    stack: list[ast.AST] = [*function.body]
+    while stack:
+        node = stack.pop()
+        yield node
+        if not isinstance(node, Function | ast.Lambda | ast.ClassDef):
+            stack.extend(ast.iter_child_nodes(node))
+
+
+def _is_generator(function: Function) -> bool:
+    return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in _own_nodes(function))
+
+
+def is_translated(function: Function) -> bool:
+    """Whether a decorator may translate its bytecode, in which notes would have no meaning."""
+    names = [ast.unparse(decorator).lower() for decorator in function.decorator_list]
+    return any(word in name for name in names for word in _TRANSLATED)
+
+
+def _add_notes(function: Function) -> None:
+    for node in _own_nodes(function):
+        if isinstance(node, ast.Return) and node.value is not None:
+            note = ast.Call(ast.Name(RETURNED, ast.Load()), [node.value], [])
+            node.value = _at(note, node)
+    has_text = ast.get_docstring(function, clean=False) is not None
+    head, body = function.body[:has_text], function.body[has_text:]
+    if body:
+        tells = ast.Expr(ast.Call(ast.Name(RAISED, ast.Load()), [], []))
+        handler = ast.ExceptHandler(None, None, [tells, ast.Raise()])
+        function.body = [*head, _at(ast.Try(body, [handler], [], []), body[0])]
+
+
+def _at(made: _Node, place: ast.expr | ast.stmt) -> _Node:
+    """New nodes at the position of what they stand for."""
+    for node in ast.walk(made):
+        if isinstance(node, ast.expr | ast.stmt | ast.ExceptHandler) and not hasattr(node, "lineno"):
+            ast.copy_location(node, place)
+    return made

@@ -1,0 +1,438 @@
+"""What stands at a call in the text: an operation, something in its place, or something of the same name.
+
+People who test hardware code put mocks, fakes and patched classes in the place of the robot. A person who
+edits the text changes what these are told; so does a mutant. Hence a call is seen at its site wherever what
+is called is not the operation itself, which sees its calls (``targets``). In the place of an operation stands
+
+1. an attribute of its name, of an object of the operation's class, or of what stands in for that class;
+2. what the operation's name means now, or a name of a module that meant it when the module was loaded;
+3. a mock of it: by what it is made of, or by its name alone if only one operation has that name;
+4. at the site of a mutant of this session, whatever has the name.
+
+What the program defines itself is program: the calls in it are seen.
+
+What stood in for the robot in the tests, and which calls of an operation's name were left alone.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from types import BuiltinMethodType, FrameType, FunctionType, MethodType, ModuleType
+from typing import Any
+
+import wrapt
+
+from mutabot.languages.python import function_of
+from mutabot.model import ANY, Operation, Role, Span
+from mutabot.model.path import class_name
+from mutabot.model.signature import signature_of
+from mutabot.runtime.interception.adapter import Door
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
+from mutabot.runtime.targets.callables import Callables
+from mutabot.runtime.targets.target import Finding, Handler, Where, named_class
+
+#: calls that are listed in one sentence
+_MOST = 5
+
+
+@dataclass(slots=True)
+class StandIns:
+    """What stood at sites, for who checks a vocabulary.
+
+    Args:
+        test: tells the running test.
+        relative: tells a path below the root.
+    """
+
+    test: Callable[[], str]
+    relative: Callable[[str], str]
+    _standing: dict[str, dict[str, set[str]]] = field(default_factory=dict)
+    _alone: dict[str, dict[str, str]] = field(default_factory=dict)
+    _sites: set[CallSite] = field(default_factory=set)
+    _elsewhere: dict[str, set[str]] = field(default_factory=dict)
+
+    def note(self, site: CallSite, operation: Operation | None, found: Any, receiver: Any) -> None:
+        """This was called at a site, as this operation or as none."""
+        what = _shown(found, receiver)
+        if operation is not None:
+            self._sites.add(site)
+            self._standing.setdefault(operation.target, {}).setdefault(what, set()).add(self.test())
+        elif site.role is Role.PROGRAM and site not in self._sites:
+            place = f"{self.relative(site.path)}:{site.extent[0]}"
+            self._alone.setdefault(site.name, {})[place] = what
+
+    def note_elsewhere(self, operation: Operation, place: tuple[Span, Role] | None) -> None:
+        """This was called where a frame may tell the place, or nothing does."""
+        if place is None:
+            self._elsewhere.setdefault(operation.target, set()).add(self.test())
+
+    def findings(self, operations: Iterable[Operation]) -> Iterator[tuple[Operation, Finding]]:
+        """What is to be said about these operations."""
+        for operation in operations:
+            said = list(self._said(operation))
+            if said:
+                yield operation, Finding("call", "; ".join(said), is_remark=True)
+            alone = self._alone.pop(last_name(operation), {})
+            if alone:
+                listed = ", ".join(f"{place} ({what})" for place, what in list(alone.items())[:_MOST])
+                more = f" and {len(alone) - _MOST} more" if len(alone) > _MOST else ""
+                text = f"{_calls(len(alone))} of this name left alone, since nothing says that it is meant"
+                advice = f'if it is, write method = "{last_name(operation)}"'
+                yield operation, Finding("method", f"{text}: {listed}{more}; {advice}", is_remark=True)
+
+    def _said(self, operation: Operation) -> Iterator[str]:
+        """What stood for an operation, and what nobody can place."""
+        stood = self._standing.get(operation.target, {})
+        if stood and not operation.target.startswith(ANY):
+            yield "in its place stands " + ", ".join(
+                f"{what} in {_tests(len(tests))}" for what, tests in stood.items()
+            )
+        elsewhere = self._elsewhere.get(operation.target)
+        if elsewhere:
+            which = _tests(len(elsewhere))
+            yield f"handed on in several places and called in a thread in {which}: such calls are not mutated"
+
+
+def last_name(operation: Operation) -> str:
+    """What a call of an operation ends with."""
+    return operation.qualname.rpartition(".")[2]
+
+
+def is_mock(mock: Any, value: Any) -> bool:
+    """Whether a value is a mock, whatever it says that it is."""
+    return issubclass(type(value), mock.NonCallableMock)
+
+
+def _shown(found: Any, receiver: Any) -> str:
+    mock = sys.modules.get("unittest.mock")
+    if mock is not None and (is_mock(mock, found) or is_mock(mock, receiver)):
+        return "a mock"
+    if receiver is NOTHING or isinstance(receiver, ModuleType):
+        return str(getattr(type(found), "__name__", ""))
+    return class_name(receiver if isinstance(receiver, type) else type(receiver))
+
+
+def _tests(count: int) -> str:
+    return "1 test" if count == 1 else f"{count} tests"
+
+
+def _calls(count: int) -> str:
+    return "1 call" if count == 1 else f"{count} calls"
+
+
+#: names in modules, and what they meant
+_Guards = tuple[tuple[dict[str, Any], str, Any], ...]
+#: what stands around callables that see their calls themselves
+WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
+
+
+@dataclass(slots=True)
+class Candidate:
+    """An operation that a name may mean.
+
+    Attributes:
+        operation: the operation.
+        handler: what its calls go through.
+        door: reads its calls.
+    """
+
+    operation: Operation
+    handler: Handler
+    door: Door
+    is_told: bool = False
+
+
+@dataclass(slots=True)
+class Standing:
+    """Decides what is called at the sites of one process.
+
+    Args:
+        candidates: the operations that can be called.
+        callables: where they were found.
+        locator: whose file is whose.
+        sees_itself: handlers of what sees its calls itself.
+
+    Attributes:
+        known: operations by the sites of this session's mutants.
+        noted: what is to be told of it; None if nobody asks.
+        stood: operations that stood at sites which something was left alone at, or could be.
+        alone: where something was left alone.
+    """
+
+    candidates: Iterable[Candidate]
+    callables: Callables
+    locator: Locator
+    sees_itself: Collection[Handler]
+    known: Mapping[Span, str] = field(default_factory=dict)
+    noted: StandIns | None = None
+    stood: dict[Span, str] = field(default_factory=dict)
+    alone: set[Span] = field(default_factory=set)
+    _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
+    _left_alone: dict[tuple[CallSite, type, Any], _Guards] = field(default_factory=dict)
+    _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
+    _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for one in self.candidates:
+            self._by_name.setdefault(last_name(one.operation), []).append(one)
+
+    def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """What is called at a site: ``found``, or what makes the same call as one of an operation."""
+        kind = type(found)
+        own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
+        key = (site, type(receiver), own)
+        guards = self._left_alone.get(key)
+        if guards is not None:
+            for names, name, value in guards:
+                if names.get(name) is not value:
+                    break
+            else:
+                return found
+        one = self.candidate(site, found, receiver, frame)
+        if self.noted is not None:
+            operation = one.operation if one is not None else None
+            self.noted.note(site, operation, found, receiver)
+        if one is None:
+            if _is_told_by_type(found, receiver):
+                self._left_alone[key] = self._guards(site, frame)
+            return found
+        where = Where(
+            site=self.place(site, frame), receiver=None if receiver is NOTHING else receiver,
+            is_awaited=site.is_awaited, frame=frame,
+        )  # fmt: skip
+        return partial(self.call, one, where, found, receiver)
+
+    def _guards(self, site: CallSite, frame: FrameType) -> _Guards:
+        """What must be as it is for the same to be left alone: all that names an operation, or its class."""
+        here = frame.f_globals
+        named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
+        for one in self._by_name[site.name]:
+            module, _, qualname = one.operation.target.partition(":")
+            names, first = vars(sys.modules.get(module, sys)), qualname.partition(".")[0]
+            named[id(names), first] = (names, first, names.get(first))
+        return tuple(named.values())
+
+    def note_modules(self, paths: Collection[str]) -> None:
+        """Note which names of the modules of these files mean operations: they were loaded just now."""
+        for module in list(sys.modules.values()):
+            if isinstance(module, ModuleType) and getattr(module, "__file__", None) in paths:
+                self._names_of(vars(module))
+
+    def call(
+        self, one: Candidate, where: Where, found: Any, receiver: Any, /, *args: Any, **kwargs: Any
+    ) -> Any:
+        """Make a call as one of an operation."""
+        __tracebackhide__ = True
+        if not one.is_told:
+            one.is_told = True
+            self._tell_signature(one)
+        owner = self._owner(one)
+        is_method = owner is not None or one.operation.target.startswith(ANY)
+        instance = receiver if is_method and receiver is not NOTHING else None
+        if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
+            instance, found, args = args[0], partial(found, args[0]), args[1:]
+        return one.handler(found, instance, args, kwargs, where)
+
+    def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
+        """Where a site stands."""
+        place = self._places.get(id(site))
+        if place is None:
+            span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
+            place = self._places[id(site)] = (span, site.role)
+        return place
+
+    @property
+    def names(self) -> Collection[str]:
+        """Last names of the operations."""
+        return self._by_name
+
+    def is_of_project(self, frame: FrameType) -> bool:
+        """Whether code of the program or of the oracle runs in a frame."""
+        return self.locator.role(frame.f_code.co_filename) is not None
+
+    def candidate_of(self, handler: Handler) -> Candidate | None:
+        """The operation that this handler stands around."""
+        return next((one for ones in self._by_name.values() for one in ones if one.handler is handler), None)
+
+    def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+        """The operation that stands at a site, if it does not see its calls itself."""
+        if self._sees_itself(found):
+            return None
+        one = self.named(site.name, found, receiver, frame)
+        if one is None and self.known:
+            target = self.known.get(self.place(site, frame)[0])
+            one = next((one for one in self._by_name[site.name] if one.operation.target == target), None)
+        if one is None:
+            self.alone.add(self.place(site, frame)[0])
+        else:
+            self.stood[self.place(site, frame)[0]] = one.operation.target
+        return one
+
+    def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+        """The operation of this name in whose place something stands."""
+        ones = [one for one in self._by_name[name] if not self._is_read(one)]
+        for find in (self._of_class, self._of_name, self._of_mock, self._of_any):
+            one = find(ones, found, receiver, frame)
+            if one is not None:
+                return one
+        return None
+
+    def _is_read(self, one: Candidate) -> bool:
+        """Whether an operation is an attribute, which nobody calls."""
+        return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
+
+    def _sees_itself(self, found: Any) -> bool:
+        seen = self.sees_itself
+        return any(type(one) in WRAPPERS and one._self_wrapper in seen for one in _layers(found))
+
+    def _of_class(
+        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
+    ) -> Candidate | None:
+        if receiver is NOTHING and isinstance(found, MethodType):
+            receiver = found.__self__
+        if receiver is NOTHING or self._is_of_program(found):
+            return None
+        fitting = []
+        for one in ones:
+            owner = self._owner(one)
+            if owner is not None and any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame)):
+                fitting.append((len(owner.__mro__), one))
+        return max(fitting, key=lambda pair: pair[0])[1] if fitting else None
+
+    def _kinds(self, one: Candidate, owner: type, frame: FrameType) -> Iterator[Any]:
+        """The operation's class, and what was put in its place."""
+        yield owner
+        yield named_class(one.operation.target.rpartition(".")[0])
+        for name, meant in self._names_of(frame.f_globals).items():
+            if meant is owner:
+                yield frame.f_globals.get(name)
+
+    def _of_name(
+        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
+    ) -> Candidate | None:
+        for one in ones:
+            if self._owner(one) is None and named_class(one.operation.target) is found:
+                return one
+        if receiver is not NOTHING:
+            return None
+        for name, meant in self._names_of(frame.f_globals).items():
+            for one in ones:
+                if meant is one.handler and frame.f_globals.get(name) is found:
+                    return one
+        return None
+
+    def _of_mock(
+        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
+    ) -> Candidate | None:
+        mock = sys.modules.get("unittest.mock")
+        if mock is None:
+            return None
+        made = vars(found).get("mock") if type(found) is FunctionType else found
+        if not is_mock(mock, made):
+            return None
+        if len(ones) == 1:
+            return ones[0]
+        wrapped = vars(made).get("_mock_wraps")
+        parent = vars(made).get("_mock_parent") or vars(made).get("_mock_new_parent")
+        spec = vars(parent).get("_spec_class") if parent is not None else None
+        for one in ones:
+            owner = self._owner(one)
+            if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
+                return one
+            if wrapped is not None and any(
+                type(layer) in WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
+            ):
+                return one
+        return None
+
+    def _of_any(self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+        return next((one for one in ones if one.operation.target.startswith(ANY)), None)
+
+    def _is_of_program(self, found: Any) -> bool:
+        function = found.__func__ if isinstance(found, MethodType) else found
+        return (
+            isinstance(function, FunctionType)
+            and self.locator.role(function.__code__.co_filename) is Role.PROGRAM
+        )
+
+    def _names_of(self, names: dict[str, Any]) -> dict[str, Any]:
+        """The names of a module that meant an operation when it was seen first, or the class of one.
+
+        With the class, or the handler of the operation.
+        """
+        known = self._meant.get(id(names))
+        if known is None:
+            owners = [owner for owner, _ in self.callables.owners.values()]
+            found: dict[str, Any] = {}
+            for name, value in list(names.items()):
+                if type(value) is wrapt.FunctionWrapper and value._self_wrapper in self.sees_itself:
+                    found[name] = value._self_wrapper
+                elif any(value is owner for owner in owners):
+                    found[name] = value
+            known = self._meant[id(names)] = (names, found)
+        return known[1]
+
+    def _owner(self, one: Candidate) -> type | None:
+        owner = self.callables.owners.get(one.operation.target)
+        return owner[0] if owner is not None else None
+
+    def _tell_signature(self, one: Candidate) -> None:
+        original = self.callables.found.get(one.operation.target)
+        if original is None or one.operation.signature is not None:
+            return
+        function = getattr(original, "__func__", original)
+        signature = signature_of(function)
+        owner = self._owner(one)
+        if signature is not None and owner is not None and not isinstance(original, staticmethod):
+            signature = signature.replace(parameters=list(signature.parameters.values())[1:])
+        if signature is not None:
+            one.door.use_signature(signature)
+
+
+def _is_of_objects(owner: type | None, one: Candidate) -> bool:
+    """Whether an operation is a method of objects, rather than one of their class."""
+    if owner is None:
+        return False
+    raw = inspect.getattr_static(owner, last_name(one.operation), None)
+    return not isinstance(getattr(raw, "__wrapped__", raw), classmethod | staticmethod)
+
+
+def _layers(found: Any) -> Iterator[Any]:
+    """A callable, and what it is bound to or stands around."""
+    for _ in range(9):
+        yield found
+        kind = type(found)
+        if kind is MethodType:
+            found = found.__func__
+        elif issubclass(kind, WRAPPERS) or (kind is FunctionType and "__wrapped__" in vars(found)):
+            found = found.__wrapped__
+        else:
+            return
+
+
+def _is_told_by_type(found: Any, receiver: Any) -> bool:
+    """Whether all that is called like this on objects of this type is left alone if this is."""
+    kind = type(found)
+    if kind is FunctionType:  # one that is always the same
+        return receiver is NOTHING and "<locals>" not in found.__qualname__
+    if receiver is NOTHING or isinstance(receiver, type | ModuleType):
+        return False
+    if receiver.__class__ is not type(receiver):  # it stands for something else
+        return False
+    of_python = kind is MethodType and type(found.__func__) is FunctionType
+    return (of_python or kind is BuiltinMethodType) and found.__self__ is receiver
+
+
+def _is_a(value: Any, kind: Any) -> bool:
+    """Whether a value is one of a class, or the class itself, or says so."""
+    if not isinstance(kind, type):
+        return False
+    try:
+        return isinstance(value, kind) or (isinstance(value, type) and issubclass(value, kind))
+    except Exception:  # a class of the user's may answer in any way
+        return False

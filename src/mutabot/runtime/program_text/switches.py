@@ -1,0 +1,326 @@
+"""The switches that instrumented program text looks at, and what happens when one is on.
+
+The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
+else E``. ``__mutabot__`` is a plain list with False at places that are off, so these cost one look-up. It is
+a built-in name: modules keep the names they have.
+
+Kinds of values: what an operator needs to know to keep to the right type.
+"""
+
+from __future__ import annotations
+
+import builtins
+import enum
+import numbers
+import sys
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from types import BuiltinFunctionType, CodeType, FrameType, FunctionType, MethodType, ModuleType
+from typing import Any, NoReturn
+
+from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice
+from mutabot.model.path import class_name
+from mutabot.runtime.observation.probes import opaque
+from mutabot.runtime.program_text.foresee import Forms, alone, locals_of, value_of
+
+
+@cache
+def error_of(name: str) -> type[Exception]:
+    """The exception that an alternative raises itself, by the name that its operator gives it."""
+    # the module is the one under which journals know them
+    return type(name, (Exception,), {"__module__": "mutabot.runtime.alternatives"})
+
+
+class Switch:
+    """A place that is on.
+
+    Attributes:
+        place: its number.
+        index: the alternative that is active there; None if the place is only watched.
+        watched: alternatives that are to be told as soon as they would change something.
+    """
+
+    __slots__ = ("_before", "_code", "_owner", "index", "place", "watched")
+
+    def __init__(self, owner: Alternatives, place: int, index: int | None, watched: frozenset[int]) -> None:
+        self._owner, self.place, self.index, self.watched = owner, place, index, watched
+        self._before: Any = _UNKNOWN
+        self._code: CodeType | None = None
+
+    def chosen(self) -> bool:
+        """Asked at every evaluation: whether an alternative stands for the original."""
+        return self._owner.reached(self, sys._getframe(1))
+
+    # what instrumented text calls around an alternative, so that one sees whether it changed anything
+
+    def was(self, value: Any) -> Any:
+        """The original's value, which the alternative goes on with."""
+        self._before = value
+        return value
+
+    def became(self, value: Any, original: str = "") -> Any:
+        """The alternative's value; ``original`` is the original as text if computing it has no effect."""
+        before, self._before = self._before, _UNKNOWN
+        if before is _UNKNOWN:
+            frame = sys._getframe(1)
+            before = self._value_of(original, frame) if original else self._owner.foreseen(self.place, frame)
+        self._owner.note(self.place, before, value)
+        return value
+
+    def _value_of(self, original: str, frame: FrameType) -> Any:
+        try:
+            if self._code is None:
+                self._code = compile(original, "<original>", "eval")
+            return eval(self._code, frame.f_globals, locals_of(frame))
+        except Exception:  # what the original would have raised; the alternative did not
+            return _UNKNOWN
+
+
+_UNKNOWN = object()
+#: items of a list or tuple that is shown
+_SHOWN = 12
+#: evaluations of a place in one test after which it is no longer looked ahead: that takes its time
+_LOOKS = 1000
+
+
+class Alternatives:
+    """All places of the program, and which of their alternatives is active.
+
+    Attributes:
+        active: index of the active alternative by place; more than one for mutants of higher order.
+        hits: evaluations of each place that was on.
+        idle: evaluations of each active place at which the alternative had the value of the original; of a
+            watched place, those at which all alternatives that are still watched had it.
+        examples: value of the original and of the alternative when they first differed, by place; of what
+            is no plain value, its type.
+        on_place: told the number of a watched place, and which of its watched alternatives are about to
+            differ for the first time from what stands there, or may be, those of one value together; it may
+            activate one of them, which then stands there at once.
+        forms: gives a place as trees that can be looked ahead of; None for statements.
+        on_first: told the number of a place that is on when it is first evaluated since ``start``.
+        on_act: told the number of an active place when its alternative is known to change something, or
+            may do so, for the first time since ``start``.
+        switches: what instrumented program text looks at; item 0 is this object.
+    """
+
+    def __init__(self, size: int) -> None:
+        """``size``: the largest number of a place."""
+        self.active: dict[int, int] = {}
+        self.hits: dict[int, int] = {}
+        self.idle: dict[int, int] = {}
+        self.examples: dict[int, tuple[Any, Any]] = {}
+        self._told: set[int] = set()
+        self.on_place: Callable[[int, Sequence[frozenset[int]]], None] | None = None
+        self.forms: Callable[[int], Forms | None] = lambda place: None
+        self._forms: dict[int, Forms | None] = {}
+        self.on_act: Callable[[int], None] | None = None
+        self.on_first: Callable[[int], None] | None = None
+        self.switches: list[Any] = [self, *([False] * size)]
+
+    def install(self) -> None:
+        """Let instrumented program text find its switches."""
+        setattr(builtins, RUNTIME, self.switches)
+
+    def remove(self) -> None:
+        """Switch everything off; program text that is already instrumented goes on as the original."""
+        self.active = {}
+        self._set({})
+
+    def start(self) -> None:
+        """A new test begins: count anew."""
+        for counts in (self.hits, self.idle, self.examples, self._told):
+            counts.clear()
+
+    def acted(self, place: int) -> int:
+        """Evaluations at which the active alternative changed something, or raised."""
+        return self.hits.get(place, 0) - self.idle.get(place, 0)
+
+    def note(self, place: int, before: Any, after: Any) -> None:
+        """An alternative has its value; compare it with the original's, where that is known."""
+        if before is not _UNKNOWN and _is_same(before, after):
+            self.idle[place] = self.idle.get(place, 0) + 1
+            return
+        if before is not _UNKNOWN and place not in self.examples:
+            self.examples[place] = (_plain(before), _plain(after))
+        self.tell(place)
+
+    def tell(self, place: int) -> None:
+        """An alternative changed something, or may have."""
+        if place not in self._told:
+            self._told.add(place)
+            if self.on_act is not None:
+                self.on_act(place)
+
+    def activate(self, *choices: Choice) -> None:
+        """Make these alternatives, and no others, stand for the original."""
+        watched = self.watched
+        self.active = {choice.place: choice.index for choice in choices}
+        self._set(watched)
+
+    def watch(self, live: Mapping[int, frozenset[int]]) -> None:
+        """Tell each of these alternatives, by place, when it is about to change something, and no other.
+
+        What cannot be foreseen is told when it is reached; negative indexes always are.
+        """
+        self._set(live)
+
+    @property
+    def watched(self) -> dict[int, frozenset[int]]:
+        """Alternatives that are yet to be told, by place."""
+        return {switch.place: switch.watched for switch in self.switches[1:] if switch and switch.watched}
+
+    def reached(self, switch: Switch, frame: FrameType) -> bool:
+        """A place that is on is evaluated; whether an alternative stands for it."""
+        place = switch.place
+        hits = self.hits[place] = self.hits.get(place, 0) + 1
+        if hits == 1 and self.on_first is not None:
+            self.on_first(place)
+        if switch.watched:
+            self._look_ahead(switch, frame)
+        index = self.active.get(place)
+        if index is not None and index < 0:
+            self._control(place, index)
+            return False
+        return index is not None
+
+    def _look_ahead(self, switch: Switch, frame: FrameType) -> None:
+        place = switch.place
+        due = self._differing(switch, frame)
+        switch.watched = switch.watched.difference(*due)
+        if not switch.watched and switch.index is None:
+            self.switches[place] = False
+        if due and self.on_place is not None:
+            self.on_place(place, due)
+        if switch.watched and place not in self.active:
+            self.idle[place] = self.idle.get(place, 0) + 1
+
+    def foreseen(self, place: int, frame: FrameType) -> Any:
+        """What the original gives, if that can be known without letting anything happen."""
+        forms = self._forms_of(place)
+        try:
+            return _UNKNOWN if forms is None else value_of(forms.original, frame)
+        except (
+            Exception
+        ):  # it cannot be known; or the original would have raised this, the alternative did not
+            return _UNKNOWN
+
+    def _forms_of(self, place: int) -> Forms | None:
+        if place not in self._forms:
+            self._forms[place] = self.forms(place)
+        return self._forms[place]
+
+    def _differing(self, switch: Switch, frame: FrameType) -> list[frozenset[int]]:
+        """The watched alternatives that differ from what stands there, or may; equal ones together."""
+        place = switch.place
+        forms = self._forms_of(place)
+        unforeseeable = frozenset(index for index in switch.watched if index < 0)
+        if forms is None or self.hits[place] > _LOOKS or threading.active_count() > 1:
+            unforeseeable = switch.watched  # another thread may change what an evaluation depends on
+        elif unforeseeable != switch.watched:
+            return [
+                *alone(unforeseeable),
+                *forms.differing(switch.watched - unforeseeable, frame, self.active.get(place)),
+            ]
+        return alone(unforeseeable)
+
+    def _control(self, place: int, index: int) -> None:
+        """The controls, which every place knows: nothing happens, or it raises."""
+        if index == FATAL:
+            self.tell(place)
+            from mutabot.operators.command import FatalFault  # noqa: PLC0415  # a control, once in a campaign
+
+            raise FatalFault(f"control: place {place} fails")
+        assert index == IDENTITY
+        self.idle[place] = self.idle.get(place, 0) + 1
+
+    def _set(self, watched: Mapping[int, frozenset[int]]) -> None:
+        on = watched.keys() | self.active.keys()
+        for place in range(1, len(self.switches)):
+            self.switches[place] = (
+                Switch(self, place, self.active.get(place), watched.get(place, frozenset()))
+                if place in on
+                else False
+            )
+
+    # what templates may call (``HELPER``); none of it belongs to one operator
+
+    def fail(self, name: str, text: str) -> NoReturn:
+        """Raise an exception of this name and text."""
+        for place in self.active:
+            self.tell(place)
+        raise error_of(name)(text)
+
+    def fail_if(self, value: Any, wrong: Any, name: str, text: str) -> Any:
+        """The value itself; fails if it is the wrong one, or if one of several is."""
+        equal = value == wrong
+        if equal.any() if hasattr(equal, "any") else equal:
+            self.fail(name, text)
+        return value
+
+    def absolute(self, value: Any) -> Any:
+        """``abs``, whatever the program calls by that name."""
+        return abs(value)
+
+
+def _plain(value: Any) -> Any:
+    """The value as a report may show it: later changes, and what the object does when asked, stay away."""
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, tuple | list) and len(value) <= _SHOWN:
+        return tuple(_plain(item) for item in value)
+    return opaque(value)
+
+
+def _is_same(before: Any, after: Any) -> bool:
+    """Whether two values are the same to any program: equal, and of one type."""
+    if before is after:
+        return True
+    if type(before) is not type(after):
+        return False
+    try:
+        equal = before == after
+        return bool(equal.all()) if hasattr(equal, "all") else bool(equal)
+    except Exception:  # values that cannot be compared are told apart by nobody
+        return False
+
+
+_PLAIN: dict[type, str] = {
+    bool: "truth",
+    int: "integer",
+    float: "number",
+    complex: "number",
+    str: "text",
+    bytes: "text",
+    set: "set",
+    frozenset: "set",
+    type(None): "none",
+}
+#: what stands for something else rather than for a value
+_NO_VARIABLE = (ModuleType, FunctionType, BuiltinFunctionType, MethodType, type, type(None))
+_ARRAYS = {"b": "truth", "i": "integer", "u": "integer", "f": "number", "c": "number"}
+
+
+def kind_of(value: Any) -> str:
+    """``number``, ``integer``, ``truth``, ``text``, ``set``, ``none``, or ``module:Type``.
+
+    Looks at the type alone: what objects answer when they are asked may have effects.
+    """
+    kind = type(value)
+    plain = _PLAIN.get(kind)
+    if plain is not None:
+        return plain
+    if hasattr(kind, "dtype"):  # scalars and arrays of numpy
+        return _ARRAYS.get(getattr(value.dtype, "kind", ""), "other")
+    if issubclass(kind, enum.Flag):
+        return "flag"
+    if issubclass(kind, numbers.Integral):
+        return "integer"
+    if issubclass(kind, numbers.Number):
+        return "number"
+    return class_name(kind)
+
+
+def is_variable(value: Any) -> bool:
+    """Whether a name with this value is a variable, not a module, function or class."""
+    return not issubclass(type(value), _NO_VARIABLE)

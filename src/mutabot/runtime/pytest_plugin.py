@@ -1,0 +1,175 @@
+"""The pytest plugin: sleeps unless a job is given, and always offers seeds to tests and fixtures."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from mutabot.runtime.unrewritten import import_us_unrewritten
+
+import_us_unrewritten()  # before anything else of us is imported
+
+from mutabot.model.call import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
+from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
+from mutabot.runtime.seeds import node_id  # noqa: E402
+
+if TYPE_CHECKING:
+    from mutabot.runtime.conductor import Conductor
+    from mutabot.runtime.plain_round import PlainRound
+
+_NAME = "mutabot_seed"
+#: the fixtures that stand for it, by scope of who asks
+_SHARED = {
+    "class": "_mutabot_class_seed",
+    "module": "_mutabot_module_seed",
+    "package": "_mutabot_package_seed",
+    "session": "mutabot_round_seed",
+}
+#: pytest has no public way to say this; where it is not there, ``mutabot_round_seed`` still works
+_ASK = "_get_active_fixturedef"
+_conductor: Conductor | None = None
+_plain_round: PlainRound | None = None
+
+
+def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginManager) -> None:
+    """Before pytest loads other plug-ins: if there is a job, keep out those that it cannot do with."""
+    if JOB_VARIABLE not in os.environ:
+        return
+    if pluginmanager.is_blocked("cacheprovider"):
+        # else pytest warns of what workers are given
+        parser.addini("cache_dir", "where workers would keep what they keep between runs")
+    from mutabot.runtime.plugins import switch_off  # noqa: PLC0415  # a sleeping plugin costs nothing
+
+    switch_off(pluginmanager)
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None, Any, Any]:
+    """Before any of the user's code is imported: wake up if there is a job."""
+    global _conductor, _plain_round  # noqa: PLW0603  # pytest knows this module, not an object of ours
+    if JOB_VARIABLE in os.environ and _conductor is None:
+        # tests that start pytest themselves must not find the job again
+        job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
+        from mutabot.runtime.conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
+
+        _conductor = Conductor.from_files(job, int(pipe))
+        _conductor.running.branch.config = early_config
+    elif _conductor is None and os.environ.get(ROUND_VARIABLE):
+        from mutabot.runtime.plain_round import PlainRound  # noqa: PLC0415  # see above
+
+        _plain_round = PlainRound.from_environment()
+    try:
+        return (yield)
+    except BaseException as error:
+        if _conductor is not None:
+            _conductor.import_failed(getattr(error, "cause", error), "")
+        raise
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
+    """The session is over: leave as the interpreter does, but without taking everything apart.
+
+    In a fork that would copy all memory that it shares, which took longer than most tests.
+    """
+    status = yield
+    is_last = config.hook.pytest_cmdline_main.get_hookimpls()[-1].plugin is sys.modules[__name__]
+    if _conductor is not None and is_last and isinstance(status, int):
+        from mutabot.runtime.isolation.lifeline import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
+
+        leave(int(status))
+    return status
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Hand pytest's hooks to the conductor."""
+    _offer_at_every_scope(__name__)
+    if _conductor is not None:
+        config.pluginmanager.register(_conductor, "mutabot-conductor")
+        config.pluginmanager.register(_conductor.running, "mutabot-running")
+        config.pluginmanager.register(_conductor.running.branch.left_out, "mutabot-left-out")
+    if _plain_round is not None:
+        config.pluginmanager.register(_plain_round, "mutabot-round")
+
+
+@pytest.fixture
+def mutabot_seed(request: pytest.FixtureRequest) -> int:
+    """The seed of this test in this round: a whole number of 32 bits.
+
+    A fixture that several tests share may ask for it as well, and gets the seed of the class, module, package
+    or session that it lives as long as.
+
+    Outside a campaign it is the environment variable MUTABOT_SEED, default 0, or the test's own in the
+    round that MUTABOT_ROUND names.
+    """
+    return _seed(request)
+
+
+@pytest.fixture(scope="session")
+def mutabot_round_seed(request: pytest.FixtureRequest) -> int:
+    """The seed of this round, the same for all its tests: a whole number of 32 bits."""
+    return _seed(request)
+
+
+@pytest.fixture(scope="package")
+def _mutabot_package_seed(request: pytest.FixtureRequest) -> int:
+    return _seed(request)
+
+
+@pytest.fixture(scope="module")
+def _mutabot_module_seed(request: pytest.FixtureRequest) -> int:
+    return _seed(request)
+
+
+@pytest.fixture(scope="class")
+def _mutabot_class_seed(request: pytest.FixtureRequest) -> int:
+    return _seed(request)
+
+
+def _seed(request: pytest.FixtureRequest) -> int:
+    seeded = _conductor or _plain_round
+    if seeded is not None:
+        return seeded.seed_of(node_id(request.node))
+    return int(os.environ.get(SEED_VARIABLE, "0"))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, Any]:
+    """Fixtures shared by several tests draw from a seed of their own."""
+    seeded = _conductor or _plain_round
+    if seeded is None or fixturedef.scope == "function":
+        return (yield)
+    from mutabot.runtime.seeds import seeded_apart  # noqa: PLC0415
+
+    with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
+        return (yield)
+
+
+def _offer_at_every_scope(owner: str) -> None:
+    """Let fixtures of every scope ask for the seed. ``owner``: what defines it; others may override it.
+
+    To pytest a fixture has one scope, and one that is made anew for each test cannot be had by a fixture that
+    several tests share. A shared simulator needs a seed as well. So what a shared fixture gets by this name
+    is another fixture, of its own scope: the seed of the class, module, package or session that it lives as
+    long as.
+    """
+    ask: Any = getattr(pytest.FixtureRequest, _ASK, None)
+    if ask is None or hasattr(ask, "offers_seed"):
+        return
+
+    def asked(self: Any, argname: str) -> Any:
+        if argname == _NAME and self.scope in _SHARED and _is_defined_by(owner, self):
+            argname = _SHARED[self.scope]
+        return ask(self, argname)
+
+    asked.offers_seed = True  # type: ignore[attr-defined]  # a mark on it: several sessions may share a process
+    setattr(pytest.FixtureRequest, _ASK, asked)
+
+
+def _is_defined_by(owner: str, request: Any) -> bool:
+    definitions = request._fixturemanager.getfixturedefs(_NAME, request._pyfuncitem)
+    return bool(definitions) and getattr(definitions[-1].func, "__module__", None) == owner

@@ -1,0 +1,494 @@
+"""One session inside: the job at hand, what stands in the program for it, and its tests in turn."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+from functools import partial
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+from mutabot.model import Moment, Mutant, Operation, Probe, Role
+from mutabot.model.events import Acted, Called, Event, KnownLater, SiteSeen, TextsSeen
+from mutabot.model.job import Budget, Job
+from mutabot.model.quantity import Value
+from mutabot.runtime.event_file import Sink
+from mutabot.runtime.evidence import Evidence, Meter, together
+from mutabot.runtime.inspection import Inspection
+from mutabot.runtime.interception.active_mutant import Activation, is_refusal
+from mutabot.runtime.interception.adapter import Answers, Door, handles_of
+from mutabot.runtime.interception.dispatcher import Aside, Passing
+from mutabot.runtime.interception.refusals import Made
+from mutabot.runtime.interception.trace import Locator, Recorder
+from mutabot.runtime.observation.clock import ClockReader, ProgramTime
+from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.observation.probes import Along, Reading, Rehearsal, TestRecording, rehearse, take
+from mutabot.runtime.process_fault import ProcessFaults
+from mutabot.runtime.program_text.call_sites import CallSites
+from mutabot.runtime.program_text.handing import Handing
+from mutabot.runtime.program_text.returns import Returns
+from mutabot.runtime.program_text.session_text import SessionText
+from mutabot.runtime.program_text.standing import Candidate, Standing, StandIns, last_name
+from mutabot.runtime.seeds import derive
+from mutabot.runtime.targets.callables import Callables
+from mutabot.runtime.targets.target import Finding, Handler, Interception
+
+if TYPE_CHECKING:  # processes below the tests fork for nobody
+    from mutabot.runtime.isolation.fork_parent import Bunch, Trunk
+
+
+@dataclass(slots=True)
+class Session:
+    """The job at hand.
+
+    Attributes:
+        job: what to do.
+        pipe: where reports go.
+        locator: finds the site of a frame, and of a function that is called back.
+        recorder: traces; always kept, since survivors are compared with the original.
+        interception: what stands around the vocabulary's targets.
+        passing: the way of the program's calls.
+        inspection: what is wrong with the vocabulary.
+        branch: id of the mutant that this process was forked to be; None in all others.
+        text: the program text, if it is instrumented.
+        call_sites: calls that are seen where they are written.
+        standing: what stands there.
+        handing: sees calls of what the program hands on.
+        returns: what the program returns to its tests; None if that is not noted.
+        recording: what the world does while the test runs.
+        test: node id of the running test.
+        refused_calls: in the baseline, calls of the running test that the robot refused: see ``TestEnd``.
+        live: in the baseline, sites that returned the robot's own memory: see ``TestEnd``.
+        on_refused, on_live: told of each of them; None if nobody asks.
+        placed: faults that their providers put in place before each test.
+    """
+
+    job: Job
+    pipe: Sink
+    locator: Locator
+    recorder: Recorder = field(init=False)
+    interception: Interception = field(init=False)
+    passing: Passing = field(init=False)
+    inspection: Inspection = field(init=False)
+    placed: ProcessFaults = field(init=False)
+    recording: TestRecording = field(init=False)
+    instances: Instances = field(default_factory=Instances)
+    along: Along = field(init=False)
+    rehearsal: Rehearsal = field(default_factory=Rehearsal)
+    branch: str | None = None
+    text: SessionText | None = None
+    returns: Returns | None = None
+    call_sites: CallSites = field(init=False)
+    standing: Standing = field(init=False)
+    handing: Handing = field(init=False)
+    test: str = ""
+    refused_calls: list[tuple[int, int]] = field(default_factory=list)
+    live: set[int] = field(default_factory=set)
+    on_refused: Callable[[int, int], None] | None = None
+    on_live: Callable[[int], None] | None = None
+    _doors: list[Door] = field(default_factory=list)
+    _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
+    _telling: list[Door] = field(default_factory=list)
+    _time: ProgramTime = field(init=False)
+    _main_thread: int | None = field(default_factory=lambda: threading.main_thread().ident)
+    _sees_itself: set[Handler] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.recorder = Recorder(self._site_seen)
+        self.recording = TestRecording()
+        self.recorder.clock = self.recording.clock
+        self.along = Along(partial(self._read_probes, along=True))
+        self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
+        self.placed = ProcessFaults(self._acted)
+        self.interception = Interception(self.inspection.target_is_wrong)
+        self.passing = Passing(
+            self.locator.locate,
+            self.recorder,
+            self.instances,
+            self.along,
+            self._raised,
+            self._on_end,
+            self.locator.locate_definition,
+        )
+        self.passing.oracle_nodes = self.job.oracle_nodes
+        self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
+
+    def install(self) -> None:
+        """Put the interception of the whole vocabulary in place, and the mutant with it."""
+        self.text = SessionText.of(self.job, self.pipe, partial(self._acted, ""))
+        if self.returns is not None:
+            self.returns.install()  # after the alternatives, which are found by where they stand
+        vocabulary = self.job.vocabulary
+        candidates: list[Candidate] = []
+        for operation in vocabulary.operations:
+            overrides = partial(self._handler_of_override, operation) if operation.overrides else None
+            handler = self._handler(operation)
+            self.interception.wrap(operation, handler, overrides)
+            if operation.kind in (None, "methods"):
+                candidates.append(Candidate(operation, handler, self._doors[-1]))
+        self._see_calls(candidates)
+        self.instances.watch(probe.owner for probe in vocabulary.probes)
+        if vocabulary.wait is not None:
+            self.instances.watch([vocabulary.wait.owner])
+        if vocabulary.clock is not None:
+            clock = vocabulary.clock
+            reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
+            self.interception.of().wrap(clock.tick, reader.handler())
+        self._listen()
+        if self.job.mutant is not None:
+            self.activate(self.job.mutant)
+        if self.job.record or self.job.serving is not None:
+            self._watch_imports()
+
+    def _see_calls(self, candidates: Sequence[Candidate]) -> None:
+        """See calls where they are written, of whatever stands in the place of an operation."""
+        callables = self.interception.of()
+        assert isinstance(callables, Callables)
+        self.standing = Standing(candidates, callables, self.locator, self._sees_itself)
+        self._tell_standing()
+        names = {last_name(one.operation) for one in candidates}
+        self.handing = Handing(self.standing, self.passing.given)
+        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
+        self.call_sites.install()
+
+    def remove(self) -> None:
+        """Intercept nothing any more."""
+        self.call_sites.remove()
+        self.handing.remove()
+        self.interception.remove()
+
+    def _tell_standing(self) -> None:
+        """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
+        mutants = self.job.branching.mutants if self.job.branching is not None else ()
+        own = (self.job.mutant,) if self.job.mutant is not None else ()
+        self.standing.known = dict(self.job.known) | {
+            one.site.span: one.operation for one in (*mutants, *own)
+        }
+        if self.job.inspect:
+            self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
+
+    def _listen(self) -> None:
+        """Hear the messages that pass by, if they tell of refusals, or of where the robot is."""
+        operations = self.job.vocabulary.operations
+        asked = {name for operation in operations for name in operation.currents}
+        told = (one for operation in operations for one in operation.told_as_refused)
+        self._telling = [door for door in self._doors if door.operation.target in asked]
+        if any(refused.topic is not None for refused in told) or any(
+            door.operation.named is not None for door in self._telling
+        ):
+            self.interception.of("messages").on_heard = self._heard
+
+    def _heard(self, name: str, message: Any) -> None:
+        for activation in self.activations:
+            activation.heard(name, message)
+        self.passing.refused.heard(name, message)
+        for door in self._telling:
+            door.hear(name, message)
+
+    def _handler(self, operation: Operation) -> Handler:
+        """What stands around an operation: a door of its own, and the way that all calls go."""
+        vocabulary = self.job.vocabulary
+        readings = {name: vocabulary.operation(name) for name in operation.currents}
+        door = Door(operation, readings, partial(self.inspection.path_is_wrong, operation))
+        door.handles = handles_of(self.job.vocabulary)
+        door.lately = self._lately
+        door.time = self._time
+        self._doors.append(door)
+        handler = self.passing.handler(door)
+        self._sees_itself.add(handler)
+        return handler
+
+    def _handler_of_override(self, operation: Operation, kind: type) -> Handler:
+        """An overriding method may have a signature of its own, so it has a door of its own."""
+        return self._handler(operation)
+
+    def _watch_imports(self) -> None:
+        """What the program does while it is imported counts for every test that comes after."""
+        self.passing.meter = Meter(Budget())
+        self.recorder.answers = Answers.of(self.job.vocabulary) if self.job.mutant is None else None
+        self._start_activations()
+
+    def _end_imports(self) -> None:
+        """The first test begins."""
+        if self.meter is None or self.test:
+            return
+        for call in self.recorder.trace:
+            self.pipe.send(Called(*call))
+        for activation in self.activations:
+            activation.keep_early()
+
+    @property
+    def sites(self) -> tuple[SiteSeen, ...]:
+        """All sites that were reached so far."""
+        return tuple(self.recorder.sites)
+
+    @property
+    def activations(self) -> list[Activation]:
+        """The mutants of calls that are at work: none for the original."""
+        return self.passing.activations
+
+    @property
+    def meter(self) -> Meter | None:
+        """What the running test has used; None between tests."""
+        return self.passing.meter
+
+    @property
+    def trunk(self) -> Trunk | None:
+        """What forks a branch per mutant, while this process runs the original."""
+        return self.passing.trunk
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the mutant did in the running test."""
+        self.look_back()
+        found = [activation.evidence for activation in self.activations]
+        if self.text is not None and self.text.is_mutant:
+            found.append(self.text.evidence)
+        return together([*found, *self.placed.evidence])
+
+    def look_back(self, *, at_all: bool = False) -> None:
+        """Look whether the program has written to copies that mutants handed out; ``at_all`` of them."""
+        for activation in self.activations:
+            activation.look_back(at_all=at_all)
+
+    @property
+    def commands(self) -> int:
+        """Operations of the running test that made the robot do something."""
+        return sum(door.commands for door in self._doors)
+
+    def activate(self, mutant: Mutant) -> None:
+        """Take on a mutant. What of it is an alternative in the program text stands there already."""
+        operation = self.job.vocabulary.operation(mutant.operation)
+        if mutant.id in self.job.faults:
+            self.placed.add(mutant, self.job.faults[mutant.id])
+        elif operation is not None:
+            refusals = self._refusals(operation)
+            on_act = partial(self._acted, mutant.id)
+            made = Activation(mutant, operation, refusals, on_act, self._in_mutated_call)
+            made.time = self._time.now_if_known
+            self.passing.activate(made)
+
+    def grow(self, trunk: Trunk) -> None:
+        """Run the original from now on, and fork a branch for every mutant of the trunk's."""
+        self.passing.trunk = trunk
+        trunk.is_moment = self._is_moment
+        if self.text is not None:
+            self.text.watch(trunk.fork_at_place, trunk.places())
+
+    def become(self, bunch: Bunch) -> None:
+        """In a branch that was just forked: be its mutants."""
+        self.passing.trunk, self.branch = None, bunch.first.id
+        self.activate(bunch.first)
+        self._start_activations()
+        if self.text is not None:
+            self.text.become(bunch)
+
+    def take_on(self, job: Job, pipe: Sink) -> None:
+        """Go on with a job of the same program and vocabulary. What was installed stays."""
+        self.job, self.pipe = job, pipe
+        self.inspection.is_asked, self.passing.on_end = job.inspect, self._on_end
+        self._tell_standing()
+        if self.text is not None:
+            self.text.pipe = pipe
+
+    def start_test(self, test: str, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
+        """A test begins, before its fixtures.
+
+        ``fixtures`` tells what objects they hold; None in a process below the tests.
+        """
+        self._end_imports()
+        self.test = test
+        self._look_again()
+        self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
+        is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
+        self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
+        self.recorder.start()
+        self.instances.start(fixtures)
+        self.passing.calls.clear()
+        self.refused_calls.clear()
+        self.live.clear()
+        self.passing.on_live = self._is_live if is_baseline else None
+        self.passing.refused.on_refused = self._refused if is_baseline else None
+        self.passing.refused.start(self.job.refused.get(test, ()))
+        self.along.start(self.job.moments.get(test, 0))
+        if self.returns is not None:
+            self.returns.start()
+        for door in self._doors:
+            door.reset()
+        trunk = self.trunk
+        if self.text is not None:
+            branch = trunk.fork_at_place if trunk is not None else None
+            self.text.start_test(test, branch, trunk.places() if trunk is not None else {})
+        self._start_activations()
+        self.placed.start_test(test, self._random_of)
+        has_clock = self.job.vocabulary.clock is not None
+        self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
+
+    def _aside(self) -> Aside:
+        """What is done in this context is none of the program's doing."""
+        is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
+        return Aside(self.returns if is_main else None)
+
+    def _look_again(self) -> None:
+        """What the program has made since the last test."""
+        self.interception.look_again()
+        if self.call_sites.loaded:
+            self.standing.note_modules(frozenset(self.call_sites.loaded))
+            self.call_sites.loaded.clear()
+
+    def _seed_of(self, mutant: Mutant) -> int:
+        """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
+        return derive(self.job.seed, self.job.round, self.test, mutant.ladder or mutant.id)
+
+    def _random_of(self, mutant: Mutant) -> Random:
+        return Random(self._seed_of(mutant))
+
+    def _start_activations(self) -> None:
+        for activation in self.activations:
+            mutant = activation.mutant
+            seed = self._seed_of(mutant)
+            usual = self.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
+            activation.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
+
+    def _moment_of(self, mutant: Mutant) -> Moment | None:
+        """At which calls of the running test a mutant acts."""
+        if mutant.moment is None:
+            return None
+        seed = derive(self.job.seed, self.job.round, self.test, mutant.site.id, "moment")
+        return mutant.moment.drawn(self.job.round, self.test, seed)
+
+    def _is_moment(self, mutant: Mutant, number: int) -> bool:
+        """Whether a mutant acts at this call of its site in the running test."""
+        moment = self._moment_of(mutant)
+        return moment is None or moment.holds(number, self._time.now_if_known())
+
+    def end_test(self) -> None:
+        """The test and its fixtures are over."""
+        self.passing.meter = None
+        self.placed.end_test()
+        if self.text is not None:
+            if self.trunk is not None:
+                self.trunk.tell_undiverged(self.text.hits, self.text.early)
+            self.text.end_test()
+
+    def take_probes(self) -> Reading:
+        """Read all probes: at the end of a test, before its fixtures take the world down."""
+        self.look_back(at_all=True)
+        if self.returns is not None:
+            self.returns.stop()
+        self.along.stop()
+        self.recording.stop()
+        reading, self.rehearsal = rehearse(self._read_probes)
+        self.instances.let_go()  # what the program is done with may go
+        return reading
+
+    def _read_probes(self, *, along: bool = False) -> Reading:
+        meter, self.passing.meter = self.meter, None  # probes are no operations of the program's
+        returns = self.returns.pause() if self.returns is not None else nullcontext()
+        try:
+            with returns:
+                return take(self._probes(along=along), self.instances)
+        finally:
+            self.passing.meter = meter
+
+    def _probes(self, *, along: bool) -> tuple[Probe, ...]:
+        """The probes; along the way without those in program files, in which mutants may be waited for."""
+        probes = self.job.vocabulary.probes
+        if not along or self.returns is None:
+            return probes
+        modules = {probe: sys.modules.get(probe.target.partition(":")[0]) for probe in probes}
+        files = {probe: getattr(module, "__file__", None) or "" for probe, module in modules.items()}
+        return tuple(probe for probe in probes if not self.returns.is_program(files[probe]))
+
+    def look_ahead(self) -> None:
+        """The tests are about to begin: say what can be said about the targets that are there already."""
+        self.inspection.look_ahead(self.interception)
+
+    def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
+        """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to.
+
+        ``texts`` is what processes below the tests saw of the program text.
+        """
+        if self.trunk is not None:
+            self.trunk.finish()
+        if self.text is not None:
+            self.text.finish(texts)
+        if self.job.record and self.job.mutant is None:
+            self._tell_known_later()
+        if self.job.inspect:
+            self.inspect_targets()
+            self.inspection.tell_uncovered(self.interception)
+            if self.standing.noted is not None:
+                for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
+                    self.inspection.tell(operation.source, finding)
+
+    def _tell_known_later(self) -> None:
+        """Tell of sites at which an operation stood in some tests and something unknown in others."""
+        stood = self.standing.stood | {seen.span: seen.operation for seen in self.sites}
+        for span in sorted(self.standing.alone & stood.keys()):
+            self._send(KnownLater(span, stood[span]))
+
+    def inspect_targets(self) -> None:
+        """Look at every target of the vocabulary, also of what no test has led to."""
+        self.inspection.inspect(self.interception)
+
+    def _raised(self, error: BaseException, made: Made) -> None:
+        names = self._refusals(made.call.operation)
+        refused = self.passing.refused
+        if refused.on_refused is not None and is_refusal(error, names):
+            refused.on_refused(made)
+        if self.text is not None and not refused.has(made):
+            self.text.raised(error, made.call, names)
+
+    def _refused(self, made: Made) -> None:
+        """The robot refused a call of the original."""
+        self.refused_calls.append((self._index_of(made), made.number))
+        if self.on_refused is not None:
+            self.on_refused(*self.refused_calls[-1])
+
+    def _is_live(self, made: Made) -> None:
+        """A call of the original returned the robot's own memory."""
+        site = self._index_of(made)
+        if site not in self.live and self.on_live is not None:
+            self.on_live(site)
+        self.live.add(site)
+
+    def _index_of(self, made: Made) -> int:
+        (span, role), call = made.site, made.call
+        pattern = call.pattern.text if call.pattern is not None else None
+        seen = SiteSeen(-1, span, call.operation.target, pattern, role is Role.ORACLE)
+        return self.recorder.index_of(seen)
+
+    @property
+    def _on_end(self) -> Callable[..., None] | None:
+        return self.inspection.note if self.job.inspect else None
+
+    def _refusals(self, operation: Operation) -> frozenset[str]:
+        return frozenset((*operation.refusals, *self.job.vocabulary.refusals))
+
+    def _send(self, line: Event) -> None:
+        self.pipe.send(line)  # which is another one once a copy knows its job
+
+    def _site_seen(self, site: SiteSeen) -> None:
+        if self.branch is None:  # a branch sends its sites with its end
+            self.pipe.send(site)
+
+    def _acted(self, mutant: str) -> None:
+        """The mutant changed something; what is of the program text has no name."""
+        self.recording.note_fault(
+            len(self.recorder.trace), self.recorder.began if mutant else self.recording.clock()
+        )
+        self.pipe.send(Acted(self.test))
+
+    def _simulated(self) -> float | None:
+        return self.meter.simulated if self.meter is not None else None
+
+    def _in_mutated_call(self, began: bool) -> None:
+        self.pipe.send(Acted(self.test, began))
+
+    def _clock_is_wrong(self, key: str, text: str) -> None:
+        clock = self.job.vocabulary.clock
+        self.inspection.tell(clock.source if clock is not None else "", Finding(key, text))

@@ -1,0 +1,209 @@
+"""How a test ends, and what ended it: a check, an exception, a limit, a refusal, or a failure of the tool."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from types import FrameType
+from typing import Any
+
+import pytest
+
+from mutabot.extensions import packages
+from mutabot.frozen import frozen
+from mutabot.model import By, Role, Vocabulary
+from mutabot.model.path import class_name
+from mutabot.runtime import FOLDER
+from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.observation.compared import FILE as AROUND_COMPARISONS
+from mutabot.runtime.targets.target import is_named
+
+#: where an object lies in memory differs from run to run and says nothing
+_ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
+#: exceptions that are checks or time-outs wherever they were raised; their modules may not be loaded
+_CHECKS = ("doctest:DocTestFailure",)
+_TIMEOUTS = ("hypothesis.errors:DeadlineExceeded",)
+#: what lets the suite pass
+PASSED, SKIPPED, XFAILED, XPASSED = "passed", "skipped", "xfailed", "xpassed"
+FAILED = "failed"
+
+
+@frozen
+class Ending:
+    """Why a test failed; the fields are those of ``TestEnd`` with the same names.
+
+    ``is_syntax`` says that some text was no program.
+    """
+
+    by: By
+    phase: str
+    exception: str | None
+    message: str
+    place: str | None
+    timeout: str | None = None
+    failure: str | None = None
+    refused: str | None = None
+    is_syntax: bool = False
+
+    @property
+    def is_raised(self) -> bool:
+        """Whether an exception ended the test that is no refusal."""
+        return self.exception is not None and self.refused is None
+
+
+def classify(
+    error: BaseException,
+    phase: str,
+    test_file: str,
+    locator: Locator,
+    vocabulary: Vocabulary,
+    evidence: Evidence,
+) -> Ending:
+    """The ending that this exception means.
+
+    Of exceptions that hold others, such as exception groups, what they hold decides: a refusal if all are, a
+    check if all are that are no refusals; a time-out or a failure if one is.
+
+    Args:
+        error: what pytest caught.
+        phase: ``setup``, ``call`` or ``teardown``.
+        test_file: file of the test; its folder holds the test's own helpers.
+    """
+    found = leaves(error)
+    culprits = evidence.culprits
+    is_refused = is_due_to(error, culprits)
+    counting = [leaf for leaf in found if is_refused or not is_due_to(leaf, culprits)]
+    no_checks = [leaf for leaf in counting if not _is_check(leaf, test_file, locator, vocabulary)]
+    overdue = next((leaf for leaf in found if _is_timeout(leaf)), None)
+    shown = overdue or (no_checks or counting)[0]
+    kind = type(shown)
+    return Ending(
+        by=By.EXCEPTION if no_checks else By.CHECK,
+        phase=phase,
+        exception=class_name(kind),
+        message=_text(shown, len(found)),
+        place=_place(shown, locator),
+        timeout=_lines(shown)[0] if overdue is not None else None,
+        failure=failure_in(error, vocabulary.failures),
+        refused=evidence.refusal if is_refused else None,
+        is_syntax=all(isinstance(leaf, SyntaxError) for leaf in found),
+    )
+
+
+def is_expected_failure(report: pytest.TestReport) -> bool:
+    """Whether something failed as the test said it would."""
+    return report.skipped and hasattr(report, "wasxfail")
+
+
+def outcome_so_far(report: pytest.TestReport, before: str) -> str:
+    """The outcome of a test with one more report that is no failure.
+
+    The report of the call comes after those of its subtests and says what they come to; set-up and
+    tear-down count where they did not simply pass.
+    """
+    is_expected = hasattr(report, "wasxfail")
+    if report.skipped:
+        return XFAILED if is_expected else SKIPPED
+    if report.when == "call":
+        return XPASSED if is_expected else PASSED
+    return before
+
+
+def unexpected_pass(reason: str) -> Ending:
+    """The ending of a test that was to fail and did not; ``reason`` is pytest's text."""
+    return Ending(By.CHECK, "call", None, reason, None)
+
+
+def _text(error: BaseException, count: int) -> str:
+    """What an exception says, shortly; ``count``: how many there are in its group."""
+    lines = _lines(error)[:12]
+    if count > 1:
+        lines.append(f"(one of {count} exceptions in a group)")
+    return "\n".join(lines)[:2000]
+
+
+def _lines(error: BaseException) -> list[str]:
+    text = _mismatch(error) or str(error)
+    if isinstance(error, pytest.FixtureLookupError):
+        text = error.msg or f"fixture {error.argname!r} not found"
+    return _ADDRESS.sub("0x…", text).strip().splitlines() or [type(error).__name__]
+
+
+def _is_timeout(error: BaseException) -> bool:
+    """Whether a limit ended the test: ours, or one of the suite's own."""
+    if isinstance(error, BudgetExceeded) or is_named(error, _TIMEOUTS):
+        return True
+    return isinstance(error, pytest.fail.Exception) and any(
+        frame.f_globals.get("__name__") == "pytest_timeout" for frame, _ in _from_the_raise(error)
+    )
+
+
+def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary: Vocabulary) -> bool:
+    if is_named(error, (*_CHECKS, *vocabulary.checks)) or isinstance(error, pytest.fail.Exception):
+        return True
+    if not isinstance(error, AssertionError):
+        return False
+    # An assertion is a check if the tests made it. Code of helper libraries says nothing, so the frame
+    # nearest to the raise decides that is the tests', the program's or an operation's.
+    folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
+    for frame, _ in _from_the_raise(error):
+        filename = locator.real(frame.f_code.co_filename)
+        if filename == AROUND_COMPARISONS:
+            continue
+        if filename.startswith(FOLDER) or _is_of_a_middleware(frame):
+            return False
+        role = locator.role(filename)
+        if role is Role.PROGRAM:
+            return False
+        if role is Role.ORACLE or filename.startswith(folder) or filename.endswith("conftest.py"):
+            return True
+    return True
+
+
+def _is_of_a_middleware(frame: FrameType) -> bool:
+    """Whether a frame is of a package that brings operators or the hooks of a middleware."""
+    return str(frame.f_globals.get("__name__", "")).partition(".")[0] in packages()
+
+
+def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
+    """The frames that the exception came through and the lines they were at, innermost first."""
+    frames = []
+    traceback = error.__traceback__
+    while traceback is not None:
+        frames.append((traceback.tb_frame, traceback.tb_lineno))
+        traceback = traceback.tb_next
+    return frames[::-1]
+
+
+def _place(error: BaseException, locator: Locator) -> str | None:
+    """The innermost line that is the user's own: the file lies under the root and is not installed."""
+    lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
+    for filename, line in [*lines, *_place_of_mismatch(error)]:
+        relative = locator.relative(filename)
+        if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
+            return f"{relative}:{line}"
+    return None
+
+
+def _mismatch(error: BaseException) -> str | None:
+    """What a doctest expected and what it got, in one line; None for any other exception."""
+    if not _is_mismatch(error):
+        return None
+    failure: Any = error
+    source, want = failure.example.source.strip(), failure.example.want.strip()
+    return f"{source}: expected {want or 'nothing'}, got {failure.got.strip() or 'nothing'}"
+
+
+def _place_of_mismatch(error: BaseException) -> list[tuple[str, int]]:
+    """File and line of the example; empty for any other exception, and where doctest knows neither."""
+    failure: Any = error
+    if not _is_mismatch(error) or failure.test.filename is None or failure.test.lineno is None:
+        return []
+    return [(failure.test.filename, failure.test.lineno + failure.example.lineno + 1)]
+
+
+def _is_mismatch(error: BaseException) -> bool:
+    doctest = sys.modules.get("doctest")  # who raised it has imported it
+    return doctest is not None and isinstance(error, doctest.DocTestFailure)

@@ -1,0 +1,96 @@
+"""Watching goes on in the processes that the tests start; each writes what it saw.
+
+It does so now and then and at its end: it may be killed.
+"""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from types import FrameType
+from typing import Any
+
+from mutabot import extensions
+from mutabot.model.event_file import FOLDER
+from mutabot.runtime.processes.environment import carry, write_wake
+from mutabot.runtime.program_text.loading import hook_script
+from mutabot.runtime.watching.watch import Watch
+
+_ORDER = "order.json"
+_SEEN = ".seen.json"
+#: least seconds between two writings of what was seen so far, for processes that are killed
+_PAUSE = 0.5
+
+
+def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
+    """Watch processes that are started from now on; ``path`` is that of the order.
+
+    Returns the folder in which they write.
+    """
+    folder = os.path.join(os.path.dirname(path), FOLDER)
+    os.mkdir(folder)
+    with open(os.path.join(folder, _ORDER), "w", encoding="utf-8", errors="surrogateescape") as file:
+        json.dump(order, file)
+    names = {name.rpartition("/")[2].removesuffix(".py") for name in order["program"].values()}
+    folders = {part for name in order["program"].values() for part in name.split("/")[:-1]}
+    write_wake(folder, __name__, names | folders, order["program"])
+    carry(folder)
+    return folder
+
+
+def join(folder: str) -> None:
+    """Watch this process, which turned out to be of interest."""
+    with open(os.path.join(folder, _ORDER), encoding="utf-8", errors="surrogateescape") as file:
+        order = json.load(file)
+    extensions.use(order["extensions"])
+    written = [time.monotonic()]
+    writing = threading.Lock()
+
+    def pulse() -> None:
+        if time.monotonic() - written[0] > _PAUSE and writing.acquire(blocking=False):
+            try:
+                written[0] = time.monotonic()
+                with suppress(RuntimeError):  # another thread sees something new in the midst of it
+                    write()
+            finally:
+                writing.release()
+
+    watch = Watch(order["program"], order["tests"], order["libraries"], pulse)
+    watch.install()
+    hook_script()
+    leave = os._exit
+
+    def write() -> None:
+        name = os.path.join(folder, f"{os.getpid()}{_SEEN}")
+        with open(f"{name}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
+            json.dump(watch.data(), file, default=str)
+        os.replace(f"{name}.new", name)
+
+    def leave_at_once(status: int) -> None:
+        write()
+        leave(status)
+
+    def end(number: int, frame: FrameType | None) -> None:
+        sys.exit(128 + number)
+
+    atexit.register(write)
+    os._exit = leave_at_once  # type: ignore[assignment]
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, end)  # else nothing would be written
+
+
+def seen_elsewhere(folder: str) -> list[dict[str, list[Any]]]:
+    """What processes saw, each as ``Watch.data`` gives it."""
+    found: list[dict[str, list[Any]]] = []
+    for name in sorted(os.listdir(folder)):
+        if name.endswith(_SEEN):
+            with open(os.path.join(folder, name), encoding="utf-8", errors="surrogateescape") as file:
+                found.append(json.load(file))
+    return found

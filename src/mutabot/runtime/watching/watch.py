@@ -1,0 +1,410 @@
+"""What one process sees of the calls in some files: which callables, with which values.
+
+Every call and every attribute that is read asks the watch first: ``arm.move(1)`` becomes
+``__mutabot_method__(arm, 'move', 7)(1)``, where 7 is the place; a function's name likewise. Nothing is
+written: the text is changed while it is imported, and nothing changes that the program can see.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import functools
+import inspect
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from types import FrameType
+from typing import Any
+
+from mutabot.model import ANY
+from mutabot.model.path import class_name
+from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text import loading as scripts
+from mutabot.runtime.program_text.standing import is_mock
+from mutabot.runtime.targets.target import Where
+from mutabot.runtime.watching.callee import Callee, any_method, facts, function_of, method_of
+from mutabot.runtime.watching.described import Leaves, ToldApart
+from mutabot.runtime.watching.named import NamesSeen
+
+METHOD, NAME, READ = "__mutabot_method__", "__mutabot_name__", "__mutabot_read__"
+#: these look at the frame that calls them
+_BOUND_TO_FRAME = frozenset({"super", "locals", "globals", "vars", "dir", "eval", "exec", "breakpoint"})
+
+
+def watch_imports(files: Mapping[str, str], new_place: Callable[[str, int], int]) -> None:
+    """From now on these files (real path to the name for people) are imported with calls that are watched.
+
+    ``new_place`` numbers a file and line.
+    """
+    loading.add(_Watched(files, new_place))
+    scripts.hook_runpy()
+
+
+class _Watched:
+    """Puts the watch into files while they are compiled. See ``loading.Step``."""
+
+    def __init__(self, files: Mapping[str, str], new_place: Callable[[str, int], int]) -> None:
+        self._files, self._new_place = files, new_place
+
+    def wants(self, path: str) -> bool:
+        """Whether the file is to be watched."""
+        return os.path.realpath(path) in self._files
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Let every call and every attribute that is read ask the watch first."""
+        name = self._files[os.path.realpath(path)]
+        watch(tree, lambda line: self._new_place(name, line))
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """What cannot be compiled says so itself."""
+
+
+def watch(tree: ast.Module, place: Callable[[int], int]) -> None:
+    """Put the watch into a tree."""
+    ast.fix_missing_locations(_Watcher(place).visit(tree))
+
+
+class _Watcher(ast.NodeTransformer):
+    """Puts the watch into a tree."""
+
+    def __init__(self, place: Callable[[int], int]) -> None:
+        self._place = place
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        node.args = [self.visit(one) for one in node.args]
+        for keyword in node.keywords:
+            keyword.value = self.visit(keyword.value)
+        match node.func:
+            case ast.Attribute(value=inner, attr=name) if not name.startswith("_"):
+                node.func = self._asked(METHOD, node.func, self.visit(inner), ast.Constant(name))
+            case ast.Name(id=name) if name not in _BOUND_TO_FRAME:
+                node.func = self._asked(NAME, node.func, node.func)
+            case _:
+                node.func = self.visit(node.func)
+        return node
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        node.value = self.visit(node.value)
+        if not isinstance(node.ctx, ast.Load) or node.attr.startswith("_"):
+            return node
+        return self._asked(READ, node, node.value, ast.Constant(node.attr))
+
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AnnAssign:
+        node.value = self.visit(node.value) if node.value is not None else None
+        return node
+
+    def visit_arg(self, node: ast.arg) -> ast.arg:
+        return node  # an annotation may be read as text
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+        return self._function(node)
+
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AST:
+        return self._function(node)
+
+    def visit_match_case(self, node: ast.match_case) -> ast.match_case:
+        node.guard = self.visit(node.guard) if node.guard is not None else None
+        node.body = [self.visit(one) for one in node.body]
+        return node
+
+    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:
+        node.decorator_list = [self.visit(one) for one in node.decorator_list]
+        self.visit(node.args)
+        node.body = [self.visit(one) for one in node.body]
+        return node
+
+    def _asked(self, function: str, at: ast.expr, *arguments: ast.expr) -> ast.Call:
+        place = ast.Constant(self._place(at.end_lineno or at.lineno))
+        asked = ast.Call(ast.Name(function, ast.Load()), [*arguments, place], [])
+        return ast.copy_location(asked, at)
+
+
+#: calls of one callable whose values are looked at; more are only counted
+MOST_CALLS = 300
+#: packages that talk to no robot
+_NO_ROBOTS = frozenset(
+    {
+        "_pytest", "pytest", "pluggy", "mutabot", "numpy", "scipy", "pandas", "matplotlib", "hypothesis",
+        "yaml", "loguru", "attr", "attrs", "pydantic", "typing_extensions", "torch", "jax", "sympy", "rich",
+        "networkx", "click", "typer", "PIL", "math3d", "transforms3d",
+    }
+)  # fmt: skip
+
+
+@dataclass
+class _Seen:
+    """A callable and what was seen of it."""
+
+    callee: Callee
+    own: bool
+    of_tests: bool
+    sites: dict[int, int] = field(default_factory=dict)
+    arguments: dict[str, Leaves] = field(default_factory=dict)
+    positional: Leaves = field(default_factory=Leaves)
+    result: Leaves = field(default_factory=Leaves)
+    given: dict[str, int] = field(default_factory=dict)
+    raised: dict[str, None] = field(default_factory=dict)
+    told_apart: ToldApart = field(default_factory=ToldApart)
+    looked_at: int = 0
+    answered: int = 0
+    is_coroutine: bool = False
+    returns_coroutine: bool = False
+    leads_to_names: bool = False
+    signature: inspect.Signature | None = None
+
+
+#: the calls that are under way here, the outermost first
+_under_way: ContextVar[tuple[_Seen, ...]] = ContextVar("mutabot_watched_calls", default=())
+
+
+class Watch:
+    """What is seen of the calls in some files.
+
+    Args:
+        program, tests: real paths to names for people.
+        libraries: client libraries of middlewares, with ``*`` for any text: what is done through them has a
+            name of its own.
+        pulse: called whenever something is seen, while nothing is held.
+    """
+
+    def __init__(
+        self,
+        program: dict[str, str],
+        tests: dict[str, str],
+        libraries: Iterable[str] = (),
+        pulse: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._program, self._tests, self._libraries, self._pulse = program, tests, tuple(libraries), pulse
+        self._places: list[tuple[str, int]] = []
+        self._numbers: dict[tuple[str, int], int] = {}
+        self._seen: dict[tuple[str, bool], _Seen] = {}
+        self._known: dict[tuple[Any, str], Callee | None] = {}
+        self._reached: dict[tuple[int, str], None] = {}
+        self._names: NamesSeen | None = None
+        self._files: dict[str, tuple[str, bool] | None] = {}
+
+    def install(self) -> None:
+        """Watch what is imported from now on."""
+        self._names = NamesSeen(self._place_of, self._leads, self._pulse)
+        setattr(builtins, METHOD, self.method)
+        setattr(builtins, NAME, self.named)
+        setattr(builtins, READ, self.read)
+        watch_imports({**self._program, **self._tests}, self._place)
+
+    def method(self, value: Any, name: str, place: int) -> Any:
+        """``value.name`` is about to be called."""
+        found = getattr(value, name)
+        self._reached[place, name] = None
+        if isinstance(found, type):
+            return found
+        callee = self._method(value, name)
+        if not self._is_of_tests(place):
+            callee = self._stood_for(value, name, callee)
+        return self._wrapped(found, self._of(callee, place), place)
+
+    def named(self, function: Any, place: int) -> Any:
+        """A function is about to be called by its name."""
+        self._reached[place, ""] = None
+        if isinstance(function, type):
+            return function
+        return self._wrapped(function, self._of(function_of(function), place), place)
+
+    def read(self, value: Any, name: str, place: int) -> Any:
+        """``value.name`` is read."""
+        found = getattr(value, name)
+        raw = inspect.getattr_static(type(value), name, None)
+        if isinstance(raw, property | functools.cached_property):
+            seen = self._of(method_of(value, name), place)
+            if seen is not None and self._counts(seen, place):
+                self._answer(seen, found)
+        return found
+
+    def data(self) -> dict[str, list[Any]]:
+        """What was seen, for JSON: callables, what was done under names, and all places that were come by."""
+        return {
+            "calls": [self._data(seen) for seen in list(self._seen.values())],
+            "names": self._names.data() if self._names is not None else [],
+            "reached": [[*self._places[place], name] for place, name in list(self._reached)],
+        }
+
+    def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
+        """File, line and side of a frame or the nearest one around it, or of what is called back."""
+        if where is not None and where.code is not None:
+            found = self._side(where.code.co_filename)
+            return (found[0], where.code.co_firstlineno, found[1]) if found is not None else None
+        while frame is not None:
+            found = self._side(frame.f_code.co_filename)
+            if found is not None:
+                return found[0], frame.f_lineno, found[1]
+            frame = frame.f_back
+        return None
+
+    def _side(self, file: str) -> tuple[str, bool] | None:
+        """A file's name for people, and whether it is on the tests' side; None if it is on none."""
+        if file not in self._files:
+            real = os.path.realpath(file)
+            name = self._program.get(real, self._tests.get(real))
+            self._files[file] = (name, real not in self._program) if name is not None else None
+        return self._files[file]
+
+    def _leads(self) -> None:
+        """Something is done under a name: the calls that are under way lead to it."""
+        for seen in _under_way.get():
+            seen.leads_to_names = True
+
+    def _place(self, file: str, line: int) -> int:
+        if (file, line) not in self._numbers:
+            self._numbers[file, line] = len(self._places)
+            self._places.append((file, line))
+        return self._numbers[file, line]
+
+    def _method(self, value: Any, name: str) -> Callee | None:
+        """A method by its name; looked up once for each class."""
+        if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
+            return method_of(value, name)
+        key = (value if isinstance(value, type) else type(value), name)
+        if key not in self._known:
+            self._known[key] = method_of(value, name)
+        return self._known[key]
+
+    def _stood_for(self, value: Any, name: str, callee: Callee | None) -> Callee | None:
+        """What a method of a mock or of a class of the tests stands for: the robot's, or any of its name."""
+        mock = sys.modules.get("unittest.mock")
+        if mock is not None and is_mock(mock, value):
+            kind = vars(value).get("_spec_class")
+            return (method_of(kind, name) if kind is not None else None) or any_method(name)
+        if callee is None or callee.owner is None or callee.file not in self._tests:
+            return callee
+        for kind in callee.owner.__mro__[1:]:
+            meant = method_of(kind, name)
+            if meant is not None and meant.file not in self._tests:
+                return meant
+        return any_method(name, callee)
+
+    def _of(self, callee: Callee | None, place: int) -> _Seen | None:
+        """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
+        if callee is None:
+            return None
+        key = (callee.target, self._is_of_tests(place))
+        known = self._seen.get(key)
+        if known is None:
+            top = callee.target.partition(":")[0].partition(".")[0]
+            if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
+                return None
+            known = self._seen[key] = _Seen(callee, callee.file in self._program, key[1])
+            known.signature = callee.signature
+            known.is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
+        return known
+
+    def _wrapped(self, function: Any, seen: _Seen | None, place: int) -> Any:
+        if seen is None or not self._counts(seen, place):
+            return function
+
+        instance = getattr(function, "__self__", None)
+
+        def watched(*args: Any, **kwargs: Any) -> Any:
+            which: str | None = None
+            with suppress(Exception):  # looking at values must not disturb the program
+                values = self._arguments(seen, args, kwargs)
+                which = seen.told_apart.see(instance, seen.callee.target, values)
+            token = _under_way.set((*_under_way.get(), seen))
+            try:
+                result = function(*args, **kwargs)
+            except Exception as error:
+                seen.raised[class_name(type(error))] = None
+                raise
+            finally:
+                _under_way.reset(token)
+            if inspect.iscoroutine(result):
+                seen.returns_coroutine = not seen.is_coroutine
+                return self._awaited(seen, which, result)
+            self._answer(seen, result, which)
+            return result
+
+        return watched
+
+    async def _awaited(self, seen: _Seen, which: str | None, waiting: Any) -> Any:
+        token = _under_way.set((*_under_way.get(), seen))
+        try:
+            result = await waiting
+        except Exception as error:
+            seen.raised[class_name(type(error))] = None
+            raise
+        finally:
+            with suppress(ValueError):  # a coroutine that is closed from elsewhere
+                _under_way.reset(token)
+        self._answer(seen, result, which)
+        return result
+
+    def _counts(self, seen: _Seen, place: int) -> bool:
+        """Count a call; whether its values are to be looked at."""
+        if seen.of_tests and (seen.own or seen.callee.file in self._tests):
+            return False
+        self._pulse()
+        seen.sites[place] = seen.sites.get(place, 0) + 1
+        seen.looked_at += 1
+        return seen.looked_at <= MOST_CALLS
+
+    def _is_of_tests(self, place: int) -> bool:
+        return self._places[place][0] in self._tests.values()
+
+    def _arguments(self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any]) -> dict[str, Any]:
+        """Look at the arguments of a call, and return those whose names are known."""
+        values = dict(kwargs)
+        if seen.signature is None:
+            for index, value in enumerate(args):
+                seen.positional.see(value, f"#{index}")
+        else:
+            try:
+                bound = seen.signature.bind(*args, **kwargs)
+            except TypeError:
+                return {}
+            bound.apply_defaults()
+            values = dict(bound.arguments)
+            for name, parameter in seen.signature.parameters.items():
+                if parameter.kind is inspect.Parameter.VAR_KEYWORD:
+                    values.update(values.pop(name, {}))
+        for name, value in values.items():
+            seen.given[name] = seen.given.get(name, 0) + 1
+            seen.arguments.setdefault(name, Leaves()).see(value, name)
+        return values
+
+    def _answer(self, seen: _Seen, result: Any, which: str | None = None) -> None:
+        seen.answered += 1
+        with suppress(Exception):
+            seen.result.see(result)
+            seen.told_apart.answer(which, result)
+
+    def _raised(self, target: str) -> list[str]:
+        """What a callable raised, whoever called it: tests make robots refuse."""
+        sides = (self._seen.get((target, of_tests)) for of_tests in (False, True))
+        return list(dict.fromkeys(name for side in sides if side is not None for name in side.raised))
+
+    def _data(self, seen: _Seen) -> dict[str, Any]:
+        found = facts(seen.callee)
+        if seen.returns_coroutine and not seen.callee.target.startswith(ANY):
+            found["problem"] = "it returns a coroutine but is no coroutine function: name the one behind it"
+        return {
+            **found,
+            "own": seen.own,
+            "leads_to_names": seen.leads_to_names,
+            "of_tests": seen.of_tests,
+            "sites": [[*self._places[place], count] for place, count in seen.sites.items()],
+            "given": seen.given,
+            "arguments": {name: leaves.data() for name, leaves in seen.arguments.items()},
+            "positional": seen.positional.data(),
+            "result": seen.result.data(),
+            "answered": seen.answered,
+            "raised": self._raised(seen.callee.target),
+            "told_apart": seen.told_apart.data(),
+        }
+
+
+def _is_no_robot(top: str) -> bool:
+    """Whether nothing of a top-level package is to be described as a call."""
+    return top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest")

@@ -1,0 +1,99 @@
+"""Journals of graded campaigns, written from a few letters per round."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path as File
+from typing import Any
+
+from mutabot.families import GRADED
+from mutabot.journal.journal import Journal
+from mutabot.model import By, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.model.codec import to_data
+from mutabot.model.mutant import Site
+from mutabot.model.outcome import Figure
+from mutabot.results.ladders import Ladder, ladders_of
+from mutabot.results.results import Results, read_results
+from results import samples
+
+SIZES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+#: what a letter stands for; a blank or a dot is a magnitude that was not run
+LETTERS: Mapping[str, tuple[Verdict, By | None]] = {
+    "C": (Verdict.KILLED, By.CHECK),
+    "X": (Verdict.KILLED, By.EXCEPTION),
+    "T": (Verdict.TIMEOUT, None),
+    "S": (Verdict.SURVIVED, None),
+    "R": (Verdict.REFUSED, None),
+    "N": (Verdict.NO_EFFECT, None),
+    "U": (Verdict.UNSTABLE, None),
+    "E": (Verdict.ERROR, None),
+    "-": (Verdict.NOT_COVERED, None),
+}
+
+
+@dataclass(frozen=True)
+class Rungs:
+    """One ladder.
+
+    Attributes:
+        rounds: per round a letter for each magnitude, rising.
+        zero: a letter per round for magnitude 0; empty if it was not run.
+        figures: by (round, magnitude), what a survivor changed of a figure of merit.
+    """
+
+    rounds: Sequence[str]
+    zero: str = ""
+    direction: str = "+"
+    site: Site = samples.MOVE
+    quantity: str = "dx"
+    operator: str = "offset"
+    unit: str | None = "mm"
+    sizes: Sequence[float] = SIZES
+    operation: str = "robot:Arm.move_by"
+    figures: Mapping[tuple[int, float], Figure] = field(default_factory=dict)
+
+    def mutant(self, number: int, size: float) -> Mutant:
+        variant = f"{self.direction}{size:g}{self.unit or ''}"
+        return Mutant(
+            number, GRADED, self.operator, self.site, self.operation, None, self.quantity, variant,
+            f"{self.site.text}: {self.quantity} {variant}", magnitude=size, unit=self.unit,
+            direction=self.direction, has_sizes=True,
+        )  # fmt: skip
+
+
+def write(path: File, *ladders: Rungs, vocabulary: Vocabulary = samples.VOCABULARY, **changes: Any) -> File:
+    """The journal of a campaign with these ladders, after the mutants of the samples if ``with_others``."""
+    others = changes.pop("with_others", False)
+    mutants: list[Mutant] = list(samples.MUTANTS) if others else []
+    outcomes: list[Outcome] = list(samples.OUTCOMES) if others else []
+    for one in ladders:
+        for column, size in enumerate((0.0, *one.sizes) if one.zero else one.sizes):
+            mutant = one.mutant(len(mutants) + 1, size)
+            mutants.append(mutant)
+            for number, letters in enumerate(one.rounds):
+                letter = one.zero[number] if size == 0.0 else letters[column - bool(one.zero)]
+                if letter in LETTERS:
+                    verdict, by = LETTERS[letter]
+                    outcome = Outcome(mutant.id, number, verdict, by, tests=1, test=samples.TEST)
+                    figure = one.figures.get((number, size))
+                    outcomes.append(replace(outcome, figures=(figure,)) if figure is not None else outcome)
+    facts = {
+        "families": [GRADED],
+        "rounds": max((len(one.rounds) for one in ladders), default=2),
+        "vocabulary": to_data(vocabulary),
+        **changes,
+    }
+    return samples.write_journal(path, mutants=tuple(mutants), outcomes=tuple(outcomes), **facts)
+
+
+def results(folder: File, *ladders: Rungs, **changes: Any) -> Results:
+    """What the journal of such a campaign holds."""
+    with Journal.open(write(folder / "journal.sqlite", *ladders, **changes)) as journal:
+        return read_results(journal)
+
+
+def ladder(folder: File, *rounds: str, **more: Any) -> Ladder:
+    """The only ladder of such a campaign."""
+    (found,) = ladders_of(results(folder, Rungs(rounds, **more)))
+    return found

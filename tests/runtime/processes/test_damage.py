@@ -1,0 +1,184 @@
+"""Files by which processes below the tests report, as the tests may leave them: damage is noticed."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from mutabot.campaign.run import run_campaign
+from mutabot.model import Verdict
+from mutabot.model.event_file import FOLDER, SUFFIX, sealed
+from mutabot.model.events import Began, Event, Found, SessionEnd
+from mutabot.model.fold import Children
+from mutabot.runtime.event_file import EventFile
+from mutabot.runtime.processes.environment import Now
+from tests.campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
+
+KEY = "0123456789abcdef"
+NAME = f"{os.getpid()}-1"
+BEGAN = Began(os.getpid(), 1, ("python", "mission.py"), 0.0)
+
+
+def folder_of(home: Path) -> Path:
+    (home / FOLDER).mkdir()
+    return home / FOLDER
+
+
+def only_file(folder: Path) -> Path:
+    return folder / f"{NAME}{SUFFIX}"
+
+
+def line_of(event: Event, number: int) -> bytes:
+    return sealed(event, number, NAME, KEY)
+
+
+def append(folder: Path, *data: bytes) -> None:
+    with only_file(folder).open("ab") as file:
+        file.write(b"".join(data))
+
+
+def forge(folder: Path) -> None:
+    (folder / f"1-1{SUFFIX}").write_bytes(sealed(BEGAN, 1, "1-1", KEY))
+
+
+def twice(folder: Path) -> None:
+    append(folder, only_file(folder).read_bytes().splitlines(keepends=True)[-1])
+
+
+DAMAGE: dict[str, Callable[[Path], object]] = {
+    "deleted": lambda folder: only_file(folder).unlink(),
+    "all deleted": shutil.rmtree,
+    "shorter": lambda folder: os.truncate(only_file(folder), 3),
+    "scribbled": lambda folder: append(folder, b"progress: 10 %\n"),
+    "a value": lambda folder: append(folder, b'[{"type": "Found"}]\n'),
+    "torn": lambda folder: append(folder, line_of(SessionEnd(), 3)[:-9] + b"\n"),
+    "of another": forge,
+    "one removed": lambda folder: append(folder, line_of(SessionEnd(), 4)),
+    "one twice": twice,
+    "of a process that could not write": lambda folder: Now(str(folder)).note_unwritten(),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
+def test_damage_is_noticed(tmp_path: Path, damage: Callable[[Path], object]) -> None:
+    folder = folder_of(tmp_path)
+    Now(str(folder), is_host=True)
+    file, children = EventFile(str(folder), NAME, KEY), Children(str(tmp_path), KEY)
+    for event in (BEGAN, Found(nodes=("a",))):
+        file.send(event)
+    assert children.read() == [BEGAN, Found(nodes=("a",))]
+    assert children.doubt is None
+    damage(folder)
+    children.read()
+    assert "was damaged" in (children.doubt or "")
+
+
+def test_an_event_that_is_being_written_is_no_damage(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path)
+    children = Children(str(tmp_path), KEY)
+    line = line_of(Found(nodes=("a",)), 2)
+    append(folder, line_of(BEGAN, 1), line[:20])
+    later = threading.Timer(0.2, append, (folder, line[20:]))
+    later.start()
+    assert children.read() == [BEGAN, Found(nodes=("a",))]
+    assert children.doubt is None
+    later.join()
+
+
+def test_a_process_that_was_killed_while_it_wrote_is_not_waited_for(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path)
+    with subprocess.Popen([sys.executable, "-c", ""]) as gone:
+        name = f"{gone.pid}-1"
+    line = sealed(Began(gone.pid, 1, ("python",), 0.0), 1, name, KEY)
+    (folder / f"{name}{SUFFIX}").write_bytes(line + line_of(Found(), 2)[:20])
+    children = Children(str(tmp_path), KEY)
+    children.read()
+    assert f"{name} ends in the midst of event 2" in (children.doubt or "")
+
+
+MISSION = """
+    from robot import Arm
+
+    def run():
+        arm = Arm()
+        arm.move_by(0.25)
+        return arm.x
+
+    if __name__ == "__main__":
+        print(run())
+"""
+TESTS = """
+    import os, subprocess, sys
+    from pathlib import Path
+
+    def test_moves():
+        found = subprocess.run([sys.executable, "mission.py"], capture_output=True, text=True, check=True)
+        if float(found.stdout) != 0.25:  # it is a mutant: as if it had scribbled all over the place
+            for path in Path(os.environ["MUTABOT_PROCESSES"]).glob("[0-9]*.jsonl"):
+                path.write_text("?\\n")
+"""
+
+
+@pytest.mark.whole
+def test_damage_is_an_error_of_its_mutant_and_never_a_survivor(tmp_path: Path) -> None:
+    folder = write_project(tmp_path, MISSION, TESTS)
+    path = run_campaign(request_for(folder, engine="replay"), Quiet())
+    found = outcomes(path)
+    assert {one.verdict for one in found} == {Verdict.ERROR}
+    assert all("what processes below the tests reported was damaged" in str(one.message) for one in found)
+
+
+#: a mutant fills the disk, as far as its processes are concerned: no file of theirs may grow any more
+FULL = """
+    import resource, subprocess, sys
+    import mission
+
+    def test_moves():
+        found = subprocess.run([sys.executable, "mission.py"], capture_output=True, text=True)
+        assert found.returncode == 0 and float(found.stdout) == 0.25
+
+    def test_moves_again():
+        assert mission.run() == 0.25
+"""
+FULL_MISSION = """
+    import resource
+    from robot import Arm
+
+    def run():
+        arm = Arm()
+        arm.move_by(0.25)
+        if arm.x == -0.25:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+            arm.position()
+        return arm.x
+
+    if __name__ == "__main__":
+        print(run())
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+def test_a_process_that_cannot_write_is_an_error_of_its_mutant_and_touches_no_other(
+    tmp_path: Path, engine: str
+) -> None:
+    harmless = FULL_MISSION.replace("resource.RLIMIT_FSIZE, (1,", "resource.RLIMIT_CORE, (0,")
+    found = {}
+    for name, mission in (("harmless", harmless), ("full", FULL_MISSION)):
+        folder = write_project(tmp_path / name, mission, FULL)
+        path = run_campaign(request_for(folder, engine=engine, only=("*move_by*",)), Quiet())
+        found[name] = {one.mutant: one for one in outcomes(path)}
+    harmful = next(one for one in found["full"] if "reverse" in one)
+    assert found["full"].keys() == found["harmless"].keys()
+    assert found["harmless"][harmful].verdict is Verdict.KILLED
+    assert found["full"][harmful].verdict is Verdict.ERROR
+    assert "could not write what it had to tell" in str(found["full"][harmful].message)
+    assert {one: each.verdict for one, each in found["full"].items() if one != harmful} == {
+        one: each.verdict for one, each in found["harmless"].items() if one != harmful
+    }

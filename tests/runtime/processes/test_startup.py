@@ -1,0 +1,114 @@
+"""The start-up module: any Python from 3.8 on, whatever is there already, at next to no cost."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mutabot.model.event_file import FOLDER, VARIABLE, WAKE, EventReader
+from mutabot.model.events import Began
+from mutabot.runtime.processes import startup
+
+KEY = "0123456789abcdef"
+STARTUP = str(Path(startup.__file__).parent)
+
+
+def folder_of(home: Path, *lines: str) -> Path:
+    folder = home / FOLDER
+    folder.mkdir(parents=True)
+    (home / "job.json").write_text(json.dumps({"key": KEY}))
+    (folder / WAKE).write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+    return folder
+
+
+def only_event(folder: Path) -> Began:
+    """What the one process told that there was."""
+    (file,) = folder.glob("*.jsonl")
+    (told,) = EventReader(str(file), KEY).read(is_last=True)
+    assert isinstance(told, Began)
+    return told
+
+
+def run(python: str, *arguments: str, folder: Path, more: str = "") -> subprocess.CompletedProcess[str]:
+    path = os.pathsep.join(filter(None, [STARTUP, more]))
+    environment = {"PATH": os.environ["PATH"], "PYTHONPATH": path, VARIABLE: str(folder)}
+    return subprocess.run([python, *arguments], env=environment, capture_output=True, text=True, check=True)
+
+
+def interpreters() -> list[str]:
+    """Every Python of 3.8 or newer that this machine has."""
+    found = []
+    for minor in range(8, 15):
+        python = shutil.which(f"python3.{minor}")
+        if python is None:
+            continue
+        asked = subprocess.run(
+            [python, "-c", "import sys; print(sys.version_info[1])"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if asked.stdout.strip() == str(minor):
+            found.append(python)
+    return list(dict.fromkeys([sys.executable, *found]))
+
+
+@pytest.mark.parametrize("python", interpreters(), ids=lambda path: Path(path).name)
+def test_a_process_of_no_interest_runs_as_ever_and_imports_nothing_more(python: str, tmp_path: Path) -> None:
+    folder = folder_of(tmp_path, "path /nowhere", "name robot_that_nobody_has", "file /nowhere/mission.py")
+    code = "import sys; names, path = [*sys.modules], [*sys.path]; import json; " + (
+        "print(json.dumps(names)); print(json.dumps(path))"
+    )
+    with_us = run(python, "-c", code, folder=folder).stdout
+    without = subprocess.run(
+        [python, "-c", code], env={"PATH": os.environ["PATH"]}, capture_output=True, text=True, check=True
+    ).stdout
+    (modules, path), (usual, usual_path) = (map(json.loads, text.splitlines()) for text in (with_us, without))
+    assert {*modules} - {*usual} <= {"sitecustomize"}
+    assert path == usual_path
+    assert list(folder.iterdir()) == [folder / WAKE]
+
+
+def test_an_older_python_says_that_it_cannot_be_looked_into(tmp_path: Path) -> None:
+    old = [
+        python for python in interpreters() if Path(python).name in ("python3.8", "python3.9", "python3.10")
+    ]
+    if not old:
+        pytest.skip("no Python older than 3.11 is here")
+    script = tmp_path / "mission.py"
+    script.write_text("print('it ran')")
+    folder = folder_of(tmp_path / "home", "path /nowhere", f"file {script}")
+    assert run(old[0], str(script), folder=folder).stdout == "it ran\n"
+    told = only_event(folder)
+    assert "is older than 3.11" in (told.unable or "")
+    assert told.command[-1].endswith("mission.py")
+
+
+@pytest.mark.parametrize("python", interpreters(), ids=lambda path: Path(path).name)
+def test_a_python_that_cannot_load_us_says_so(python: str, tmp_path: Path) -> None:
+    script = tmp_path / "mission.py"
+    script.write_text("print('it ran')")
+    folder = folder_of(tmp_path / "home", "join module_that_nobody_has", f"file {script}")
+    assert run(python, str(script), folder=folder).stdout == "it ran\n"
+    assert only_event(folder).unable is not None
+
+
+def test_a_sitecustomize_that_is_there_already_is_loaded_as_ever(tmp_path: Path) -> None:
+    theirs = tmp_path / "theirs"
+    theirs.mkdir()
+    (theirs / "sitecustomize.py").write_text("import sys\nsys.theirs = __name__, __file__\n")
+    folder = folder_of(tmp_path / "home")
+    code = "import sys, sitecustomize; print(sys.theirs, sitecustomize.__file__)"
+    told = run(sys.executable, "-c", code, folder=folder, more=str(theirs)).stdout
+    place = str(theirs / "sitecustomize.py")
+    assert told == f"{('sitecustomize', place)} {place}\n"
+
+
+def test_a_campaign_that_is_over_does_not_matter(tmp_path: Path) -> None:
+    assert run(sys.executable, "-c", "print(1)", folder=tmp_path / "gone").stdout == "1\n"
