@@ -29,16 +29,16 @@ ALLOWED = {
     "execution": {"errors", "model"},
     "journal": {"errors", "model", "repository"},
     "campaign": {
-        "errors", "extensions", "families", "faults", "model", "languages", "border", "config",
+        "errors", "extensions", "families", "faults", "model", "languages", "config", "execution",
         "operators", "journal", "evidence", "repository",
     },
     "proposal": {"errors", "extensions", "model", "execution", "config", "campaign"},
     "suggestion": {"errors", "model", "journal", "campaign", "execution", "results"},
-    "analysis": {"errors", "families", "model", "border", "journal", "evidence"},
-    "report": {"errors", "extensions", "model", "border", "journal", "analysis", "evidence"},
+    "results": {"errors", "families", "model", "journal", "evidence"},
+    "report": {"errors", "extensions", "model", "journal", "results", "evidence"},
     "__main__": {"cli"},
     "cli": {
-        "errors", "extensions", "families", "faults", "limits", "model", "border", "config",
+        "errors", "extensions", "families", "faults", "limits", "model", "config", "execution",
         "journal", "campaign", "proposal", "suggestion", "results", "report",
     },
 }  # fmt: skip
