@@ -17,11 +17,10 @@ from typer.models import OptionInfo
 from mutabot import limits
 from mutabot.cli.app import app, function_of, main
 from mutabot.cli.options import with_options
-from mutabot.errors import ConfigurationError
-from mutabot.exit_codes import ExitCode
-from mutabot.settings.configuration import Settings, load_configuration
-from mutabot.settings.demands import DemandTable
-from mutabot.vocabulary import load, schema
+from mutabot.config.configuration import Settings, load_configuration
+from mutabot.config.demands import DemandTable
+from mutabot.config.vocabulary import load, schema
+from mutabot.errors import ConfigurationError, ExitCode
 from tests.campaign.project import write_project
 
 DIGITS = "9" * 400
@@ -157,7 +156,6 @@ QUANTITY = OPERATION + "arguments.dx = { kind = 'translation', mode = 'by', unit
 PLACES: list[tuple[str, type[BaseModel], set[str]]] = [
     (QUANTITY, schema.QuantityTable, {"kind", "mode", "unit"}),
     (OPERATION + "KEY = %s", schema.OperationTable, {"call"}),
-    ("[[operation]]\ntopic = '/a'\nKEY = %s", schema.NamedTable, {"topic"}),
     ("[clock]\nKEY = %s", schema.ClockTable, set()),
     ("[wait]\nKEY = %s", schema.WaitTable, set()),
     ("[[probe]]\ncall = 'a:b'\nKEY = %s", schema.ProbeTable, {"call"}),

@@ -15,7 +15,7 @@ from results.thresholds import journals
 #: what runs a campaign, and what that needs
 NOT_FOR_LOOKING = (
     "mutabot.model.job", "mutabot.campaign", "mutabot_source", "mutabot.runtime",
-    "mutabot.operators", "mutabot.proposal", "mutabot.settings", "mutabot.vocabulary", "libcst", "numpy",
+    "mutabot.operators", "mutabot.proposal", "mutabot.config", "mutabot.config.vocabulary", "libcst", "numpy",
     "scipy", "tomllib", "wrapt",
 )  # fmt: skip
 #: what says what a package brings, which may be a section of the results

@@ -12,7 +12,7 @@ from uuid import uuid4
 import pytest
 
 from mutabot.cli.app import main, terminated_like_ctrl_c
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.reader import JournalReader
 from tests.campaign.project import write_project
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.cli.app import main
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.model.outcome import Figure
 from mutabot.report.terminal.campaign import print_summary
 from mutabot.report.terminal.console import make_console

@@ -14,12 +14,12 @@ import pytest
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.report.document import document, dumps
 from mutabot.results.results import read_results
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 from pages import blocks
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "scales"

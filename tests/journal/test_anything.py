@@ -16,8 +16,7 @@ from typing import Any
 import pytest
 
 from mutabot.cli.app import main
-from mutabot.errors import JournalError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, JournalError
 from mutabot.journal.database import COLUMNS, decode
 from mutabot.journal.fitting import inflated
 from mutabot.journal.journal import Journal

@@ -8,13 +8,13 @@ from typing import Any
 
 import pytest
 
+from mutabot.config.vocabulary import load
 from mutabot.model.operation import Form
 from mutabot.proposal.named.entries import entries, unused
 from mutabot.proposal.named.meanings import Place, meaning
 from mutabot.proposal.named.seen import Part, uses
 from mutabot.proposal.vocabulary_text import entry_text, vocabulary_text
 from mutabot.runtime.watching.named import Parts, type_of
-from mutabot.vocabulary import load
 
 HEADER = "std_msgs/Header"
 POSE, POINT, ROTATION = "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Quaternion"

@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError
 from mutabot.model import Kind, Mode
 from mutabot.proposal import propose
 from mutabot.proposal.guess import Setting, guess_argument, guess_reading
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ROBOT = '''
 from dataclasses import dataclass

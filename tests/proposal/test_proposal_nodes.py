@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.check import check
+from mutabot.config.vocabulary import load
 from mutabot.model import Kind
 from mutabot.proposal import propose
 from mutabot.runtime.watching.described import ToldApart
-from mutabot.vocabulary import load
 from tests.campaign.project import Quiet, request_for
 
 FIELDBUS = """

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.request import Request
-from mutabot.settings.configuration import load_configuration
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.suggestion.checks import Check, Expected, band_of
 from mutabot.suggestion.project import Project, diff_of
 from mutabot.suggestion.prove import texts_with
 from mutabot.suggestion.readings import PROBE, WAY, Reading, commands_of, watch_of
 from mutabot.suggestion.style import OTHER, place_of
-from mutabot.vocabulary import load
 
 from .projects import STYLES, make, passes, patched
 

@@ -21,8 +21,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from mutabot.errors import ExtensionError, MutabotError, UsageError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, ExtensionError, MutabotError, UsageError
 from mutabot.extensions import brought, not_installed
 from mutabot.limits import shortened
 

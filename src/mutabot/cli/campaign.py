@@ -23,8 +23,8 @@ from mutabot.campaign.sharding import merge as merging
 from mutabot.cli import options
 from mutabot.cli.output import echo, print_json, progress_shown, show_results, tell
 from mutabot.cli.request import families_of, request_again, request_of
-from mutabot.errors import NothingToDoError, UsageError
-from mutabot.exit_codes import ExitCode
+from mutabot.config.configuration import Configuration, load_configuration
+from mutabot.errors import ExitCode, NothingToDoError, UsageError
 from mutabot.journal.files import HOME, JOURNAL, find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.report.document import replayed as replayed_data
@@ -34,7 +34,6 @@ from mutabot.report.terminal.mutant import print_replayed, print_suggestions
 from mutabot.results.gate import Decision, decide
 from mutabot.results.results import MutantResult, Results, find_mutant, read_results, results_at
 from mutabot.results.suggested import keep_suggestions
-from mutabot.settings.configuration import Configuration, load_configuration
 
 
 def init(

@@ -28,7 +28,7 @@ def _print_version(wanted: bool) -> None:
 
 
 def _families() -> list[str]:
-    from mutabot.settings.families import known_families  # noqa: PLC0415  # so that `--help` is fast
+    from mutabot.faults import known_families  # noqa: PLC0415  # so that `--help` is fast
 
     return list(known_families())
 

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Unpack
 
 from mutabot.campaign.request import ExecutorChoice, Request
+from mutabot.config.configuration import load_configuration
+from mutabot.config.options import Sample, Shard, seconds_of
+from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
+from mutabot.faults import asked_for
 from mutabot.model import Moment
 from mutabot.results.results import Results
-from mutabot.settings.configuration import load_configuration
-from mutabot.settings.families import asked_for
-from mutabot.settings.options import Sample, Shard, seconds_of
-from mutabot.vocabulary import load
 
 from .options import ENGINES, Running
 

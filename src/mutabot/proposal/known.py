@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary.load import shipped
 from mutabot.model import Operation
-from mutabot.vocabulary import load
-from mutabot.vocabulary.load import shipped
 
 from .layout import Layout, imported_modules
 from .observed import SeenCall

@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from mutabot.config.vocabulary import load
 from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY
 from mutabot.proposal.commands import commands_of, tells_commands
 from mutabot.proposal.vocabulary_text import vocabulary_text
-from mutabot.vocabulary import load
 
 from .compared import Unreached, compared_with, unreached
 from .known import Known, known_vocabularies

@@ -14,7 +14,7 @@ import pytest
 
 from campaign.project import write_project
 from mutabot.cli.app import main
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.reader import JournalReader
 from packages.live.visits import PATIENCE, ask, command, listening
 
