@@ -21,9 +21,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from mutabot.config.vocabulary import load
 from mutabot.init import propose
 from mutabot.model import Vocabulary
-from mutabot.vocabulary import load
 
 FOLDER = Path(__file__).parent / "drafts"
 #: wrong among all proposed lines, at most

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.check import check
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.init import propose
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 from tests.campaign.project import Quiet, request_for
 
 BULLET = """

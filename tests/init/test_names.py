@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 from mutabot.runtime.watching.values import look, type_of
 
+from mutabot.config.vocabulary import load
 from mutabot.init.messages import Place, entries, meaning
 from mutabot.init.observe import merged
 from mutabot.init.text import entry_text, vocabulary_text
 from mutabot.model.job import Part, Seen, Use, Values
 from mutabot.model.operation import Form
-from mutabot.vocabulary import load
 
 HEADER = "std_msgs/Header"
 POSE, POINT, ROTATION = "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Quaternion"

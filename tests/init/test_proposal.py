@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError
 from mutabot.init import propose
 from mutabot.init.guess import Setting, guess_argument, guess_reading
 from mutabot.init.words import words_of
 from mutabot.model import Kind, Mode
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ROBOT = '''
 from dataclasses import dataclass

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.check import check
+from mutabot.config.vocabulary import load
 from mutabot.init import propose
 from mutabot.model import Kind
 from mutabot.model.job import Call
 from mutabot.runtime.watching.callee import any_method
 from mutabot.runtime.watching.watch import _command, _Seen
-from mutabot.vocabulary import load
 from tests.campaign.project import Quiet, request_for
 
 FIELDBUS = """

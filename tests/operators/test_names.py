@@ -19,8 +19,8 @@ ROOMS = {"operators"}
 NAMES = {*operators.names(), *operators_of_packages(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
-    "opposite": {"init", "vocabulary"},
-    "noise": {"vocabulary", "report/thresholds"},
+    "opposite": {"init", "config/vocabulary"},
+    "noise": {"config/vocabulary", "report/thresholds"},
     "skip": {"cli"},
     "reverse": {"campaign/baseline/site_names.py"},  # a method of lists
     "drop": {"init"},

@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.request import Request
-from mutabot.settings.configuration import load_configuration
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.suggest.bands import band_of
 from mutabot.suggest.checks import Check
 from mutabot.suggest.place import OTHER, place_of
 from mutabot.suggest.project import Project, diff_of
 from mutabot.suggest.prove import texts_with
 from mutabot.suggest.readings import PROBE, Reading
-from mutabot.vocabulary import load
 
 from .projects import STYLES, make, passes, patched
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary.load import shipped
 from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY, Vocabulary
 from mutabot.model.job import Call
-from mutabot.vocabulary import load
-from mutabot.vocabulary.load import shipped
 
 from .commands import commands_of, tells_commands
 from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.config.vocabulary import load
 from mutabot.init import propose
-from mutabot.vocabulary import load
 
 DRIVER = """
     import rospy

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.config.vocabulary import load
 from mutabot.init import propose
-from mutabot.vocabulary import load
 
 pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
 

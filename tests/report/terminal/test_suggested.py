@@ -44,7 +44,7 @@ def shown(folder: Path, mutant: Mutant, found: Suggestions | None) -> str:
 
 def test_a_survivor_is_shown_with_the_check_that_kills_it(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NEGATE, FOUND)
-    assert "at the end of tests/test_box.py::test_arrives:" in text
+    assert "in tests/test_box.py::test_arrives:" in text
     assert CHECK.statement in text
     assert "kills #4 in round 1" in text
 
@@ -53,7 +53,7 @@ def test_where_none_was_looked_for_it_is_said_how(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NEGATE, None)
     assert "Add a probe or a test" in text  # nothing differs in this one
     left = Suggestions(unsolved=(Unsolved(samples.NEGATE.id, "the original itself spreads 5 mm"),))
-    assert "none was found: the original itself spreads 5 mm" in shown(tmp_path, samples.NEGATE, left)
+    assert "None was found: the original itself spreads 5 mm" in shown(tmp_path, samples.NEGATE, left)
     assert "A check" not in shown(tmp_path, samples.REVERSE, FOUND)
 
 

@@ -23,6 +23,8 @@ from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, says_same
 from mutabot.campaign.reuse.reuse import GONE, Earlier, Pair, Reused
 from mutabot.campaign.reuse.snapshot import WRITTEN, State, counts_by_name, is_note, own_files
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.errors import ConfigurationError, JournalError, UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
@@ -32,8 +34,6 @@ from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import SINCE, Since
 from mutabot.model import Mutant
 from mutabot.model.codec import to_data
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 _OPTION = "--since"
 
