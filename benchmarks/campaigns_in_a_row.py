@@ -35,9 +35,9 @@ from typing import Any
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ENGINES = ("branch", "replay")
 PEACE, INTERRUPTED, SIGINT, SIGKILL = "left in peace", "interrupted here", "SIGINT", "SIGKILL"

@@ -27,11 +27,11 @@ from textwrap import dedent
 from mutabot.campaign.engines import confirmation
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
 from mutabot.results.results import read_results
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 NAMES = ("many", "scales", "paper")

@@ -28,11 +28,11 @@ from rich.table import Table
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.model.codec import to_data
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ROOT = Path(__file__).resolve().parent.parent
 #: example to its rounds; one round of pick_and_place takes replay minutes

@@ -48,10 +48,10 @@ from mutabot.campaign.engines.fresh import replay
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.execution.workers import Workers
 from mutabot.model import Outcome
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES: dict[str, dict[str, Any]] = {

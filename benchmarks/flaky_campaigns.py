@@ -23,13 +23,13 @@ from textwrap import dedent
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
 from mutabot.results.results import Results, read_results
 from mutabot.results.statistics import Estimate, false_kills, false_survivors
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 _FILES = {
     "robot.py": """

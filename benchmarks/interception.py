@@ -13,11 +13,11 @@ import timeit
 from pathlib import Path
 from unittest.mock import Mock
 
+from mutabot.config.vocabulary import load
 from mutabot.model.events import Event
 from mutabot.model.job import Job
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
-from mutabot.vocabulary import load
 
 CALLS = 200_000
 ROBOT = "class Arm:\n    def move_by(self, dx):\n        return None\n"

@@ -24,10 +24,10 @@ from pathlib import Path
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.families import USUAL
 from mutabot.journal.journal import Journal
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ROOT = Path(__file__).resolve().parent.parent
 #: example to the folder in it with the project, and the module that it needs

@@ -63,7 +63,7 @@ def _example(name: str, seeds: int) -> bool:
         print(f"| {old['family']} · {old['role']} |", " | ".join(f"{100 * one:.1f} %" for one in cells), "|")
     for one in found["suggestions"]:
         kills = ", ".join(f"#{kill['mutant']['number']}" for kill in one["kills"])
-        print(f"\n- `{one['statement']}` ({one['band']}, {one['runs']} runs) kills {kills}")
+        print(f"\n- `{one['statement']}` ({one['runs']} runs) kills {kills}")
     for one in found["unsolved"]:
         mutant = one["mutant"]
         word = "never" if one["never"] else "not"

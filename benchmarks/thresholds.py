@@ -33,10 +33,10 @@ from unittest.mock import patch
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model.graded import Bracket, Seen, bracket_of, seen
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 ROOT = Path(__file__).resolve().parent.parent
 #: of pick_and_place: relative moves in x, y and z

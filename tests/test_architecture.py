@@ -14,9 +14,8 @@ from rooms import SOURCE, files, gathered, imports, levels, name_of, rooms
 
 #: package -> packages of ours it may import, beside ``frozen`` and ``lazy``
 ALLOWED = {
-    "exit_codes": set(),
     "limits": set(),
-    "errors": {"exit_codes", "limits"},
+    "errors": {"limits"},
     "extensions": {"errors"},
     "families": set(),
     "faults": {"errors", "extensions", "families", "model", "operators"},
@@ -24,24 +23,23 @@ ALLOWED = {
     "model": {"errors", "extensions", "families", "limits"},
     "languages": {"model"},
     "operators": {"errors", "extensions", "families", "model"},
-    "settings": {"errors", "extensions", "families", "limits", "model", "operators", "faults"},
-    "vocabulary": {"errors", "extensions", "families", "faults", "limits", "model", "settings"},
+    "config": {"errors", "extensions", "families", "limits", "model", "operators", "faults"},
     "evidence": {"model"},
     "runtime": {"errors", "extensions", "model", "languages", "operators", "evidence"},
     "execution": {"errors", "model"},
     "journal": {"errors", "model", "repository"},
     "campaign": {
-        "errors", "extensions", "families", "faults", "model", "languages", "settings", "execution",
-        "operators", "vocabulary", "journal", "evidence", "repository",
+        "errors", "extensions", "families", "faults", "model", "languages", "config", "execution",
+        "operators", "journal", "evidence", "repository",
     },
-    "proposal": {"errors", "extensions", "model", "execution", "settings", "vocabulary", "campaign"},
-    "suggestion": {"errors", "model", "journal", "campaign", "execution", "results"},
-    "results": {"exit_codes", "errors", "families", "model", "vocabulary", "journal", "evidence"},
-    "report": {"errors", "extensions", "model", "vocabulary", "journal", "results", "evidence"},
+    "init": {"errors", "extensions", "model", "config", "campaign", "execution"},
+    "suggest": {"errors", "model", "journal", "campaign", "execution", "results"},
+    "results": {"errors", "families", "model", "journal", "evidence"},
+    "report": {"errors", "extensions", "model", "journal", "results", "evidence"},
     "__main__": {"cli"},
     "cli": {
-        "exit_codes", "errors", "extensions", "families", "limits", "model", "settings", "execution",
-        "vocabulary", "journal", "campaign", "proposal", "suggestion", "results", "report",
+        "errors", "extensions", "families", "faults", "limits", "model", "config", "execution",
+        "journal", "campaign", "init", "suggest", "results", "report",
     },
 }  # fmt: skip
 FILES = files()

@@ -22,6 +22,8 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
 
+from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary.load import shipped
 from mutabot.model import Operation, Vocabulary
 from mutabot.model.events import Problem
 from mutabot.model.job import Job
@@ -30,8 +32,6 @@ from mutabot.runtime.event_file import Held
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.callables import Callables
-from mutabot.vocabulary import load
-from mutabot.vocabulary.load import shipped
 
 #: a member of an enumeration, as pybind11 writes one that is a default
 _DEFAULT_MEMBER = re.compile(r"<[^<>]*>")

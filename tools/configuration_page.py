@@ -10,14 +10,14 @@ from itertools import pairwise
 from textwrap import dedent
 from typing import Any
 
+from mutabot.config.configuration import Settings
+from mutabot.config.table import Table
 from mutabot.extensions import GROUP, brought
-from mutabot.settings.configuration import Settings
-from mutabot.settings.table import Table
 
 HEAD = """\
 # Which settings are there?
 
-<!-- Written by tools/make_docs.py from src/mutabot/settings/configuration.py and others. Do not edit. -->
+<!-- Written by tools/make_docs.py from src/mutabot/config/configuration.py and others. Do not edit. -->
 
 The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml`, there without that
 heading. `mutabot init` proposes one. An unknown key or a wrong value is an error that names the line and the

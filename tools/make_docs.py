@@ -51,23 +51,24 @@ GRADED_HEAD = """\
 `--family graded` plants the same fault at rising magnitudes, to find from which on the tests notice it: see
 [thresholds](thresholds.md), which also says where their ladders come from.
 """
-#: what the groups of the catalogue are called; by the file of their operators
+#: what the groups of the catalogue are called; by the tens of their operators' ranks
 GROUPS = {
-    "units": "Units",
-    "frames": "Frames, axes, joints and tools",
-    "orientations": "Orientations as a whole",
-    "order": "Order and time",
-    "readings": "Readings",
-    "actuation": "Actuation",
+    30: "Units",
+    31: "Frames, axes, joints and tools",
+    32: "Orientations as a whole",
+    33: "Order and time",
+    34: "Readings",
+    35: "Actuation",
 }
 
 TAIL = """\
 ## Your own operators
 
 An operator is a class with a name, a summary, examples and three methods. The contract is
-`src/mutabot/operators/operator.py`, the shortest ones stand in `src/mutabot/operators/robot/commands.py`.
-In mutabot itself it is in any file of `src/mutabot/operators/robot` or of a folder beside it, an old file or
-a new one; it is found there, and nothing else has to be edited. What it needs is a set, such as
+`src/mutabot/operators/operator.py`, the shortest ones stand in `src/mutabot/operators/kinds/commands.py`.
+In mutabot itself it is in any file of `src/mutabot/operators/kinds`, an old file or a new one; it is found
+there, and nothing else has to be edited. Its docstring is its documentation: what it does, and in a paragraph
+that begins with `Where:`, what it acts on. What it needs is a set, such as
 `needs = frozenset({Need.IDLE})`; where a need is not met, its mutants are left out, with the reason:
 
 | need | what it gets |
@@ -115,7 +116,7 @@ def page() -> str:
     graded = [each for each in operators if each.family == GRADED]
     first = [each for each in operators if each.family not in (CATALOGUE, GRADED)]
     groups = {
-        title: [each for each in operators if each.family == CATALOGUE and _group(each) == group]
+        title: [each for each in operators if each.family == CATALOGUE and each.rank // 10 == group]
         for group, title in GROUPS.items()
     }
     lines = [HEAD, *_overview(first), *_published(operators)]
@@ -145,11 +146,6 @@ def page_of_middleware() -> str:
 def _operators(*, of_middleware: bool) -> list[Operator]:
     found = (operator(name) for name in built_in())
     return [one for one in found if (one.family == MIDDLEWARE) is of_middleware]
-
-
-def _group(each: Operator) -> str:
-    """The file of an operator."""
-    return type(each).__module__.rpartition(".")[2]
 
 
 def _overview(operators: list[Operator]) -> Iterator[str]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from mutabot.report.terminal.console import plural
-from mutabot.report.thresholds.picture import FAINT, INK, PAPER, Picture, Rectangle, Words
+from mutabot.report.sections import plural
 
+from .drawing import FAINT, INK, PAPER, Picture, Rectangle, Words
 from .ends import End
 from .families import Family
 

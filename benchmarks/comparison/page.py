@@ -18,10 +18,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from mutabot.report.thresholds.picture import svg
-
 from .bars import FamilyBar, picture_of
 from .claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, further, percent, share_text
+from .drawing import svg
 from .ends import End
 
 DOCS = Path(__file__).parents[2] / "docs"

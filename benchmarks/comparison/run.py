@@ -23,13 +23,13 @@ from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_of
 from mutabot.families import GRADED
+from mutabot.faults import known_families
 from mutabot.journal.files import HOME
 from mutabot.journal.journal import JournalReader
 from mutabot.report.document import dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.progress import make_progress
 from mutabot.results.results import Results, read_results
-from mutabot.settings.families import known_families
 
 from . import without_checks
 from .data import comparison_data

@@ -24,12 +24,42 @@ facts are attributes.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from enum import IntEnum
 
-from .exit_codes import ExitCode
 from .limits import shortened
 
 #: signs of a name that a message shows
 _LONGEST_NAME = 300
+
+
+class ExitCode(IntEnum):
+    """The number that a command ends with; ``meaning`` is what docs/verdicts.md says of it."""
+
+    meaning: str
+
+    def __new__(cls, code: int, meaning: str) -> ExitCode:
+        """A number with what it means."""
+        member = int.__new__(cls, code)
+        member._value_, member.meaning = code, meaning
+        return member
+
+    FINE = 0, "fine"
+    SCORE_TOO_LOW = (
+        1,
+        "a score is under `--min-score` (or `min_score` in the configuration), in percent, or a site "
+        "tolerates more than a `demand` allows",
+    )
+    USAGE = 2, "the command line or a file is wrong"
+    NOTHING_KNOWN = 3, "the tests fail on the original, there are no mutants, or none of them was valid"
+    UNRELIABLE = (
+        4,
+        "a control ended wrongly, more errors than `error_limit` allows, too much is unstable, `--verify` "
+        "found a disagreement, the journal lacks an outcome, or `mutabot merge` lacks a shard",
+    )
+    TOO_MANY_TIMEOUTS = 5, "more time-outs than `timeout_limit` allows"
+    INTERNAL_ERROR = 70, "an internal error; `.mutabot/crash.txt` has the details"
+    INTERRUPTED = 130, "interrupted by Ctrl-C; `mutabot results` shows the results so far"
+    TERMINATED = 143, "ended by SIGTERM, as Ctrl-C ends it; `mutabot results` shows the results so far"
 
 
 class MutabotError(Exception):
@@ -94,6 +124,8 @@ class VocabularyError(ConfigurationError):
 class UnknownNameError(VocabularyError):
     """A vocabulary or configuration uses a name that does not exist.
 
+    ``text`` replaces the sentence that is made of ``kind``, ``name`` and ``known``.
+
     Attributes:
         name: the name as written.
         nearest: the existing name most like it, or None.
@@ -105,14 +137,16 @@ class UnknownNameError(VocabularyError):
         name: str,
         known: Iterable[str],
         *,
+        nearest: str | None = None,
+        text: str | None = None,
         file: str | None = None,
         key: str | None = None,
         line: int | None = None,
     ) -> None:
-        self.name = name
-        known = sorted(set(known))
-        self.nearest = nearest_name(name, known)
-        super().__init__(unknown_name_text(kind, name, known), file=file, key=key, line=line)
+        known = set(known)
+        self.name, self.nearest = name, nearest or nearest_name(name, known)
+        problem = text or unknown_name_text(kind, name, known, self.nearest)
+        super().__init__(problem, file=file, key=key, line=line)
 
 
 class BaselineError(MutabotError):
@@ -224,11 +258,11 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
     return by_folded[matches[0]] if matches else None
 
 
-def unknown_name_text(kind: str, name: str, known: Iterable[str]) -> str:
+def unknown_name_text(kind: str, name: str, known: Iterable[str], nearest: str | None = None) -> str:
     """One sentence for a name that does not exist: the nearest one, or all there are."""
     known = sorted(set(known))
     shown = shortened(name, _LONGEST_NAME)
-    nearest = nearest_name(name, known)
+    nearest = nearest or nearest_name(name, known)
     if nearest is not None:
         return f"unknown {kind} {shown!r}; did you mean {nearest!r}?"
     listed = ", ".join(known[:12]) + (" …" if len(known) > 12 else "")

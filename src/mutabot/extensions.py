@@ -71,8 +71,8 @@ class Extension:
         versions: distributions whose versions decide how tests end; a campaign's journal notes them.
         executors: subclasses of ``mutabot.campaign.request.ExecutorChoice``. One named ``cluster``
             gives commands that run campaigns an option ``--cluster``, whose value says where.
-        tables: subclasses of ``mutabot.settings.table.Table``, by the table's name in the configuration.
-        commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.commands``).
+        tables: subclasses of ``mutabot.config.table.Table``, by the table's name in the configuration.
+        commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.app.Commands``).
         formats: a ``mutabot.report.format.Format`` each, by its name.
         sections: functions of ``mutabot.results.results.Results`` that make a section of the results
             document each, of plain data, by its name.
@@ -139,6 +139,18 @@ class Part:
         if not (isinstance(found, type) and issubclass(found, base)):
             raise ExtensionError(f"{self.words} is not a subclass of {base.__module__}.{base.__qualname__}")
         return found
+
+    def make(self, base: type[T]) -> T:
+        """An object of that class. Raises ExtensionError also if its ``name`` is another one."""
+        kind = self.load_class(base)
+        try:
+            made = kind()
+        except Exception as error:  # as above
+            raise ExtensionError(f"{self.words} cannot be made: {error!r}") from error
+        name = getattr(made, "name", None)
+        if name != self.name:
+            raise ExtensionError(f"{self.words} calls itself {name!r}; extension and class must agree")
+        return made
 
     @property
     def words(self) -> str:

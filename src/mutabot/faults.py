@@ -21,8 +21,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
-from mutabot.errors import ExtensionError
-from mutabot.extensions import Part, brought
+from mutabot.errors import UsageError, unknown_name_text
+from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
 from mutabot.frozen import frozen
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
@@ -189,19 +189,7 @@ class FaultProvider(ABC):
 @cache
 def brought_providers() -> tuple[FaultProvider, ...]:
     """The providers of packages. Raises ExtensionError for one that is of no use."""
-    return tuple(_made(part) for part in brought("faults").values())
-
-
-def _made(part: Part) -> FaultProvider:
-    kind = part.load_class(FaultProvider)  # type: ignore[type-abstract]
-    try:
-        made = kind()
-    except Exception as error:  # a package of others may fail in any way
-        raise ExtensionError(f"{part.words} cannot be made: {error!r}") from error
-    if getattr(made, "name", None) != part.name:
-        name = getattr(made, "name", None)
-        raise ExtensionError(f"{part.words} calls itself {name!r}; the extension and the class must agree")
-    return made
+    return tuple(part.make(FaultProvider) for part in brought("faults").values())  # type: ignore[type-abstract]
 
 
 def families_brought(*, without_vocabulary: bool = False) -> tuple[str, ...]:
@@ -220,3 +208,32 @@ def need_vocabulary(families: Iterable[str]) -> bool:
     """Whether mutants of any of these families need a vocabulary."""
     asked = set(families)
     return not asked.isdisjoint(OF_CALLS) or not asked <= set(families_brought(without_vocabulary=True))
+
+
+def why_unknown(name: str) -> str | None:
+    """Why there is no family of this name, with the nearest that is there; None if there is one."""
+    if name in OF_CALLS or name in families_brought() or name in known_families():
+        return None
+    return unknown_name_text("family", name, known_families())
+
+
+def asked_for(names: Iterable[str]) -> tuple[str, ...]:
+    """These families, each once, in the order of their mutants' numbers.
+
+    Raises UsageError for a name that is none.
+    """
+    names = list(names)
+    for name in names:
+        why = why_unknown(name)
+        if why is not None:
+            raise UsageError(why)
+    known = OF_CALLS if set(names) <= set(OF_CALLS) else known_families()
+    return tuple(family for family in known if family in names)
+
+
+def known_families() -> tuple[str, ...]:
+    """All that can be asked for. Raises OperatorError or ExtensionError for a package that is of no use."""
+    from mutabot.operators import load_all  # noqa: PLC0415  # most campaigns ask for mutabot's own
+
+    of_operators = (rule.family for rule in load_all())
+    return tuple(dict.fromkeys((*OF_CALLS, *of_operators, *families_brought())))

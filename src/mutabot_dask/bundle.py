@@ -20,7 +20,7 @@ from .environment import decided
 from .shipping import Shipment
 
 if TYPE_CHECKING:
-    from mutabot.settings.configuration import Configuration
+    from mutabot.config.configuration import Configuration
 
 
 #: bytes of a bundle that go with one message

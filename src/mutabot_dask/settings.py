@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from mutabot.campaign.request import ExecutorChoice, Request
+from mutabot.config.table import ProjectFiles, Table
 from mutabot.errors import UsageError
 from mutabot.execution.task import Executor
-from mutabot.settings.table import ProjectFiles, Table
 
 if TYPE_CHECKING:
-    from mutabot.settings.configuration import Configuration
+    from mutabot.config.configuration import Configuration
 
     from .bundle import Forecast
 

@@ -16,10 +16,10 @@ from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from mutabot.campaign.reuse.snapshot import _is_folder_of_project
+from mutabot.config.configuration import Configuration
 from mutabot.errors import ClusterError
 from mutabot.journal.files import HOME
 from mutabot.repository import GitError, repository_of, tracked, unignored
-from mutabot.settings.configuration import Configuration
 
 from .settings import ClusterTable
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.errors import JournalError
-from mutabot.report.html.folder import campaign_data, script_of
+from mutabot.report.html.folder import campaign_data, script
 from mutabot.report.html.mutant import Recorded, mutant_page
 from mutabot.report.texts import Cleaner, portable
 from mutabot.results.results import MutantResult, Results, results_at
@@ -127,10 +127,10 @@ class Pages:
         if path not in self._scripts:
             if path == "data/campaign.js":
                 data: Any = {**campaign_data(campaign, self._name), "version": snapshot.version}
-                self._scripts[path] = _bytes("campaign", data)
+                self._scripts[path] = script("campaign", data)
             else:
                 sources = [[file, text] for file, text in campaign.sources.items()]
-                self._scripts[path] = _bytes("sources", sources)
+                self._scripts[path] = script("sources", sources)
         return self._scripts[path]
 
     def _mutant(self, number: int, snapshot: _Snapshot) -> bytes | None:
@@ -139,24 +139,24 @@ class Pages:
         result = next(found, None)
         if result is None:
             return None
-        page = _bytes(f"mutant {number}", {**mutant_page(result), "suggestion": None, "media": []})
+        page = script(f"mutant {number}", {**mutant_page(result), "suggestion": None, "media": []})
         with closing(StoredEvidence(self._journal)) as evidence:
             # originals that were asked for before keep their numbers: browsers know them by these
             known = self._recorded.originals if self._recorded is not None else {}
             recorded = self._recorded = Recorded(evidence, snapshot.clean, known)
             data = _recordings(recorded, result)
-            return page + (_bytes(f"recordings {number}", data) if any(data.values()) else b"")
+            return page + (script(f"recordings {number}", data) if any(data.values()) else b"")
 
     def _original(self, number: int, snapshot: _Snapshot) -> bytes | None:
         originals = [*self._recorded.originals.values()] if self._recorded is not None else []
-        return _bytes(f"original {number}", originals[number]) if number < len(originals) else None
+        return script(f"original {number}", originals[number]) if number < len(originals) else None
 
 
 def _recordings(recorded: Recorded, result: MutantResult) -> dict[str, Any]:
     found: list[Any] = []
     used = 0
     for one in recorded.of(result):
-        used += len(script_of("", one))
+        used += len(script("", one))
         if used > _ROOM:
             break
         found.append(one)
@@ -165,10 +165,6 @@ def _recordings(recorded: Recorded, result: MutantResult) -> dict[str, Any]:
 
 def _script(data: bytes) -> Page:
     return Page(_KINDS[".js"], data)
-
-
-def _bytes(name: str, data: Any) -> bytes:
-    return script_of(name, data).encode("utf-8", errors="replace")
 
 
 def _assets() -> Iterator[tuple[str, Page]]:

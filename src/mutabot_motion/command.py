@@ -18,9 +18,9 @@ import typer
 from mutabot.campaign.again import anew
 from mutabot.campaign.request import Progress, Request
 from mutabot.cli import options
+from mutabot.cli.campaign import number_of
 from mutabot.cli.output import progress_shown, tell
 from mutabot.cli.request import request_again
-from mutabot.cli.results import number_of
 from mutabot.errors import SelectionError, UsageError
 from mutabot.journal.files import find_journal
 from mutabot.journal.journal import JournalReader

@@ -9,7 +9,7 @@ EXTENSION = Extension(
     commands={
         "motion": Described(
             "mutabot_motion.command:motion",
-            "Show what one mutant of the last campaign did, beside the original.",
+            "Show or film what one mutant did.",
         )
     },
 )

@@ -11,10 +11,10 @@ import pytest
 
 from comparison.bars import COLOURS, FamilyBar, bars_of, picture_of
 from comparison.data import comparison_data
+from comparison.drawing import Rectangle, svg
 from comparison.ends import End
 from comparison.families import FamilyComparison, compare_families
 from mutabot.report.document import dumps
-from mutabot.report.thresholds.picture import Rectangle, svg
 
 from . import campaigns
 

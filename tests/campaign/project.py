@@ -16,10 +16,10 @@ import pytest
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 #: the reference, as one of several engines: it takes long, and that it agrees with branches is for the corpus
 REPLAY = pytest.param("replay", marks=pytest.mark.whole)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.run import run_campaign
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.journal import JournalReader
 from mutabot.model import Verdict
 from mutabot.results.gate import decide

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from mutabot import errors
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 
 PAGE = Path(__file__).parents[2] / "docs" / "verdicts.md"
 _ROW = re.compile(r"^\| (\d+) \| (.*) \|$", re.MULTILINE)

@@ -7,20 +7,20 @@ import shutil
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, get_args, get_origin
 
 import pytest
+import typer
 from pydantic import BaseModel
 from typer.models import OptionInfo
 
 from mutabot import limits
-from mutabot.cli.app import app, main
-from mutabot.errors import ConfigurationError
-from mutabot.exit_codes import ExitCode
-from mutabot.extensions import brought
-from mutabot.settings.configuration import Settings, load_configuration
-from mutabot.settings.demands import DemandTable
-from mutabot.vocabulary import load, schema
+from mutabot.cli.app import app, function_of, main
+from mutabot.cli.options import with_options
+from mutabot.config.configuration import Settings, load_configuration
+from mutabot.config.demands import DemandTable
+from mutabot.config.vocabulary import load, schema
+from mutabot.errors import ConfigurationError, ExitCode
 from tests.campaign.project import write_project
 
 DIGITS = "9" * 400
@@ -42,11 +42,10 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def declared() -> Iterator[tuple[str, set[type], set[str], Any]]:
     """Command, types, names and declaration of every option."""
-    own = [(command.name, command.callback) for command in app.registered_commands if command.callback]
-    of_packages = [(part.name, part.load()) for part in brought("commands").values()]
-    for named, callback in [*own, *of_packages]:
-        name = named or callback.__name__
-        for hint in get_type_hints(callback, include_extras=True).values():
+    group: Any = typer.main.get_command(app)
+    for name in group.list_commands(None):
+        callback = with_options(function_of(name))
+        for hint in callback.__annotations__.values():
             if get_origin(hint) is Annotated and isinstance(hint.__metadata__[0], OptionInfo):
                 kind = get_args(hint)[0]
                 option = hint.__metadata__[0]
@@ -157,7 +156,6 @@ QUANTITY = OPERATION + "arguments.dx = { kind = 'translation', mode = 'by', unit
 PLACES: list[tuple[str, type[BaseModel], set[str]]] = [
     (QUANTITY, schema.QuantityTable, {"kind", "mode", "unit"}),
     (OPERATION + "KEY = %s", schema.OperationTable, {"call"}),
-    ("[[operation]]\ntopic = '/a'\nKEY = %s", schema.NamedTable, {"topic"}),
     ("[clock]\nKEY = %s", schema.ClockTable, set()),
     ("[wait]\nKEY = %s", schema.WaitTable, set()),
     ("[[probe]]\ncall = 'a:b'\nKEY = %s", schema.ProbeTable, {"call"}),

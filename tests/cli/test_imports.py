@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.cli.report import FORMATS
+from mutabot.report.format import names
 from results import samples
 from results.thresholds import journals
 
 #: what runs a campaign, and what that needs
 NOT_FOR_LOOKING = (
     "mutabot.model.job", "mutabot.campaign", "mutabot_source", "mutabot.runtime",
-    "mutabot.operators", "mutabot.proposal", "mutabot.settings", "mutabot.vocabulary", "libcst", "numpy",
+    "mutabot.operators", "mutabot.init", "mutabot.config", "mutabot.config.vocabulary", "libcst", "numpy",
     "scipy", "tomllib", "wrapt",
 )  # fmt: skip
 #: what says what a package brings, which may be a section of the results
@@ -41,7 +41,7 @@ def test_looking_at_results_loads_nothing_that_runs_a_campaign(tmp_path: Path, w
     assert_light(done.stderr)
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", names())
 def test_a_report_loads_nothing_that_runs_a_campaign_and_no_other_format(tmp_path: Path, name: str) -> None:
     samples.write_journal(tmp_path / ".mutabot" / "journal.sqlite")
     words = [sys.executable, "-c", CODE, "-C", str(tmp_path), "report", "--format", name]

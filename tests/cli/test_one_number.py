@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.cli.app import main
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from tests.campaign.project import write_project
 
 MISSION = """

@@ -14,8 +14,6 @@ from results import samples
     ("words", "told"),
     [
         ("--round 9", "there is no round 9; the campaign has 2"),
-        ("--video a.mp4", "--video is gone; use `mutabot motion MUTANT --video`"),
-        ("--view", "--view is gone; `mutabot motion MUTANT --rerun`"),
     ],
 )
 def test_what_cannot_be_done_is_2_before_anything_runs(

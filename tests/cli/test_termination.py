@@ -12,7 +12,7 @@ from uuid import uuid4
 import pytest
 
 from mutabot.cli.app import main, terminated_like_ctrl_c
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.journal import JournalReader
 from tests.campaign.project import write_project
 
@@ -69,7 +69,7 @@ def test_a_campaign_that_is_terminated_ends_cleanly_and_goes_on_later(
         process.kill()
         process.communicate()
     assert process.returncode == ExitCode.TERMINATED == 128 + signal.SIGTERM
-    assert err.endswith("ended by SIGTERM; `mutabot results` shows what is there\n")
+    assert err.endswith("ended by SIGTERM; `mutabot results` shows the results so far\n")
     assert marked(mark) == []
     assert not list((tmp_path / ".mutabot").glob("work-*"))
     with JournalReader.open(tmp_path / ".mutabot" / "journal.sqlite") as journal:

@@ -91,7 +91,7 @@ TRAVELS = {
 ON_MANY_WAYS = {
     "model.event_file.unsealed", "runtime.event_file.EventFile.send",
     "report.terminal.progress.Lines.advance",
-    "settings.document.Document.read",
+    "config.document.Document.read",
 }  # fmt: skip
 
 

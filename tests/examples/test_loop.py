@@ -10,10 +10,10 @@ from tests.campaign.project import Quiet
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Moment, Verdict
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "loop"
 #: why each must end so: a policy that sees what happened makes up for one step, and for none that are missing

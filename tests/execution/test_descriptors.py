@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.errors import ExitCode
 from mutabot.execution.processes import needed
-from mutabot.exit_codes import ExitCode
 from tests.campaign.project import REPLAY, write_project
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n"

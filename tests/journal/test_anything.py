@@ -15,14 +15,12 @@ from typing import Any
 import pytest
 
 from mutabot.cli.app import main
-from mutabot.cli.report import FORMATS
-from mutabot.errors import JournalError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, JournalError
 from mutabot.journal.database import columns, decode, mark_of
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import REACHING
 from mutabot.model.events import TestEnd
-from mutabot.report.format import Material, format_of
+from mutabot.report.format import Material, format_of, names
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
@@ -162,7 +160,7 @@ def written_as(name: str) -> Callable[[Path], None]:
 @pytest.mark.whole
 def test_rows_may_hold_anything(whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chance = random.Random(SEED)
-    ways = [read_all, read_all, *(written_as(name) for name in FORMATS)]
+    ways = [read_all, read_all, *(written_as(name) for name in names())]
     expected = {(one.mutant, one.round): one for one in samples.OUTCOMES}
     path = tmp_path / "journal.sqlite"
     for number in range(TIMES):

@@ -12,9 +12,9 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
+from mutabot.config.options import Shard
 from mutabot.errors import JournalError
 from mutabot.journal.files import refuse_tracked
-from mutabot.settings.options import Shard
 from tests.campaign.project import Quiet, request_for, write_project
 
 from .edited import edited

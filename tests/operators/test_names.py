@@ -19,13 +19,13 @@ ROOMS = {"operators"}
 NAMES = {*operators.names(), *operators_of_packages(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
-    "opposite": {"proposal", "vocabulary"},
-    "noise": {"vocabulary", "report/thresholds"},
+    "opposite": {"init", "config/vocabulary"},
+    "noise": {"config/vocabulary", "report/thresholds"},
     "skip": {"cli"},
     "reverse": {"campaign/baseline/site_names.py"},  # a method of lists
-    "drop": {"proposal"},
-    "delay": {"proposal"},
-    "offset": {"proposal", "model"},  # what a demand means that names none
+    "drop": {"init"},
+    "delay": {"init"},
+    "offset": {"init", "model"},  # what a demand means that names none
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)

@@ -90,7 +90,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with copies of two packages, into each of which a file was dropped."""
     folder = tmp_path_factory.mktemp("site")
     copied(folder, {"operators/zero.py": ZERO}, of=import_module("mutabot_source"))
-    return copied(folder, {"operators/robot/too_much.py": TOO_MUCH})
+    return copied(folder, {"operators/kinds/too_much.py": TOO_MUCH})
 
 
 def of_both_families(site: Path, folder: Path, *arguments: str) -> dict[str, Any]:

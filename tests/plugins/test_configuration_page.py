@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import configuration_page
-from mutabot.settings.configuration import Settings
-from mutabot.settings.table import Table
+from mutabot.config.configuration import Settings
+from mutabot.config.table import Table
 
 PAGE = Path(__file__).parents[2] / "docs" / "configuration.md"
 #: what must be given

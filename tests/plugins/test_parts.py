@@ -51,7 +51,7 @@ PARTS = '''
     from mutabot.cli.request import request_of
     from mutabot.errors import UsageError
     from mutabot.report.format import Format
-    from mutabot.settings.table import ProjectFiles, Table
+    from mutabot.config.table import ProjectFiles, Table
 
     class ToyTable(Table):
         files: ProjectFiles = ()
@@ -247,7 +247,7 @@ def test_a_package_that_does_not_fit_is_named(old: str, new: str, told: str, tmp
             ["run", "--toy", "gently"],
             "is not a subclass of mutabot.campaign",
         ),
-        ("parts:ToyTable", "parts:Choice", ["list"], "is not a subclass of mutabot.settings.table.Table"),
+        ("parts:ToyTable", "parts:Choice", ["list"], "is not a subclass of mutabot.config.table.Table"),
         ('tables={"toy"', 'tables={"seed"', ["list"], "has the name of one of 'mutabot' (tables)"),
         ('"toys"', '"csv"', ["report", "--format", "pages"], "has the name of one of 'mutabot' (formats)"),
         ("parts:FORMAT", "parts:play", ["report", "--format", "toys"], "is no mutabot.report.format.Format"),

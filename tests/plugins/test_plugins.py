@@ -71,12 +71,12 @@ BROKEN = {
     ),
     "has another name": (
         "late",
-        "from mutabot.operators.robot.commands import Skip\nclass Rule(Skip):\n    name = 'early'",
+        "from mutabot.operators.kinds.commands import Skip\nclass Rule(Skip):\n    name = 'early'",
         "'early'",
     ),
     ON_USE: (
         "late",
-        "from mutabot.operators.robot.commands import Skip\nclass Rule(Skip):\n    name = 'late'\n"
+        "from mutabot.operators.kinds.commands import Skip\nclass Rule(Skip):\n    name = 'late'\n"
         "    def subjects(self, operation, pattern):\n        raise KeyError('frame')",
         "KeyError('frame')",
     ),
@@ -84,7 +84,7 @@ BROKEN = {
 
 #: repeats a call; breaks on a real answer, which the plan's rehearsal does not have
 BREAKS_LATE = """
-from mutabot.operators.robot.commands import Repeat
+from mutabot.operators.kinds.commands import Repeat
 from mutabot.operators import Subject
 
 class Rule(Repeat):
@@ -107,7 +107,7 @@ class Rule(Repeat):
 
 #: a family that mutabot itself does not have
 OF_ITS_OWN = """
-from mutabot.operators.robot.readings import Negate
+from mutabot.operators.kinds.readings import Negate
 
 class Rule(Negate):
     name = "late"

@@ -48,7 +48,7 @@ def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
     (notice,) = json.loads(made("sarif", found))["runs"][0]["invocations"][0]["toolExecutionNotifications"]
     assert notice == {"level": "note", "message": {"text": f"{TEXT}."}}
     assert campaign_data(found, "cell")["confirmed"] == TEXT
-    assert "'unconfirmed': True" in str(mutant_page(survivor))
+    assert "'confirmed': False" in str(mutant_page(survivor))
     data = document(found)
     assert data["confirmation"]["text"] == TEXT
     assert data["confirmation"]["left"] == len(SURVIVORS)

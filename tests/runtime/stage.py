@@ -15,13 +15,13 @@ from textwrap import dedent
 from types import ModuleType
 from typing import Any
 
+from mutabot.config.vocabulary import load
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.events import Event, SiteSeen
 from mutabot.model.job import Budget, Job
 from mutabot.runtime.interception.active_mutant import Activation
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
-from mutabot.vocabulary import load
 
 _numbers = count(1)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mutabot.campaign.run import at_it, begin
-from mutabot.model.units import ALL_FILES, File
+from mutabot.model.source_units import ALL_FILES, File
 from tests.campaign.project import Quiet, request_for, write_project
 
 NAMES = ("mission.py", "robot.py", "tests/test_mission.py")

@@ -14,13 +14,13 @@ from typing import Any
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import plan_only, run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.report.document import data_of, document
 from mutabot.results.results import read_results
 from mutabot.runtime.seeds import derive
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 from .editor import Facts
 from .graded_editor import OPERATORS as GRADED_OPERATORS

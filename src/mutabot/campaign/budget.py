@@ -19,11 +19,11 @@ from mutabot.campaign.faults.demanded import apart
 from mutabot.campaign.plan import shuffled
 from mutabot.campaign.reuse.reuse import Reused
 from mutabot.campaign.search import run_ladders
+from mutabot.config.options import in_words
 from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.codec import to_data
-from mutabot.settings.options import in_words
 
 Pair = tuple[str, int]
 

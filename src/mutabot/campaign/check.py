@@ -13,6 +13,8 @@ from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.run import at_it, begin, plan_of, selected
+from mutabot.config.configuration import Configuration
+from mutabot.config.vocabulary.load import shipped
 from mutabot.extensions import brought
 from mutabot.families import CATALOGUE
 from mutabot.journal.files import refuse_tracked
@@ -20,8 +22,6 @@ from mutabot.model import Mutant, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.operation import MAIN
 from mutabot.operators import load_all
-from mutabot.settings.configuration import Configuration
-from mutabot.vocabulary.load import shipped
 
 
 def check(request: Request, progress: Progress) -> CheckReport:

@@ -15,14 +15,13 @@ from itertools import groupby
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.faults.providers import asked_for, provider, rules_of
 from mutabot.campaign.request import Request
-from mutabot.faults import Preparation, Project
+from mutabot.config.options import Sample
+from mutabot.faults import Preparation, Project, known_families
 from mutabot.frozen import frozen
 from mutabot.journal.records import Drawing, Reaching, Stratum
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Place
 from mutabot.operators.operator import Rule, in_order
-from mutabot.settings.families import known_families
-from mutabot.settings.options import Sample
 
 
 @frozen

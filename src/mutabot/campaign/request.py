@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, Self
 
+from mutabot.config.configuration import Configuration
+from mutabot.config.options import Sample, Shard
 from mutabot.execution.interruption import Pause
 from mutabot.execution.task import Executor
 from mutabot.extensions import told_to_processes
@@ -19,8 +21,6 @@ from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.model.job import Job
-from mutabot.settings.configuration import Configuration
-from mutabot.settings.options import Sample, Shard
 
 
 class Preview(Protocol):

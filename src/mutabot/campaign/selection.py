@@ -14,11 +14,11 @@ from pathlib import Path
 from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.campaign.request import Request
 from mutabot.errors import SelectionError, nearest_name
+from mutabot.faults import known_families
 from mutabot.languages.registry import program_files
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Role, fits, is_like, line_of, means_numbers
 from mutabot.operators import registry
-from mutabot.settings.families import known_families
 
 #: signs of a word that messages show
 _LONGEST = 200

@@ -1,72 +1,101 @@
-"""The command line. Exceptions become exit codes in ``main`` and nowhere else.
+"""The command line. ``main`` alone turns exceptions into exit codes.
 
-Each group of commands has a file; what a command needs is imported inside it, so that ``--help`` is fast.
-SIGTERM ends a command as Ctrl-C does: nothing is lost, and nothing is left behind.
+A command is imported when it runs, so that ``--help`` is fast. SIGTERM ends a command as Ctrl-C does.
 """
 
 from __future__ import annotations
 
+import argparse
+import importlib
 import re
 import signal
 import sys
 import threading
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import zip_longest
 from pathlib import Path
 from types import FrameType
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from mutabot.cli import campaign, report, results, thresholds
-from mutabot.errors import MutabotError, UsageError
-from mutabot.exit_codes import ExitCode
-from mutabot.extensions import not_installed
+from mutabot.errors import ExitCode, ExtensionError, MutabotError, UsageError
+from mutabot.extensions import brought, not_installed
 from mutabot.limits import shortened
 
-from .commands import SETTINGS, Commands
 from .options import Version, with_options
 
-_COMMANDS = {"compare": "`make comparison` in a clone of mutabot compares families of mutants"}
-_OPTIONS = {
-    "--selection": "use --only @FILE",
-    "--when": "use -o when=MOMENT",
-    **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
-    "--baseline": "use -o baseline_repetitions=N",
-    "--table": "`mutabot results` prints the table",
-    "--serve": "`mutabot live` runs a campaign with its page",
-    "--tls-ca": "use -o cluster.ca=FILE",
-    "--tls-cert": "use -o cluster.cert=FILE",
-    "--tls-key": "use -o cluster.key=FILE",
-    "--one-per-site": "use --sample",
-    "--whole-ladders": "every magnitude is run only where the search needs it",
-    "--sites-only": "--since runs what a change can have altered",
-    "--confirm": "use --verify N",
-    "--repeats": "kills that may be a coincidence are re-run anyway",
-    "--no-repeats": "use -o repeats=false",
-    "--write": "apply the diff that it prints",
-    "--view": "`mutabot motion MUTANT --rerun` shows what was recorded",
-    "--mixed": "workers run with the same versions as this machine",
-    **{
-        option: f"use `mutabot motion MUTANT {option}`"
-        for option in ("--test", "--video", "--rerun", "--rrd", "--mcap")
-    },
+#: characters of a message about the command line
+_LONGEST = 400
+#: mutabot's own commands: their module in this folder, and what ``--help`` says of them
+_OWN = {
+    "init": ("campaign:init", "Draft a configuration and a vocabulary."),
+    "check": ("campaign:check", "Try the set-up without running mutants."),
+    "list": ("campaign:list_", "List the mutants that would run."),
+    "operators": ("campaign:operators", "List the operators and the bugs they stand for."),
+    "run": ("campaign:run", "Run the campaign, or continue it."),
+    "merge": ("campaign:merge", "Merge the journals of shards."),
+    "replay": ("campaign:replay", "Re-run one mutant in fresh processes."),
+    "suggest": ("campaign:suggest", "Suggest checks that kill survivors."),
+    "results": ("results:results", "List mutants, scores and survivors."),
+    "show": ("results:show", "Show the details of one mutant."),
+    "thresholds": ("results:thresholds", "Show how large a fault the tests miss."),
+    "report": ("results:report", "Write pages, or formats of other tools."),
+}
+#: settings of every command, mutabot's own and those of packages
+SETTINGS: dict[str, Any] = {
+    "context_settings": {"help_option_names": ["-h", "--help"]},
+    "pretty_exceptions_enable": False,
+    "rich_markup_mode": None,
 }
 
 
-def gone(error: Exception) -> str | None:
-    """What to say of the parser's error; None if it is about nothing that there ever was, or could be."""
-    option: str = getattr(error, "option_name", None) or ""
-    if option in _OPTIONS:
-        return f"{option} is gone; {_OPTIONS[option]}"
-    found = re.match(r"No such command '([^']*)'", getattr(error, "message", ""))
-    command = found[1] if found is not None else ""
-    if command in _COMMANDS:
-        return f"the command {command} is gone; {_COMMANDS[command]}"
-    missing = not_installed(option.removeprefix("--"), "executors") or not_installed(command, "commands")
-    return None if missing is None else f"{option or f'the command {command}'} {missing}"
+class Commands(TyperGroup):
+    """Mutabot's own commands and those of packages.
+
+    A command is a function from which typer can make one. Its parameter ``context`` has the project's folder
+    as ``obj``. With a parameter ``executor`` and ``**given: Unpack[options.Running]`` it has the options of
+    ``run`` and of the executors; ``cli.request.request_of`` makes a request of them.
+    """
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return all names."""
+        return [*_OWN, *brought("commands", _OWN)]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return the help of a command; None if there is no such command."""
+        if cmd_name in _OWN:
+            return _command(cmd_name, lambda: None, _OWN[cmd_name][1])
+        part = brought("commands", _OWN).get(cmd_name)
+        return None if part is None else _command(cmd_name, lambda: None, part.help)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the name of the command to run, the command, and its arguments."""
+        if args and args[0] not in _OWN:
+            names: Any = dict.fromkeys(self.list_commands(ctx))
+            self.commands = names  # typer suggests the nearest of these
+        name, _, rest = super().resolve_command(ctx, args)
+        return name, _command(str(name), with_options(function_of(str(name)))), rest
+
+
+def function_of(name: str) -> Callable[..., object]:
+    """Import the function of a command."""
+    if name in _OWN:
+        module, _, attribute = _OWN[name][0].partition(":")
+        return getattr(importlib.import_module(f"mutabot.cli.{module}"), attribute)  # type: ignore[no-any-return]
+    part = brought("commands", _OWN)[name]
+    found = part.load()
+    if not callable(found):
+        raise ExtensionError(f"{part.words} is no function")
+    return found  # type: ignore[no-any-return]
+
+
+def _command(name: str, function: Callable[..., object], help: str | None = None) -> Any:
+    one = typer.Typer(add_completion=False, **SETTINGS)
+    one.command(name, help=help)(function)
+    return typer.main.get_command(one)
 
 
 class Termination:
@@ -76,8 +105,7 @@ class Termination:
         has_come: whether there was one.
     """
 
-    def __init__(self) -> None:
-        self.has_come = False
+    has_come = False
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         """Do what Ctrl-C does at this moment."""
@@ -89,10 +117,10 @@ class Termination:
 
 @contextmanager
 def terminated_like_ctrl_c() -> Iterator[Termination]:
-    """Inside, SIGTERM does what Ctrl-C does.
+    """Make SIGTERM do what Ctrl-C does.
 
-    Does nothing in other threads than the main one, which Python tells nothing of signals, and where somebody
-    else handles it already or it is ignored.
+    Does nothing outside the main thread, which alone receives signals, and where SIGTERM is handled or
+    ignored already.
     """
     termination = Termination()
     is_main = threading.current_thread() is threading.main_thread()
@@ -105,10 +133,6 @@ def terminated_like_ctrl_c() -> Iterator[Termination]:
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
-
-#: signs of a message about the command line
-_LONGEST = 400
-_SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
 
 app = typer.Typer(
     name="mutabot",
@@ -133,32 +157,17 @@ def options(
     context.obj = project
 
 
-# in this order they stand in --help
-app.command(rich_help_panel=_SETUP)(campaign.init)
-app.command(rich_help_panel=_SETUP)(with_options(campaign.check))
-app.command("list", rich_help_panel=_SETUP)(with_options(campaign.list_))
-app.command(rich_help_panel=_SETUP)(campaign.operators)
-app.command(rich_help_panel=_RUN)(with_options(campaign.run))
-app.command(rich_help_panel=_RUN)(campaign.merge)
-app.command(rich_help_panel=_RUN)(results.replay)
-app.command(rich_help_panel=_RUN)(results.suggest)
-app.command(rich_help_panel=_LOOK)(results.results)
-app.command(rich_help_panel=_LOOK)(results.show)
-app.command(rich_help_panel=_LOOK)(thresholds.thresholds)
-app.command(rich_help_panel=_LOOK)(report.report)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code of the process."""
     for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):  # a terminal that cannot show a sign gets "?", not an error
+        if hasattr(stream, "reconfigure"):  # a terminal that cannot show a character gets "?", not an error
             stream.reconfigure(errors="replace")
     arguments = sys.argv[1:] if arguments is None else arguments
     with terminated_like_ctrl_c() as termination:
         code = _code_of(arguments)
     if code == ExitCode.INTERRUPTED:
         how = "ended by SIGTERM" if termination.has_come else "interrupted"
-        typer.echo(f"{how}; `mutabot results` shows what is there", err=True)
+        typer.echo(f"{how}; `mutabot results` shows the results so far", err=True)
     return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and termination.has_come else code
 
 
@@ -171,21 +180,36 @@ def _code_of(arguments: Sequence[str]) -> int:
         typer.echo(f"mutabot: {error}", err=True)
         return error.exit_code
     except Exception as error:
-        return _usage_or_crash(error, arguments)
+        show = getattr(error, "show", None)
+        is_usage = callable(show) and hasattr(error, "exit_code")  # the parser's own errors
+        return _usage_error(error) if is_usage else _crash(error, arguments)
     return code if isinstance(code, int) else ExitCode.FINE  # typer itself makes INTERRUPTED of Ctrl-C
 
 
-def _usage_or_crash(error: Exception, arguments: Sequence[str]) -> int:
-    show = getattr(error, "show", None)
-    if callable(show) and hasattr(error, "exit_code"):  # the parser's own errors, for a wrong command line
-        if (told := gone(error)) is not None:
-            typer.echo(f"mutabot: {told}", err=True)
-            return ExitCode.USAGE
-        error.message = shortened(str(getattr(error, "message", "")), _LONGEST)  # type: ignore[attr-defined]
-        show()
-        return ExitCode.USAGE
+def _usage_error(error: Any) -> int:
+    missing = _missing_package(error)
+    if missing is not None:
+        typer.echo(f"mutabot: {missing}", err=True)
+    else:
+        error.message = shortened(str(getattr(error, "message", "")), _LONGEST)
+        error.show()
+    return ExitCode.USAGE
+
+
+def _missing_package(error: Any) -> str | None:
+    """Name the package that brings an option or a command that the parser does not know."""
+    option: str = getattr(error, "option_name", None) or ""
+    found = re.match(r"No such command '([^']*)'", getattr(error, "message", ""))
+    command = found[1] if found is not None else ""
+    missing = not_installed(option.removeprefix("--"), "executors") or not_installed(command, "commands")
+    return None if missing is None else f"{option or f'the command {command}'} {missing}"
+
+
+def _crash(error: Exception, arguments: Sequence[str]) -> int:
     text = "".join(traceback.format_exception(error))
-    file = _project(arguments) / ".mutabot" / "crash.txt"
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("-C", "--project", type=Path, default=Path())
+    file: Path = parser.parse_known_args(arguments)[0].project / ".mutabot" / "crash.txt"
     try:
         file.parent.mkdir(exist_ok=True)
         file.write_text(text, encoding="utf-8")
@@ -194,20 +218,6 @@ def _usage_or_crash(error: Exception, arguments: Sequence[str]) -> int:
         file = Path("the lines above")
     typer.echo(f"mutabot: internal error ({type(error).__name__}: {error}); details are in {file}", err=True)
     return ExitCode.INTERNAL_ERROR
-
-
-def _project(arguments: Sequence[str]) -> Path:
-    """The project of a command line that may be wrong elsewhere."""
-    for word, following in zip_longest(arguments, arguments[1:], fillvalue=""):
-        if word in ("-C", "--project"):
-            return Path(following)
-        if word.startswith("--project="):
-            return Path(word.removeprefix("--project="))
-        if word.startswith("-C"):
-            return Path(word.removeprefix("-C"))
-        if not word.startswith("-"):
-            break  # the command: the project stands before it
-    return Path()
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
-"""``mutabot init``, ``operators``, ``check``, ``list``, ``run`` and ``merge``: campaigns and their set-up."""
-
-# Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
-# ruff: noqa: PLC0415
+"""Commands that set up or run campaigns: ``init``, ``operators``, ``check``, ``list``, ``run``, ``merge``,
+``replay`` and ``suggest``.
+"""
 
 from __future__ import annotations
 
@@ -9,21 +8,32 @@ from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Unpack
+from typing import Annotated, Unpack
 
 import typer
 
+from mutabot import limits
+from mutabot.campaign import check as checking
+from mutabot.campaign import run as running
+from mutabot.campaign.again import replay_one
+from mutabot.campaign.plan import listed_rules
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.selection import select
+from mutabot.campaign.sharding import merge as merging
 from mutabot.cli import options
-from mutabot.cli.output import decided, echo, exit_as, print_json, progress_shown, show_results
-from mutabot.cli.request import families_of, request_of
-from mutabot.exit_codes import ExitCode
-from mutabot.journal.files import HOME, JOURNAL
-
-if TYPE_CHECKING:
-    from mutabot.campaign.request import Progress, Request
-    from mutabot.results.gate import Decision
-    from mutabot.results.results import Results
-    from mutabot.settings.configuration import Configuration
+from mutabot.cli.output import echo, print_json, progress_shown, show_results, tell
+from mutabot.cli.request import families_of, request_again, request_of
+from mutabot.config.configuration import Configuration, load_configuration
+from mutabot.errors import ExitCode, NothingToDoError, UsageError
+from mutabot.journal.files import HOME, JOURNAL, find_journal
+from mutabot.journal.journal import JournalReader
+from mutabot.report.document import replayed as replayed_data
+from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.listing import plan_data, print_plan, print_rules
+from mutabot.report.terminal.mutant import print_replayed, print_suggestions
+from mutabot.results.gate import Decision, decide
+from mutabot.results.results import MutantResult, Results, find_mutant, read_results, results_at
+from mutabot.results.suggested import keep_suggestions
 
 
 def init(
@@ -33,30 +43,24 @@ def init(
         typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
     ] = None,
 ) -> None:
-    """Run the tests once, look at what the program calls, and propose a configuration and a vocabulary."""
-    from mutabot.proposal import propose
+    """Draft a configuration and a vocabulary from one run of the tests."""
+    from mutabot.init import propose  # noqa: PLC0415  # it loads much
 
     for line in propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True)):
         echo(line)
 
 
 def operators(family: options.Families = None, json: options.Json = False) -> None:
-    """List the operators: what each plants, where it applies, and which bugs it stands for."""
-    from mutabot.campaign.plan import listed_rules
-    from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.listing import print_rules
-
+    """List the operators and the bugs they stand for."""
     rules = [asdict(rule) for rule in listed_rules(families_of(family))]
     print_json({"operators": rules}) if json else print_rules(make_console(), rules)
 
 
 def check(context: typer.Context, json: options.Json = False, **given: Unpack[options.Setting]) -> None:
-    """Try the whole set-up without running mutants."""
-    from mutabot.campaign import check as campaign
-
+    """Try the set-up without running mutants."""
     request = request_of(context.obj, **given)
     with progress_shown() as progress:
-        report = campaign.check(request, progress)
+        report = checking.check(request, progress)
     print_json(report.data) if json else echo("\n".join(report.lines))
 
 
@@ -66,14 +70,10 @@ def list_(
     json: options.Json = False,
     **given: Unpack[options.Planning],
 ) -> None:
-    """List the mutants that would run, and what is left out."""
-    from mutabot.campaign.run import plan_only
-    from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.listing import plan_data, print_plan
-
+    """List the mutants that would run."""
     request = request_of(context.obj, **given)
     with progress_shown() as progress:
-        mutants, left_out = plan_only(request, progress)
+        mutants, left_out = running.plan_only(request, progress)
     if json:
         print_json(plan_data(mutants, left_out))
     else:
@@ -87,29 +87,45 @@ def run(
     executor: tuple[str, str] | None = None,
     **given: Unpack[options.Running],
 ) -> None:
-    """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
-    from mutabot.campaign.run import run_campaign
-
+    """Run the campaign, or continue it."""
     request = request_of(context.obj, executor=executor, evidence=True, **given)
-    show_end(request, partial(run_campaign, request), min_score, json=json)
+    show_end(request, partial(running.run_campaign, request), min_score, json=json)
 
 
 def show_end(
     request: Request, campaign: Callable[[Progress], Path], min_score: float | None, *, json: bool
 ) -> None:
-    """Run a campaign, print how it ended, and exit as the limits decide. Raises typer.Exit."""
+    """Run a campaign, print its summary, and exit as the limits decide. Raises typer.Exit."""
     with progress_shown() as progress:
         path = campaign(progress)
     results = show_results(path, json=json, summary=True)
-    exit_as(decided(request.configuration, results, min_score))
+    _exit_as(_decided(request.configuration, results, min_score))
+
+
+def _decided(configuration: Configuration, results: Results, min_score: float | None) -> Decision:
+    """Compare results with the limits; ``min_score``, in percent, replaces the configured one."""
+    limit = min_score if min_score is not None else configuration.min_score
+    return decide(
+        results,
+        min_score=None if limit is None else limit / 100,
+        max_timeouts=configuration.timeout_limit,
+        max_unstable=configuration.unstable_limit,
+        max_errors=configuration.error_limit,
+        demands=configuration.demands,
+    )
+
+
+def _exit_as(decision: Decision) -> None:
+    tell(decision.lines)
+    raise typer.Exit(decision.exit_code)
 
 
 _Journals = Annotated[
-    list[Path], typer.Argument(metavar="JOURNAL", help="The shards' journals, or folders that hold one.")
+    list[Path], typer.Argument(metavar="JOURNAL", help="Journals of the shards, or folders that hold one.")
 ]
 _Output = Annotated[
     Path | None,
-    typer.Option("--output", "-o", metavar="FILE", help="Where to write; else the project's journal."),
+    typer.Option("--output", "-o", metavar="FILE", help="Merged journal; the project's journal by default."),
 ]
 
 
@@ -120,25 +136,99 @@ def merge(
     min_score: options.MinScore = None,
     json: options.Json = False,
 ) -> None:
-    """Put the journals of shards together, and judge the campaign as `run` does.
+    """Merge the journals of shards.
 
-    Exit code 4 if something is missing; what is there is written all the same.
+    Judges the campaign as `run` does. Exits with 4 if a part is missing; the others are written all the same.
     """
-    from mutabot.campaign.sharding.merge import merge as put_together
-    from mutabot.settings.configuration import load_configuration
-
     configuration = load_configuration(context.obj)
     target = output or configuration.root / HOME / JOURNAL
-    missing = put_together(journals, target, root=configuration.root, room=configuration.evidence)
+    missing = merging.merge(journals, target, root=configuration.root, room=configuration.evidence)
     results = show_results(target, json=json, summary=True)
-    exit_as(_decision(configuration, results, min_score, missing))
+    lacking = Decision(ExitCode.UNRELIABLE, tuple(missing)) if missing else None
+    _exit_as(lacking or _decided(configuration, results, min_score))
 
 
-def _decision(
-    configuration: Configuration, results: Results, min_score: float | None, missing: list[str]
-) -> Decision:
-    from mutabot.results.gate import Decision
+def replay(
+    context: typer.Context,
+    mutant: options.OneMutant,
+    round: options.Round = None,
+    jobs: options.Jobs = None,
+    json: options.Json = False,
+) -> None:
+    """Re-run one mutant in fresh processes.
 
-    if missing:
-        return Decision(ExitCode.UNRELIABLE, tuple(missing))
-    return decided(configuration, results, min_score)
+    Exits with 4 if an outcome differs from the one in the journal.
+    """
+    path = find_journal(context.obj)
+    with JournalReader.open(path) as journal:
+        found = read_results(journal, earlier=True)
+        chosen = find_mutant(found, mutant).mutant
+        rounds = range(found.rounds) if round is None else [number_of(round, found.rounds)]
+        request = request_again(path.parent.parent, found, jobs)
+        with progress_shown() as progress:
+            replayed = replay_one(request, journal, chosen, rounds, progress)
+    data = replayed_data(chosen, replayed)
+    print_json(data) if json else print_replayed(make_console(), chosen, replayed)
+    differs = any(one.agrees is False for one in replayed)
+    raise typer.Exit(ExitCode.UNRELIABLE if differs else ExitCode.FINE)
+
+
+def number_of(round: int, rounds: int) -> int:
+    """Return the 0-based number of a round. Raises UsageError if the campaign has fewer rounds."""
+    if round > rounds:
+        raise UsageError(f"there is no round {round}; the campaign has {rounds}")
+    return round - 1
+
+
+_Seeds = Annotated[
+    int,
+    typer.Option(
+        "--seeds",
+        metavar="N",
+        min=5,
+        max=limits.SEEDS,
+        help="New seeds for the tolerances, and as many for the proof.",
+    ),
+]
+
+
+def suggest(
+    context: typer.Context,
+    only: options.Only = None,
+    skip: options.Skip = None,
+    seeds: _Seeds = 20,
+    jobs: options.Jobs = None,
+    json: options.Json = False,
+) -> None:
+    """Suggest checks that kill survivors.
+
+    Each check is verified by running it with the mutant and with new seeds of the original.
+    """
+    from mutabot.suggest import suggest as find_checks  # noqa: PLC0415  # it loads much
+
+    path = find_journal(context.obj)
+    results = results_at(path)
+    chosen = _chosen(results, only, skip)
+    request = request_again(path.parent.parent, results, jobs)
+    with progress_shown() as progress:
+        found = find_checks(request, results, chosen, progress, seeds=seeds)
+    keep_suggestions(path, results.meta, found)
+    print_json(found) if json else print_suggestions(make_console(), found)
+
+
+def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:
+    """Return the survivors that were asked for. Raises NothingToDoError if there is none, saying why."""
+    if results.graded and not results.mutants:
+        raise NothingToDoError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
+    if not results.mutants:
+        raise NothingToDoError(f"the journal holds no mutants ({results.state}): run `mutabot run` first")
+    if not results.done:
+        raise NothingToDoError("no mutant has been run yet: continue with `mutabot run`")
+    mutants = select([one.mutant for one in results.mutants], tuple(only or ()), tuple(skip or ()), None)
+    survivors = {one.mutant.id: one for one in results.survivors}
+    if not survivors:
+        raise NothingToDoError("no mutant survived: there is no check to suggest")
+    chosen = [survivors[mutant.id] for mutant in mutants if mutant.id in survivors]
+    if not chosen:
+        raise NothingToDoError("none of the mutants that were asked for survived")
+    return chosen

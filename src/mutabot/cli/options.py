@@ -7,15 +7,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypedDict, get_args, get_type_hints
+from typing import Annotated, Any, TypedDict, get_args, get_type_hints
 
 import typer
+from typer import Option
 
 from mutabot import __version__, limits
 from mutabot.errors import UsageError
-
-if TYPE_CHECKING:
-    from mutabot.extensions import Part
+from mutabot.extensions import Part, brought
 
 _KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
 #: an engine is a file; its name is told without loading it, so that `--help` is fast
@@ -29,7 +28,7 @@ def _print_version(wanted: bool) -> None:
 
 
 def _families() -> list[str]:
-    from mutabot.settings.families import known_families  # noqa: PLC0415  # so that `--help` is fast
+    from mutabot.faults import known_families  # noqa: PLC0415  # so that `--help` is fast
 
     return list(known_families())
 
@@ -41,138 +40,66 @@ def _number(value: float | None) -> float | None:
 
 
 Version = Annotated[
-    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    bool, Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for a machine to read.")]
-All = Annotated[bool, typer.Option("--all", help="Also list every mutant that the plan leaves out.")]
-Only = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--only",
-        metavar="WHICH",
-        help="Only these: id, number, numbers (3,16-20), file, file:line, operator, family or role; "
-        "globs too; @FILE for a list, one per line. Repeatable.",
-    ),
-]
-Skip = Annotated[
-    list[str] | None,
-    typer.Option("--skip", metavar="WHICH", help="Exclude these mutants. Same syntax as --only. Repeatable."),
-]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "-o", metavar="KEY=VALUE", help="Set a key of the configuration for this command. Repeatable."
-    ),
-]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
+All = Annotated[bool, Option("--all", help="Also list every skipped mutant.")]
+EveryRound = Annotated[bool, Option("--all", help="Show every round, test and check.")]
+_ONLY = (
+    "Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; globs "
+    "too; @FILE for a list, one per line. Repeatable."
+)
+_SKIP = "Exclude these mutants. Same syntax as --only. Repeatable."
+_SETTING = "Set a key of the configuration for this command. Repeatable."
+_FAMILY = "Families of mutants, see `mutabot operators`. Repeatable, or with commas."
+_SAMPLE = "Only a random sample: 10% of each family and role, or 50 of each family."
+_SINCE = "Run only what changes since this git revision can have altered; reuse the other results."
+_JOURNAL = "Also reuse valid outcomes from this journal, e.g. one downloaded from CI."
+_BUDGET = "Stop after this much time (90s, 10m), baseline included; run the most informative mutants first."
+_COMPARE = "Compare with this journal (or with the journal in this project folder)."
+_VERIFY = "Re-run N random outcomes in fresh processes; exit with 4 if one ends differently."
+_MIN_SCORE = "Exit with 1 if a score is below this percentage."
+_ENGINE = f"How mutants are run: {', '.join(ENGINES)}."
+Only = Annotated[list[str] | None, Option("--only", metavar="WHICH", help=_ONLY)]
+Skip = Annotated[list[str] | None, Option("--skip", metavar="WHICH", help=_SKIP)]
+Settings = Annotated[list[str] | None, Option("-o", metavar="KEY=VALUE", help=_SETTING)]
 Families = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--family",
-        metavar="NAME",
-        help="Families of mutants, as `mutabot operators` lists them. Repeatable, or with commas.",
-        autocompletion=_families,
-    ),
+    list[str] | None, Option("--family", metavar="NAME", help=_FAMILY, autocompletion=_families)
 ]
-Sample = Annotated[
-    str | None,
-    typer.Option(
-        "--sample",
-        metavar="SIZE",
-        help="Only a random sample: 10% of each family and role, or 50 of each family.",
-    ),
-]
+Sample = Annotated[str | None, Option("--sample", metavar="SIZE", help=_SAMPLE)]
 Rounds = Annotated[
-    int | None,
-    typer.Option(
-        "--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Repetitions, each with its own seeds."
-    ),
+    int | None, Option("--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Rounds, each with new seeds.")
 ]
 Seed = Annotated[
-    int | None, typer.Option("--seed", metavar="N", min=0, max=limits.SEED, help="The campaign's seed.")
+    int | None, Option("--seed", metavar="N", min=0, max=limits.SEED, help="The campaign's seed.")
 ]
 Jobs = Annotated[
-    int | None,
-    typer.Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs."),
+    int | None, Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs.")
 ]
 Engine = Annotated[
-    str,
-    typer.Option(
-        "--engine",
-        metavar="ENGINE",
-        help=f"What runs the mutants: {', '.join(ENGINES)}.",
-        autocompletion=lambda: list(ENGINES),
-    ),
+    str, Option("--engine", metavar="ENGINE", help=_ENGINE, autocompletion=lambda: list(ENGINES))
 ]
-OneMutant = Annotated[
-    str, typer.Argument(metavar="MUTANT", help="The mutant's number or id, or as much of it as is unique.")
-]
+OneMutant = Annotated[str, typer.Argument(metavar="MUTANT", help="Number, id, or a unique part of the id.")]
 Shard = Annotated[
-    str | None,
-    typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` puts them together."),
+    str | None, Option("--shard", metavar="N/M", help="Run only part N of M; see `mutabot merge`.")
 ]
-Fresh = Annotated[
-    bool, typer.Option("--fresh", help="Re-run everything, including results that are still valid.")
-]
-Since = Annotated[
-    str | None,
-    typer.Option(
-        "--since",
-        metavar="REF",
-        help="Run only what changes since this git revision can have altered; reuse the other results.",
-    ),
-]
-OtherJournal = Annotated[
-    Path | None,
-    typer.Option(
-        "--journal",
-        metavar="PATH",
-        help="Also reuse valid outcomes from this journal, e.g. one downloaded from CI.",
-    ),
-]
-Compared = Annotated[
-    Path | None,
-    typer.Option(
-        "--compare",
-        metavar="OLD",
-        help="Tell what differs from this journal, or a project's folder with one.",
-    ),
-]
-Budget = Annotated[
-    str | None,
-    typer.Option(
-        "--budget",
-        metavar="TIME",
-        help="Stop after this much time (90s, 10m, 1h30m), baseline included; the most informative first.",
-    ),
-]
-Verify = Annotated[
-    int,
-    typer.Option(
-        "--verify",
-        metavar="N",
-        min=0,
-        max=limits.VERIFIED,
-        help="Re-run N random outcomes in fresh processes; exit with 4 if one ends differently.",
-    ),
-]
+Fresh = Annotated[bool, Option("--fresh", help="Re-run everything, including results that are still valid.")]
+Since = Annotated[str | None, Option("--since", metavar="REF", help=_SINCE)]
+OtherJournal = Annotated[Path | None, Option("--journal", metavar="PATH", help=_JOURNAL)]
+Compared = Annotated[Path | None, Option("--compare", metavar="OLD", help=_COMPARE)]
+Budget = Annotated[str | None, Option("--budget", metavar="TIME", help=_BUDGET)]
+Verify = Annotated[int, Option("--verify", metavar="N", min=0, max=limits.VERIFIED, help=_VERIFY)]
 Round = Annotated[
-    int | None, typer.Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
+    int | None, Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
 ]
 MinScore = Annotated[
     float | None,
-    typer.Option(
-        "--min-score",
-        metavar="PERCENT",
-        min=0,
-        max=100,
-        callback=_number,
-        help="Exit with 1 if a score is under this many percent.",
-    ),
+    Option("--min-score", metavar="PERCENT", min=0, max=100, callback=_number, help=_MIN_SCORE),
 ]
 
 
 class Setting(TypedDict, total=False):
-    """The options of commands that take a baseline; commands take them as ``**given: Unpack[…]``."""
+    """Options of commands that take a baseline; commands take them as ``**given: Unpack[…]``."""
 
     family: Families
     rounds: Rounds
@@ -181,7 +108,7 @@ class Setting(TypedDict, total=False):
 
 
 class Planning(Setting, total=False):
-    """The same for commands that make a plan."""
+    """Options of commands that make a plan."""
 
     only: Only
     skip: Skip
@@ -191,7 +118,7 @@ class Planning(Setting, total=False):
 
 
 class Running(Planning, total=False):
-    """The same for commands that run a campaign."""
+    """Options of commands that run a campaign."""
 
     engine: Engine
     fresh: Fresh
@@ -202,42 +129,34 @@ class Running(Planning, total=False):
 
 
 _DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False, "verify": 0}
-_FIRST = ("context", "only", "skip", "family", "rounds", "jobs", "min_score", "json", "settings")
 #: a parameter of this name stands for the options of all executors
 _EXECUTOR = "executor"
 
 
-def with_options(
-    function: Callable[..., object], executors: Mapping[str, Part] | None = None
-) -> Callable[..., object]:
-    """A command as typer makes options of it.
+def with_options(function: Callable[..., object]) -> Callable[..., object]:
+    """Make a command of which typer can read the options.
 
     Its ``**given: Unpack[…]`` becomes the options of a class above. A parameter ``executor`` becomes an
-    option for each of these executors, and takes which was chosen: its name and the option's value.
+    option for each executor, and takes which was chosen: its name and the option's value.
     """
     own = signature(function, eval_str=True)
-    options = {f"{_EXECUTOR}_{name.replace('-', '_')}": part for name, part in (executors or {}).items()}
-    if _EXECUTOR not in own.parameters:
-        options = {}
+    found = brought("executors", Running.__annotations__) if _EXECUTOR in own.parameters else {}
+    names = {f"{_EXECUTOR}_{name.replace('-', '_')}": part for name, part in found.items()}
 
     @wraps(function)
     def command(**values: Any) -> object:
-        if options:
-            given = {part.name: values.pop(key) for key, part in options.items()}
-            values[_EXECUTOR] = _chosen({name: value for name, value in given.items() if value is not None})
-        return function(**values)
+        chosen = [(part.name, value) for key, part in names.items() if (value := values.pop(key)) is not None]
+        if len(chosen) > 1:
+            raise UsageError(
+                f"{' and '.join(f'--{name}' for name, _ in chosen)}: a campaign has one executor"
+            )
+        return function(**values, **({_EXECUTOR: chosen[0]} if chosen else {}))
 
-    found = _parameters(own.parameters.values(), options)
-    parameters = sorted((one.replace(kind=one.KEYWORD_ONLY) for one in found), key=_place)
+    parameters = list(_parameters(own.parameters.values(), names))
     changed: Any = command
     changed.__signature__ = own.replace(parameters=parameters)
     changed.__annotations__ = {one.name: one.annotation for one in parameters}
     return command
-
-
-def _place(one: Parameter) -> int:
-    """Where it stands in ``--help``: what the first week needs comes first."""
-    return _FIRST.index(one.name) if one.name in _FIRST else len(_FIRST)
 
 
 def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iterator[Parameter]:
@@ -249,12 +168,5 @@ def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iter
         elif one.name != _EXECUTOR:
             yield one.replace(kind=one.KEYWORD_ONLY)
     for key, part in executors.items():
-        option = typer.Option(f"--{part.name}", metavar=part.metavar, help=part.help)
+        option = Option(f"--{part.name}", metavar=part.metavar, help=part.help)
         yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])
-
-
-def _chosen(given: Mapping[str, str]) -> tuple[str, str] | None:
-    """Raises UsageError for more than one executor."""
-    if len(given) > 1:
-        raise UsageError(f"{' and '.join(f'--{name}' for name in given)}: a campaign has one executor")
-    return next(iter(given.items()), None)

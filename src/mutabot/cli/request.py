@@ -1,24 +1,23 @@
 """From the options of the command line and the configuration to what a campaign is asked to do."""
 
-# What a campaign needs is imported when it is asked for, so that `--help` is fast.
-# ruff: noqa: PLC0415
-
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import Unpack
 
+from mutabot.campaign.request import ExecutorChoice, Request
+from mutabot.config.configuration import load_configuration
+from mutabot.config.options import Sample, Shard, seconds_of
+from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError, unknown_name_text
+from mutabot.extensions import brought
+from mutabot.faults import asked_for
+from mutabot.model import Moment
+from mutabot.results.results import Results
 
 from .options import ENGINES, Running
-
-if TYPE_CHECKING:
-    from mutabot.campaign.request import ExecutorChoice, Request
-    from mutabot.model import Moment
-    from mutabot.results.results import Results
-    from mutabot.settings.configuration import Configuration
 
 
 def request_of(
@@ -41,11 +40,6 @@ def request_of(
 
     Raises UsageError and ConfigurationError.
     """
-    from mutabot.campaign.request import Request
-    from mutabot.settings.configuration import load_configuration
-    from mutabot.settings.options import Sample, Shard, seconds_of
-    from mutabot.vocabulary import load
-
     if unknown := given.keys() - Running.__annotations__.keys():
         raise TypeError(f"there is no option {', '.join(sorted(unknown))}")
     engine, seed = given.get("engine", "auto"), given.get("seed")
@@ -57,6 +51,10 @@ def request_of(
     configuration = load_configuration(project, families, given.get("settings") or ())
     root, families = configuration.root, families or configuration.families
     selection = configuration.selection if configured_selection else None
+    chosen = None
+    if executor is not None:
+        kind = brought("executors")[executor[0]].load_class(ExecutorChoice)  # type: ignore[type-abstract]
+        chosen = kind.parse(executor[1], configuration)
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root, families),
@@ -67,7 +65,7 @@ def request_of(
         skip=_listed(given.get("skip"), root),
         selection=None if selection is None else root / selection,
         engine=engine,
-        executor=None if executor is None else _choice(configuration, *executor),
+        executor=chosen,
         fresh=given.get("fresh", False),
         verify=given.get("verify", 0),
         repeats=configuration.repeats,
@@ -93,26 +91,14 @@ def request_again(root: Path, results: Results, jobs: int | None) -> Request:
     )  # fmt: skip
 
 
-def _choice(configuration: Configuration, name: str, value: str) -> ExecutorChoice:
-    """Raises UsageError for a value that says nothing to its executor."""
-    from mutabot.campaign.request import ExecutorChoice
-    from mutabot.extensions import brought
-
-    return brought("executors")[name].load_class(ExecutorChoice).parse(value, configuration)  # type: ignore[type-abstract]
-
-
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:
     """The families of the command line, in the order of their numbers. Raises UsageError."""
-    from mutabot.settings.families import asked_for
-
     named = (name.strip() for text in given or () for name in text.split(","))
     return asked_for(name for name in named if name)
 
 
 def _moments(texts: Sequence[str]) -> tuple[Moment | None, ...]:
     """At which calls mutants act; the texts were checked with the configuration."""
-    from mutabot.model import Moment
-
     found: dict[str, Moment | None] = {}
     for text in texts:
         moment = Moment.parse_any(text)

@@ -115,7 +115,7 @@ class Identity(CommandOperator):
     name = "identity"
     family = CONTROL
     fault = "unchanged"
-    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), away="that is its purpose"),)
+    examples = (Example(Subject(_HOME), away="that is its purpose"),)
 
     def fits(self, whole: Subject) -> bool:
         return True
@@ -130,7 +130,7 @@ class Fatal(Identity):
     name = "fatal"
     does_nothing = True
     fault = "fails"
-    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), raises=FatalFault),)
+    examples = (Example(Subject(_HOME), raises=FatalFault),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         raise FatalFault(f"control: {call.operation.name} fails")

@@ -48,6 +48,10 @@ class Published(NamedTuple):
     mutant: str
 
 
+#: how the paragraph of a docstring begins that says where an operator applies
+_WHERE = "Where: "
+
+
 class Rule(ABC):
     """What operators of all kinds declare.
 
@@ -61,7 +65,8 @@ class Rule(ABC):
         published: rows of the table of published operators that it makes; empty for all others.
         stands_for: the bug class that it stands for and the evidence of it, in one sentence; may be empty for
             those that are published.
-        where: where it applies, in the words of vocabularies.
+        where: where it applies, in the words of vocabularies: the paragraph of the docstring that begins with
+            ``Where:``, unless it is given.
         has_sizes: whether it plants each fault in several magnitudes, of which a threshold is sought.
     """
 
@@ -77,8 +82,12 @@ class Rule(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if cls.__doc__ and "summary" not in vars(cls):
-            cls.summary = " ".join(cls.__doc__.partition("\n\n")[0].split())
+        summary, *others = (" ".join(part.split()) for part in (cls.__doc__ or "").split("\n\n"))
+        if summary and "summary" not in vars(cls):
+            cls.summary = summary
+        for other in others:
+            if other.startswith(_WHERE) and "where" not in vars(cls):
+                cls.where = other.removeprefix(_WHERE).rstrip(".")
 
 
 R = TypeVar("R", bound=Rule)
@@ -364,7 +373,7 @@ class Context:
     def by_chance(self) -> None:
         """Raises Unchanged unless chance wants this call; the option is how likely that is."""
         if self.draw().random() >= self.option:
-            raise Unchanged("chance spares it")
+            raise Unchanged("not drawn for this call")
 
 
 def quantity_of(subject: Subject) -> Quantity:

@@ -1,4 +1,4 @@
-"""Finding operators on calls by name: the built-in ones in their folders, and those that packages bring."""
+"""Finding operators on calls by name: the built-in ones, and those that packages bring."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.errors import ExtensionError, OperatorError, unknown_name_text
-from mutabot.extensions import Part, brought
+from mutabot.extensions import brought
 
 from .command import CONTROLS
 from .operator import Operator, in_order
 
-_HERE = Path(__file__).parent
+_KINDS = Path(__file__).parent / "kinds"
 
 
 def built_in() -> list[str]:
@@ -77,20 +77,22 @@ def operator(name: str) -> Operator:
                 return rule
     part = brought("operators").get(name)
     if part is not None:
-        return _loaded(part)
+        try:
+            return part.make(Operator)  # type: ignore[type-abstract]
+        except ExtensionError as error:
+            raise OperatorError(f"operator {error}", operator=name) from error
     raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
 
 
 @cache
 def _modules() -> dict[str, str]:
-    """The text of each module in the folders beside this file, by its name: nothing is loaded for it.
+    """The text of each module in the folder of operators, by its name: nothing is loaded for it.
 
     An operator is in a module whose text has its name in quotes, so that workers load no other.
     """
     return {
-        f"{__package__}.{folder.name}.{module}": (folder / f"{module}.py").read_text(encoding="utf-8")
-        for folder in folders_in(_HERE)
-        for module in modules_in(folder)
+        f"{__package__}.kinds.{module}": (_KINDS / f"{module}.py").read_text(encoding="utf-8")
+        for module in modules_in(_KINDS)
     }
 
 
@@ -100,34 +102,9 @@ def _of_module(module: str) -> list[Operator]:
     return [kind() for kind in classes_in(import_module(module), Operator)]
 
 
-def _loaded(part: Part) -> Operator:
-    where = f"operator {part.name!r} of package {part.owner!r} ({part.reference})"
-    try:
-        made = part.load()()
-    except ExtensionError as error:
-        raise OperatorError(f"operator {error}", operator=part.name) from error
-    except Exception as error:  # a package of others may fail in any way
-        raise OperatorError(f"{where} cannot be loaded: {error!r}", operator=part.name) from error
-    if not isinstance(made, Operator):
-        raise OperatorError(
-            f"{where} is {type(made).__name__}, not a subclass of mutabot.Operator", operator=part.name
-        )
-    if getattr(made, "name", None) != part.name:
-        raise OperatorError(
-            f"{where} calls itself {getattr(made, 'name', None)!r}; extension and class must agree",
-            operator=part.name,
-        )
-    return made
-
-
 def modules_in(folder: Path) -> list[str]:
     """Names of the modules in a folder, bar those that begin with ``_``; none of them is loaded."""
     return sorted(file.stem for file in folder.glob("*.py") if not file.name.startswith("_"))
-
-
-def folders_in(folder: Path) -> list[Path]:
-    """The packages in a folder; none of them is loaded."""
-    return sorted(file.parent for file in folder.glob("*/__init__.py"))
 
 
 def classes_in(module: ModuleType, base: type[Any]) -> list[type[Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
+from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from random import Random
@@ -15,15 +16,15 @@ from mutabot.model.quantity import SAME_ORIENTATION, TURNED_ROUND, Value, is_sam
 from mutabot.model.units import Quaternion, convert, distance, from_rotation_vector, inverse, product
 
 from .magnitudes import Ladder, sized
-from .numbers import map_numbers
 from .operator import Context, Operator, Subject, Unchanged, quantity_of
 
 CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _NAMES = re.compile(r"[._]")
-#: why an operator leaves a call without a value alone
-NOT_GIVEN = "the call gives no such value"
+#: why an operator leaves a call alone, or what it reads, that is without its value
+NOT_PASSED = "the call does not pass this argument"
+NOT_RETURNED = "the call does not return this value"
 #: why an operator that asks where the robot is leaves a call alone
-NOT_TOLD = "nothing has told yet where the robot is"
+NOT_TOLD = "the position of the robot is not known yet"
 SAME = "the value would stay the same"
 
 
@@ -128,7 +129,7 @@ class ValueOperator(ValuesOperator):
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         name = context.quantity.name
-        value = given(values, name)
+        value = given(values, name, context.subject)
         context.number += 1
         return {name: self.change(value, context)}
 
@@ -141,20 +142,20 @@ def label(quantity: Quantity) -> str:
     return f"{name} ({quantity.axis})"
 
 
-def given(values: Mapping[str, Value], name: str) -> Value:
+def given(values: Mapping[str, Value], name: str, subject: Subject) -> Value:
     """A value of a call. Raises Unchanged if the call does not give it."""
     if name not in values:
-        raise Unchanged(NOT_GIVEN)
+        raise Unchanged(NOT_PASSED if subject.is_written else NOT_RETURNED)
     return values[name]
 
 
 def why_unchanged(quantity: Quantity, before: Value, after: Value | None) -> str:
     """Why a new value is not put in place of another one; empty if it can be."""
     if after is None:
-        return "its value is none that can be changed"
+        return "a value of this type cannot be changed"
     if not _allowed(quantity, after):
         if quantity.range is None:
-            return "the value would be none of those that the vocabulary allows"
+            return "the vocabulary does not allow the new value"
         return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
     if is_same(quantity, before, after):
         return SAME
@@ -214,7 +215,7 @@ class Exchange(ValuesOperator):
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         one, other = context.quantity.name, _other_of(context.subject).name
-        first, second = given(values, one), given(values, other)
+        first, second = (given(values, name, context.subject) for name in (one, other))
         return {one: second, other: first}
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
@@ -232,3 +233,60 @@ def _other_of(subject: Subject) -> Quantity:
 def is_alike(one: Quantity, other: Quantity) -> bool:
     """Whether the values of two quantities mean the same, but for where they stand."""
     return (one.kind, one.unit, one.mode, one.frame) == (other.kind, other.unit, other.mode, other.frame)
+
+
+def is_number(value: Value) -> bool:
+    """Whether a value is a plain number (numpy scalars included, truth values not)."""
+    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+        return False
+    return isinstance(value, int | float) or (hasattr(value, "__float__") and not hasattr(value, "__len__"))
+
+
+def map_numbers(value: Value, change: Any) -> Value | None:
+    """``change`` applied to a number, or to each number of a vector; None where there is none.
+
+    The container's type is kept: lists stay lists, tuples tuples, arrays arrays. An array of whole numbers
+    becomes one of floating-point numbers.
+    """
+    if is_number(value):
+        is_unsigned = getattr(getattr(value, "dtype", None), "kind", "") == "u"  # which has no other sign
+        return change(int(value) if is_unsigned else value)
+    if isinstance(value, list | tuple) and value and all(is_number(item) for item in value):
+        return type(value)(change(item) for item in value)
+    if isinstance(value, array) and len(value):
+        return array(value.typecode if value.typecode in "fd" else "d", [change(item) for item in value])
+    if hasattr(value, "dtype") and getattr(value, "ndim", 0) == 1:
+        changed = value.copy() if value.dtype.kind == "f" else value.astype(float)
+        for index in range(len(changed)):
+            changed[index] = change(changed[index])
+        return changed
+    return None
+
+
+def next_of(value: Value, quantity: Quantity, by: int = 1) -> Value:
+    """The value that comes so many places after another one. Raises Unchanged if it is none of the values."""
+    values = quantity.values or ()
+    if value not in values:
+        raise Unchanged("it is not one of the known values")
+    return values[(values.index(value) + by) % len(values)]
+
+
+def like(before: float, after: float) -> float:
+    """A number in the type of the one in whose place it comes, where that loses nothing."""
+    is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
+    return int(after) if is_whole else after
+
+
+def within(value: float, limits: tuple[float, float] | None) -> float:
+    """A number, or the end of the limits that is nearest to it."""
+    return value if limits is None else min(max(value, limits[0]), limits[1])
+
+
+def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
+    """The ends of the middle share of what a quantity may be. Raises Unchanged if nobody knows its range."""
+    limits = quantity.range or quantity.clip
+    if limits is None:
+        raise Unchanged("the vocabulary gives no range")
+    low, high = limits
+    cut = (high - low) * (1.0 - share) / 2.0
+    return low + cut, high - cut

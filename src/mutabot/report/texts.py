@@ -7,15 +7,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from itertools import groupby
 from typing import Any, TypeVar
 
 from mutabot.journal.records import Reaching
-from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
-from mutabot.results.divergence import first_line
+from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
+from mutabot.results.divergence import first_line, worst_of
 from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
@@ -68,23 +68,6 @@ def escaped(text: str) -> str:
     # no link is made of an address that a program wrote
     line = line.replace("://", ":&#47;&#47;").replace("www.", "www&#46;")
     return _START.sub(lambda found: f"\\{found[1]}" if found[1] else f"{found[2]}\\{found[3]}", line)
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[str]], *, right: Container[int] = ()) -> Iterator[str]:
-    """The lines of a table, and an empty one. ``right``: columns of numbers."""
-    yield _row(head)
-    yield _row_of("---:" if index in right else "---" for index in range(len(head)))
-    for row in rows:
-        yield _row(row)
-    yield ""
-
-
-def _row(cells: Iterable[str]) -> str:
-    return _row_of(escaped(cell) for cell in cells)
-
-
-def _row_of(cells: Iterable[str]) -> str:
-    return f"| {' | '.join(cells)} |"
 
 
 T = TypeVar("T")
@@ -187,7 +170,7 @@ def rounds_text(result: MutantResult) -> str:
     by_end: dict[str, list[int]] = {}
     for number, outcome in enumerate(result.rounds, start=1):
         by_end.setdefault(_end(outcome), []).append(number)
-    return ", ".join(f"{end} in {_numbers(numbers)}" for end, numbers in by_end.items()) or "not run"
+    return ", ".join(f"{end} in {numbers_text(numbers)}" for end, numbers in by_end.items()) or "not run"
 
 
 def reason_of(result: MutantResult) -> str:
@@ -211,8 +194,35 @@ def survivor_text(result: MutantResult) -> str:
 
 
 def why_alone(result: MutantResult) -> str:
-    """The line about a survivor, for a place where what it does stands beside it."""
+    """Return the line about a mutant, for a place where its description stands beside it."""
     return result.why.removeprefix(f"{result.mutant.description}; ")
+
+
+def effect_text(result: MutantResult) -> str:
+    """Return the line about a mutant with the test in which it happened, and how many rounds killed it."""
+    why, rate = why_alone(result), result.kill_rate
+    _, diverged = telling(result) or (0, None)
+    if diverged is not None and diverged.story and diverged.story in why:
+        why += f" (in {diverged.test.rpartition('::')[2]})"
+    if result.is_survivor and rate.killed:
+        where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
+        why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"
+    return why
+
+
+def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
+    """Return the 0-based round that tells most about a mutant, and the test in which the robot did otherwise.
+
+    Of a survivor that is the round that let it through farthest from the original, which ``result.why`` is
+    about too; else the first round with its state. None if it has not been run.
+    """
+    status = status_of(result)
+    outcomes = result.survived or [one for one in result.outcomes if one.verdict is status]
+    if not outcomes:
+        return next(((one.round, None) for one in result.outcomes), None)
+    worst = max(outcomes, key=worst_of)
+    told = sorted(worst.diverged, key=lambda one: not one.story)
+    return worst.round, told[0] if told else None
 
 
 def short_reason(result: MutantResult) -> str:
@@ -227,8 +237,8 @@ def _end(outcome: Outcome | None) -> str:
     return f"{outcome.verdict} by {outcome.by}" if outcome.by is not None else outcome.verdict.value
 
 
-def _numbers(numbers: Iterable[int]) -> str:
-    """``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
+def numbers_text(numbers: Iterable[int]) -> str:
+    """Return ``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
     runs: list[str] = []
     for _, group in groupby(enumerate(numbers), key=lambda pair: pair[1] - pair[0]):
         run = [number for _, number in group]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.journal.records import ShardOf

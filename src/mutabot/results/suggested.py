@@ -20,17 +20,12 @@ class Suggestion:
     Attributes:
         test: node id of the test that it is added to, without parameters.
         style: ``pytest``, ``unittest``, or ``other`` for a test that another tool makes.
-        moment: ``end of the test`` or ``at any moment``.
         looks_at: the expression that it reads.
         statement: the assertion.
         tolerance: how far the reading may be off, in its unit; None where it must be equal.
-        band: how the tolerance was found: ``normal``, ``distribution-free`` or ``always the same``.
-        factor: multiples of the standard deviation, for a normal band.
-        spread: how far runs of the original are apart that are to read alike; None where they are equal.
-        runs: runs of the original from which the band comes.
-        alarm: share of the runs of the original that may fall outside the band, at most, as far as its kind
-            holds; with 95 % confidence.
-        fresh: fresh seeds in which it was run on the original after the band was fixed; it passed in all.
+        spread: how far runs of the original are apart; None where they must be equal.
+        runs: runs of the original that were measured.
+        fresh: fresh seeds in which it was run on the original afterwards; it passed in all.
         unseen: share of runs in which it may fail although it did not in these, with 95 % confidence.
         kills: id of each mutant that it kills by itself, to the 0-based rounds in which it does.
         by_hand: all that is to be added where no diff can: to a test that another tool makes; else empty.
@@ -38,15 +33,11 @@ class Suggestion:
 
     test: str
     style: str
-    moment: str
     looks_at: str
     statement: str
     tolerance: float | None
-    band: str
-    factor: float | None
     spread: float | None
     runs: int
-    alarm: float
     fresh: int
     unseen: float
     kills: Mapping[str, tuple[int, ...]]
@@ -60,7 +51,7 @@ class Unsolved:
     Attributes:
         mutant: its id.
         reason: why not.
-        never: whether no observation at ends or moments of these tests could kill it.
+        never: whether no observation at the ends of these tests could kill it.
     """
 
     mutant: str
@@ -88,7 +79,7 @@ class Suggestions:
     """What ``mutabot suggest`` found.
 
     Attributes:
-        suggestions: the smallest set that kills most, those first that kill most.
+        suggestions: those first that kill most.
         diff: all of them as one unified diff of the project.
         unsolved: survivors that none of them kills.
         dropped: checks that failed their proof.

@@ -139,7 +139,7 @@ def test_the_command_line_verifies_and_replays(
     script.mutated = lambda run: CRASHED
     assert main(["-C", str(tmp_path), "replay", "1", "--round", "1"]) == 4
     out, _ = capsys.readouterr()
-    assert "Round 1: otherwise than in the journal" in out
+    assert "Round 1: not as in the journal" in out
     assert "it went wrong" in out
     assert main(["-C", str(tmp_path), "replay", "1", "--json"]) == 4
     (one,) = json.loads(capsys.readouterr().out)["rounds"]

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from mutabot.campaign.plan import draw
 from mutabot.campaign.run import run_campaign
+from mutabot.config.options import Sample
 from mutabot.errors import UsageError
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import DRAWING, Drawing
 from mutabot.model import Mutant, Role
 from mutabot.model.codec import from_data
-from mutabot.settings.options import Sample
 from results import samples
 from tests.campaign.project import Quiet, request_for, write_project
 

@@ -11,13 +11,13 @@ import pytest
 
 from mutabot.campaign.run import plan_only, run_campaign
 from mutabot.campaign.sharding.merge import merge
+from mutabot.config.options import Shard
 from mutabot.errors import MergeError, UsageError
 from mutabot.journal.files import recordings_path
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import Recordings
 from mutabot.model import Outcome
 from mutabot.results.results import read_results
-from mutabot.settings.options import Shard
 from tests.campaign.project import Quiet, request_for, write_project
 from tests.campaign.test_evidence import MISSION, ROBOT, TESTS, VOCABULARY
 from tests.journal.edited import edited

@@ -14,8 +14,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.since.since import Revision
-from mutabot.errors import UsageError
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode, UsageError
 from mutabot.journal.journal import Journal
 from mutabot.results.gate import decide
 from mutabot.results.results import read_results

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "pick_and_place"
 

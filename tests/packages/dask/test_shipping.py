@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.config.configuration import load_configuration
 from mutabot.errors import ClusterError, ConfigurationError
-from mutabot.settings.configuration import load_configuration
 from mutabot_dask.bundle import Bundle, explained, warnings
 from mutabot_dask.environment import decided
 from mutabot_dask.shipping import Shipment, may_be_secret

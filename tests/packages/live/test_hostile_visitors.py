@@ -16,7 +16,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.journal import JournalReader
 from mutabot_live import server as serving
 from mutabot_live.pages import Pages

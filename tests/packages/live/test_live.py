@@ -14,7 +14,7 @@ import pytest
 
 from campaign.project import write_project
 from mutabot.cli.app import main
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.journal.journal import JournalReader
 from packages.live.visits import PATIENCE, ask, command, listening
 
@@ -115,7 +115,7 @@ def test_stop_is_like_ctrl_c_also_in_a_pause_and_the_campaign_goes_on_later(
             until(events, lambda state: state["ended"] == "interrupted")
         _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == ExitCode.INTERRUPTED
-    assert "`mutabot results` shows what is there" in err
+    assert "`mutabot results` shows the results so far" in err
     with journal_of(project) as journal:
         assert journal.finished == "interrupted"
         found = len(journal.outcomes())

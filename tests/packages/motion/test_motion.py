@@ -49,7 +49,6 @@ def number() -> str:
         ("--video nowhere/a.mp4", "there is no folder nowhere"),
         ("--rrd a.mp4", "must end in .rrd"),
         ("--mcap .", "must end in .mcap"),
-        ("--view", "--view is gone; `mutabot motion MUTANT --rerun`"),
         ("--mcap a.mcap --round 9", "there is no round 9; the campaign has 2"),
     ],
 )

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.proposal import propose
-from mutabot.vocabulary import load
+from mutabot.config.vocabulary import load
+from mutabot.init import propose
 
 DRIVER = """
     import rospy

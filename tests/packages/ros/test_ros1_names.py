@@ -94,7 +94,7 @@ VOCABULARY = """
     direction = "publish"
     node = "/miss*"
     fields.data = { kind = "translation", axis = "x", unit = "m", mode = "to", relative = true }
-    current = { topic = "/arm/pose" }
+    current = "receive /arm/pose"
     refused = { topic = "/arm/note", path = "data", values = [5] }
 
     [[operation]]

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.proposal import propose
-from mutabot.vocabulary import load
+from mutabot.config.vocabulary import load
+from mutabot.init import propose
 
 pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
 

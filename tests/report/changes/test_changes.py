@@ -50,9 +50,9 @@ def test_text_tells_every_section_and_what_happened(found: Changes) -> None:
     print_changes(make_console(file, width=160), found)
     text = file.getvalue()
     first, second = text.splitlines()[:2]
-    assert first == "Survivors: 2 new, 1 fixed, 1 changed, 0 as before, 1 unknown; mutants: 1 new, 1 gone"
+    assert first == "Survivors: 2 new, 1 fixed, 1 changed, 0 as before, 1 unknown; mutants: 1 new, 1 removed"
     assert second == "the old campaign is not complete: interrupted"
-    for heading in ("New survivors: 2", "Fixed survivors: 1", "Mutants that are gone: 1"):
+    for heading in ("New survivors: 2", "Fixed survivors: 1", "Removed mutants: 1"):
         assert heading in text
     assert "survived in rounds 1 and 2; before: killed by check in rounds 1 and 2" in text
     assert re.search(r"robot · program +66\.7 % +50\.0 % +-16\.7", text)
@@ -82,7 +82,7 @@ def test_every_key_of_the_json_is_documented(found: Changes) -> None:
 
 
 def test_markdown_has_a_table_for_every_section(found: Changes) -> None:
-    rows = cells("\n".join(change_lines(found, lambda file: f"cell/{file}")))
+    rows = cells("\n".join(change_lines(found, lambda span: f"cell/{span.place}")))
     assert ["robot · program", "66.7 %", "50.0 %", "-16.7"] in rows
     (row,) = (row for row in rows if row[1:3] == ["cell/mission.py:2", "skip"])
     assert row[4] == "survived in rounds 1 and 2; before: killed by check in rounds 1 and 2"
@@ -103,4 +103,4 @@ def test_of_many_mutants_it_says_how_many_are_not_shown(found: Changes) -> None:
     file = io.StringIO()
     print_changes(make_console(file, width=160), many)
     assert "and 10 more" in file.getvalue()
-    assert "and 10 more" in list(change_lines(many, str))
+    assert "and 10 more, which the command line prints." in list(change_lines(many, str))

@@ -29,17 +29,18 @@ def cells(text: str) -> list[list[str]]:
 
 def test_scores_are_given_per_family_and_role(tmp_path: Path) -> None:
     rows = cells(made("markdown", stored(tmp_path)))
-    assert rows[1] == ["robot", "program", "3", "58.3 % (3–98 %)", "3 / 5", "25.0 % (0–99 %)", "1 / 5"]
-    assert rows[2][:3] == ["robot", "oracle", "2"]
+    assert rows[1] == ["robot · program", "3", "58.3 % (3–98 %)", "25.0 %", "3 of 5"]
+    assert rows[2][:2] == ["robot · oracle", "2"]
 
 
 def test_survivors_come_worst_first_with_place_and_reason(tmp_path: Path) -> None:
     text = made("markdown", stored(tmp_path))
-    assert "### Survivors: 3" in text
-    rows = [row for row in cells(text) if len(row) == 6 and row[4].endswith(("of 1", "of 2"))]
-    assert [row[0] for row in rows] == ["2", "5", "4"]
-    assert rows[0][1:5] == ["mission.py:2", "skip", "gripper.command: do nothing", "2 of 2"]
-    assert rows[0][5] == "box_position.x: 0.8 instead of 0.488 (off by 0.312)"
+    assert "### 3 survivors, largest deviation from the original first" in text
+    rows = [row for row in cells(text) if len(row) == 6 and row[5].endswith(("of 1", "of 2"))]
+    assert [row[0] for row in rows] == ["2", "5"]
+    assert "- 1 survivor without a measured effect: mutant 4" in text
+    assert rows[0][1:4] == ["mission.py:2", "skip", "gripper.command: do nothing"]
+    assert rows[0][4] == "box_position.x: 0.8 instead of 0.488 (off by 0.312)"
 
 
 def test_what_is_not_judged_says_why(tmp_path: Path) -> None:
@@ -49,10 +50,11 @@ def test_what_is_not_judged_says_why(tmp_path: Path) -> None:
     )
     text = made("markdown", stored(tmp_path, outcomes=ends, finish="interrupted"))
     assert "**This campaign is not complete** (interrupted): 2 of 10 outcomes are known." in text
-    rows = [row for row in cells(text) if len(row) == 6][1:]
-    assert [(row[0], row[5]) for row in rows] == [("1", "NaN"), ("2", "out of reach")]
-    assert "Mutants that have not been run: 3." in text
-    assert rows[1][4] == "refused in round 1, not run in round 2"
+    assert "### Not counted in the score: 1 error, 1 refused" in text
+    rows = [row for row in cells(text) if len(row) == 5 and row[0] in "12"]
+    assert [row[0] for row in rows] == ["1", "2"]
+    assert "### 3 mutants not run yet" in text
+    assert rows[1][4] == "refused in round 1, not run in round 2: out of reach"
 
 
 @pytest.mark.parametrize("text", HOSTILE)
@@ -62,7 +64,7 @@ def test_every_text_is_shown_as_it_is(tmp_path: Path, text: str) -> None:
     clean = portable(campaign).mutants[1]
     row = next(row for row in found if row[0] == "2")
     assert len(row) == 6
-    assert shown([row[3], row[5]]) == shown([clean.mutant.description, clean.why])
+    assert shown([row[3], row[4]]) == shown([clean.mutant.description, clean.why])
 
 
 def test_of_many_survivors_it_says_how_many_are_not_shown(tmp_path: Path) -> None:
@@ -71,7 +73,7 @@ def test_of_many_survivors_it_says_how_many_are_not_shown(tmp_path: Path) -> Non
     )
     ends = tuple(Outcome(one.id, 0, Verdict.SURVIVED) for one in mutants)
     text = made("markdown", stored(tmp_path, mutants=mutants, outcomes=ends))
-    assert "and 30 more, which `mutabot results` lists." in text
+    assert "and 30 more, which the command line prints." in text
     assert len([row for row in cells(text) if row[1].startswith("mission.py")]) == 100
 
 
@@ -84,4 +86,6 @@ def test_without_survivors_it_says_so_only_if_something_was_valid(tmp_path: Path
 
 def test_what_is_left_out_is_counted_by_reason(tmp_path: Path) -> None:
     assert samples.LEFT_OUT[0] == LeftOut(samples.LEFT_OUT[0].id, "arm.move_by: reverse dy", "it is always 0")
-    assert "cannot matter: 2 (2 × it is always 0)." in made("markdown", stored(tmp_path))
+    assert "### 2 mutants skipped because they would not change anything\n\n- 2 × it is always 0" in made(
+        "markdown", stored(tmp_path)
+    )

@@ -87,20 +87,17 @@ def test_every_verdict_has_a_letter_of_its_own() -> None:
     assert len({mark_of(outcome).letter for outcome in [*outcomes, None]}) == len(outcomes) + 1
 
 
-def test_scores_carry_their_counts_per_round_and_per_role(results: Results) -> None:
+def test_scores_carry_their_counts_per_role_and_there_is_no_total(results: Results) -> None:
     text = report(results)
-    assert row(text, "robot · program", "1/2", "2/3", "58.3 %")
-    assert row(text, "robot · oracle", "0/1", "1/2", "25.0 %")
-    assert row(text, "all together", "1/3", "3/5", "46.7 %")
-    assert row(text, "robot · program", "58.3 %", "25.0 %", "1 killed by a check", "1 timeout")
+    assert row(text, "robot · program", "58.3 %", "25.0 %", "3 of 5")
+    assert row(text, "robot · oracle", "25.0 %", "1 of 3")
+    assert "together" not in text
 
 
 @pytest.mark.parametrize("width", [80, 120])
-def test_kill_rates_and_scores_carry_their_intervals(results: Results, width: int) -> None:
+def test_scores_carry_their_intervals(results: Results, width: int) -> None:
     text = report(results, width)
-    assert row(text, "reverse", "2/2")
-    assert row(text, "34–100 %")
-    assert "3–98 %" in text[text.index("Scores") :]
+    assert "(3–98 %)" in text[text.index("Scores") :]
     assert "docs/statistics.md" in text
 
 
@@ -119,7 +116,7 @@ def test_a_sample_is_told_with_what_it_says_about_all(tmp_path: Path, width: int
     drawing = {"sample": "10%", "selected": 60, "strata": [stratum]}
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", drawing=drawing)) as journal:
         text = " ".join(report(read_results(journal), width).split())
-    assert "5 of 60 mutants were drawn: a sample of 10%" in text
+    assert "Sample of 10%: 5 of 60 mutants" in text
     assert "robot · program: 3 of 30; score of all of them in these rounds " in text
 
 
@@ -142,13 +139,13 @@ def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
         text = report(read_results(journal), width)
     flat = " ".join(text.split())
     assert "Verified: 8 of 9 outcomes end the same in fresh processes." in flat
-    assert "mutant 2, round 1: survived; afresh: killed by check" in flat
+    assert "mutant 2, round 1: survived; re-run: killed by check" in flat
     assert (
-        "Kills: of 5 kills that may be chance 4 were run once more, 1 ended otherwise and count no more, "
-        "1 were not; false kills left among 4: 0.3 (0 to 4); 30 other kills by tests without "
-        "simulated time were not repeated (--verify N repeats some)."
+        "Kills: 4 of 5 kills that might be a coincidence re-run, 1 gave a different result and was dropped; "
+        "30 other kills not re-run (--verify N re-runs some); estimated wrong kills among 4: 0.3 "
+        "(95 % interval 0–4)"
     ) in flat
-    assert "1 test set aside, which cannot be relied on tests/t.py::test_a in round 1" in flat
+    assert "1 unreliable test excluded tests/t.py::test_a in round 1" in flat
     assert max(cell_len(line) for line in text.splitlines()) <= width
 
 
@@ -159,27 +156,27 @@ def test_errors_come_first_one_line_per_message(tmp_path: Path, width: int) -> N
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=tuple(outcomes))
     with Journal.open(path) as journal:
         text = report(read_results(journal), width)
-    words = " ".join(text.partition("Mutants by rounds")[0].split())
+    words = " ".join(text[text.index("6 of 6") : text.index("Scores")].split())
     assert "6 of 6 outcomes ended in error" in words
     assert words.endswith("5 × NaN (mutants 1, 2, 3, 4, 5) 1 × no memory (mutant 2)")
 
 
 def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> None:
     text = report(results)
-    section = text[text.index("survivors") :]
-    assert section.index("0.8 instead of 0.488") < section.index("read -0.0014 m instead of 0.0014 m")
-    assert row(section, "tests/sensors.py:2", "negate", "1 of 2")
+    section = text[text.index("3 survivors, largest deviation") :]
+    assert section.index("0.8 instead of 0.488") < section.index("no test reaches it")
+    assert "1 survivor without a measured effect: mutant 4" in section
 
 
 def test_what_stands_outside_the_score_is_listed_with_its_reason(results: Results) -> None:
     text = report(results)
-    assert "1 mutant outside the score: refused" in text
+    assert "Not counted in the score: 1 error, 1 refused" in text
     assert "x = −0.3 m is out of reach by 0.1 m" in text
     assert "[bold]not markup[/bold]" in text
 
 
 def test_what_the_plan_leaves_out_is_counted_and_listed_on_demand(results: Results) -> None:
-    assert row(report(results), "2  it is always 0")
+    assert row(report(results), "2 × it is always 0")
     assert samples.LEFT_OUT[0].id not in report(results)
     assert samples.LEFT_OUT[0].id in report(results, everything=True)
 
@@ -199,7 +196,7 @@ def test_a_journal_without_a_plan_can_be_shown(tmp_path: Path) -> None:
         assert "0 mutants × 0 rounds" in report(read_results(journal))
 
 
-def test_many_rounds_are_counted_and_split_over_several_tables(tmp_path: Path) -> None:
+def test_many_rounds_are_counted(tmp_path: Path) -> None:
     outcomes = tuple(
         Outcome(samples.SKIP.id, round, Verdict.SURVIVED if round % 3 else Verdict.TIMEOUT)
         for round in range(20)
@@ -207,23 +204,23 @@ def test_many_rounds_are_counted_and_split_over_several_tables(tmp_path: Path) -
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=20)
     with Journal.open(path) as journal:
         text = report(read_results(journal), 80)
-    assert row(text, "skip").rstrip().endswith("S13 T7")
-    assert text.count(" round ") >= 3
+    assert "S13" in text
+    assert "T7" in text
     assert max(cell_len(line) for line in text.splitlines()) <= 80
 
 
-@WIDTHS
+@pytest.mark.parametrize("width", [80, 120, 200])
 def test_a_run_ends_with_errors_scores_survivors_and_where_to_read_on(results: Results, width: int) -> None:
     text = summary(results, width)
     lines = text.splitlines()
     assert lines[0] == "5 mutants × 2 rounds: complete"
     assert max(cell_len(line) for line in lines) <= width
-    order = ["ended in error", "robot · program", "robot · oracle", "3 survivors", "outside the score"]
+    text = " ".join(text.split())
+    order = ["ended in error", "robot · program", "robot · oracle", "3 survivors", "Not counted in the score"]
     assert [text.index(words) for words in order] == sorted(text.index(words) for words in order)
     # of the first round 1 of 2 and of the second 2 of 3; by a check 1 of 2 and 0 of 3
-    assert re.search(r"robot · program +58\.3 %.* 25\.0 % +3 of 5", text)
-    assert "Mutants outside the score: 1 refused" in text
-    assert "`mutabot results` shows every mutant" in text.replace("\n", " ")
+    assert re.search(r"robot · program.* 58\.3 %.* 25\.0 % +3 of 5", text)
+    assert "`mutabot results` lists all" in text
     assert "by-to" not in text  # neither survived nor in error: a row in the full table only
 
 
@@ -267,16 +264,16 @@ def test_show_underlines_the_call_in_its_source(results: Results) -> None:
 def test_show_gives_the_kill_rate_with_its_interval(results: Results) -> None:
     on = console(100)
     print_mutant(on, find_mutant(results, "1"), None)
-    assert "in 2 of the 2 rounds in which it was valid: 100.0 %, 95 % interval 34–100 %" in written(on)
+    assert "in 2 of 2 valid rounds, 95 % interval 34–100 %" in written(on)
 
 
 def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> None:
     on = console(100)
-    print_mutant(on, find_mutant(results, "1"), None)
+    print_mutant(on, find_mutant(results, "1"), None, everything=True)
     text = written(on)
     for words in (
         samples.REVERSE.id,
-        "dx: translation, along x, in m",
+        "dx: translation, x, m",
         "the program sent -0.2 m instead of 0.2 m",
         "killed by a check in tests/test_mission.py::test_box_arrives",
         "AssertionError: box is at x = 0.55 m",
@@ -302,20 +299,26 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=8)
     with Journal.open(path) as journal:
         on = console(100)
-        print_mutant(on, find_mutant(read_results(journal), "1"), None)
+        print_mutant(on, find_mutant(read_results(journal), "1"), None, everything=True)
     lines = [line.strip() for line in written(on).partition("Rounds\n")[2].partition("\n\n")[0].splitlines()]
     assert lines == [
-        f"rounds 1–3, 5: C killed by a check in {samples.TEST}",
-        "such as in round 1:",
+        "C C C C C S S ·",
+        f"rounds 1 to 5: C killed by a check in {samples.TEST}",
         "box is at x = 0.5 m",
-        "acted at 3 of 3 hits, 1 tests run, 0.1 to 0.5 s",
-        f"round 4: C killed by a check in {samples.TEST}",
-        "box is at x = 0.5 m",
-        "acted at 2 of 3 hits, 1 tests run, 0.4 s",
-        "rounds 6–7: S survived",
-        "acted at 3 of 3 hits, 1 tests run, 0.2 s",
+        "acted at 3 of 3 hits, 1 test run, 0.1 s",
+        "rounds 6 and 7: S survived",
+        "acted at 3 of 3 hits, 1 test run, 0.2 s",
         "round 8: · not run",
     ]
+
+
+def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
+    on = console(100)
+    print_mutant(on, find_mutant(results, "4"), None)
+    text = written(on)
+    assert "round 1: S survived" in text
+    assert "killed by a check" not in text
+    assert "Use --all for every round" in text
 
 
 def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:
@@ -323,11 +326,11 @@ def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None
     why = {"the value would leave the range [-1, 1]": 138, "the value would stay the same": 1}
     rounds = tuple(one and replace(one, acted=161, hits=300, away=why) for one in mutant.rounds)
     on = console(100)
-    print_mutant(on, replace(mutant, rounds=rounds), None)
+    print_mutant(on, replace(mutant, rounds=rounds), None, everything=True)
     text = written(on)
     assert "acted at 161 of 300 hits" in text
-    assert "stayed away at 138 hits: the value would leave the range [-1, 1]" in text
-    assert "stayed away at 1 hit: the value would stay the same" in text
+    assert "left 138 calls unchanged: the value would leave the range [-1, 1]" in text
+    assert "left 1 call unchanged: the value would stay the same" in text
 
 
 @WIDTHS
@@ -335,7 +338,7 @@ def test_the_plan_names_place_operator_and_quantity(width: int) -> None:
     on = console(width)
     print_plan(on, samples.MUTANTS, samples.LEFT_OUT)
     text = written(on)
-    assert row(text, "program", "mission.py:3", "reverse", "dx")
+    assert row(text, "program", "mission.py:3", "reverse")
     assert "5 mutants" in text
     assert max(cell_len(line) for line in text.splitlines()) <= width
 

@@ -19,15 +19,11 @@ from results import samples
 CHECK = Suggestion(
     test="tests/test_box.py::test_arrives",
     style="pytest",
-    moment="end of the test",
     looks_at="tracker.box_position().x",
     statement="assert tracker.box_position().x == pytest.approx(0.5, abs=0.01)",
     tolerance=0.01,
-    band="normal",
-    factor=5.0,
     spread=0.002,
     runs=22,
-    alarm=0.00001,
     fresh=20,
     unseen=0.14,
     kills={samples.NEGATE.id: (0,)},
@@ -48,16 +44,16 @@ def shown(folder: Path, mutant: Mutant, found: Suggestions | None) -> str:
 
 def test_a_survivor_is_shown_with_the_check_that_kills_it(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NEGATE, FOUND)
-    assert "at the end of tests/test_box.py::test_arrives:" in text
+    assert "in tests/test_box.py::test_arrives:" in text
     assert CHECK.statement in text
     assert "kills #4 in round 1" in text
 
 
 def test_where_none_was_looked_for_it_is_said_how(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NEGATE, None)
-    assert "it needs another probe" in text  # nothing differs in this one
+    assert "Add a probe or a test" in text  # nothing differs in this one
     left = Suggestions(unsolved=(Unsolved(samples.NEGATE.id, "the original itself spreads 5 mm"),))
-    assert "none was found: the original itself spreads 5 mm" in shown(tmp_path, samples.NEGATE, left)
+    assert "None was found: the original itself spreads 5 mm" in shown(tmp_path, samples.NEGATE, left)
     assert "A check" not in shown(tmp_path, samples.REVERSE, FOUND)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.exit_codes import ExitCode
+from mutabot.errors import ExitCode
 from mutabot.model import Kind
 from mutabot.model.graded import Demand, parse_amount, wanted_magnitudes
 from mutabot.results.demands import Held, rulings, suggested

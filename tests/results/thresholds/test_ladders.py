@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds.picture import picture_of, svg
-from mutabot.report.thresholds.text import print_thresholds, suggested_toml
+from mutabot.report.thresholds import print_thresholds, suggested_toml
 from mutabot.results.ladders import Ladder, ladders_of
 from mutabot.results.thresholds import line_of, thresholds_of
 from results.thresholds import journals
@@ -34,10 +33,9 @@ def test_whatever_was_seen_can_be_told(
     assert len(found.all) == 2
     for one in found.ladders:
         assert_sound(one)
-    print_thresholds(make_console(io.StringIO(), width=80), found, steps=True)
+    print_thresholds(make_console(io.StringIO(), width=80), found)
     dumps(data_of(found))
     suggested_toml(found.ladders, table="demand")
-    svg(picture_of(found), by="a test")
 
 
 def assert_sound(one: Ladder) -> None:

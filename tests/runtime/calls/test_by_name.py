@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.vocabulary import load
+from mutabot.config.vocabulary import load
 from tests.runtime.client import ClientStage
 
 VOCABULARY = """
@@ -14,7 +14,7 @@ VOCABULARY = """
 topic = "/arm/goal"
 direction = "publish"
 fields.x = { kind = "translation", axis = "x", unit = "m", mode = "to", relative = true }
-current = { topic = "/arm/pose" }
+current = "receive /arm/pose"
 refused = [{ topic = "/arm/note", path = "code", values = [7] }]
 
 [[operation]]
@@ -25,7 +25,7 @@ fields.x = { kind = "position", axis = "x", unit = "mm" }
 [[operation]]
 action = "/arm/follow"
 goal.x = { kind = "translation", axis = "x", unit = "m", mode = "to", relative = true }
-current = { parameter = "home" }
+current = "parameter home"
 refused = ["ABORTED"]
 
 [[operation]]
@@ -86,7 +86,7 @@ def test_a_pose_that_another_file_receives_is_known_as_well(stage: ClientStage) 
 def test_nothing_is_mirrored_as_long_as_nothing_has_told_where_it_is(stage: ClientStage) -> None:
     _, client, activation = stage.mutated(program(PUBLISH, "hear(Message(x=500))"), "reverse", quantity="x")
     assert [message.x for _, _, message in client.log] == [0.75]
-    assert activation.evidence.away == {"nothing has told yet where the robot is": 1}
+    assert activation.evidence.away == {"the position of the robot is not known yet": 1}
     assert activation.evidence.failure is None
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.config.vocabulary import load
 from mutabot.runtime.targets.callables import look_at
-from mutabot.vocabulary import load
 
 
 class _Arm:

@@ -13,7 +13,8 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from mutabot.runtime.watching.described import Leaves
+from mutabot.model.job import Values
+from mutabot.runtime.watching.values import look
 from mutabot.runtime.watching.watch import METHOD, NAME, READ, Watch
 from mutabot.runtime.watching.watch import watch as watch_tree
 
@@ -43,7 +44,7 @@ def test_an_ordinary_program_does_what_it_did(monkeypatch: pytest.MonkeyPatch) -
     expected = plain.results()
     watched, watch = run(source, str(ORDINARY), monkeypatch)
     assert repr(watched.results()) == repr(expected)
-    assert watch.data()["calls"]
+    assert watch.data().calls
 
 
 def test_exceptions_and_private_names_pass_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -91,8 +92,8 @@ def test_what_cannot_be_looked_at_disturbs_nothing(monkeypatch: pytest.MonkeyPat
     assert module.go(wild, wild) is wild
     assert module.go(wild, mock) is mock
     assert module.go(mock, 1) is mock.set_x.return_value
-    calls = {call["target"]: call["sites"] for call in watch.data()["calls"]}
-    assert calls == {f"{__name__}:WILD.set_x": [["own.py", 1, 2]], "*:*.set_x": [["own.py", 1, 1]]}
+    calls = {call.target: call.sites for call in watch.data().calls}
+    assert calls == {f"{__name__}:WILD.set_x": {"own.py:1": 2}, "*:*.set_x": {"own.py:1": 1}}
 
 
 @pytest.mark.parametrize(
@@ -110,10 +111,10 @@ def test_what_cannot_be_looked_at_disturbs_nothing(monkeypatch: pytest.MonkeyPat
     ],
 )
 def test_values_are_described_by_path(values: list[Any], expected: dict[str, list[Any]]) -> None:
-    leaves = Leaves()
+    seen = Values()
     for value in values:
-        leaves.see(value, "a")
-    assert {leaf.path: leaf.values for leaf in leaves.found.values()} == expected
+        look(seen, value, "a")
+    assert {part.path: part.values for part in seen.parts.values()} == expected
 
 
 @dataclass
@@ -135,14 +136,14 @@ class World:
 def test_a_record_that_holds_itself_ends_somewhere() -> None:
     node = Node()
     node.next = node
-    leaves = Leaves()
-    leaves.see(node, "n")
-    assert "n.next.value" in leaves.found
+    seen = Values()
+    look(seen, node, "n")
+    assert "n.next.value" in seen.parts
 
 
 def test_only_objects_that_hold_plain_values_are_taken_apart() -> None:
-    pose, world = Leaves(), Leaves()
-    pose.see(Pose())
-    world.see(World())
-    assert {leaf.path: leaf.values for leaf in pose.found.values()} == {".x": [1.0], ".y": [[2.0, 3.0]]}
-    assert {leaf.path: leaf.type for leaf in world.found.values()} == {"": "World"}
+    pose, world = Values(), Values()
+    look(pose, Pose())
+    look(world, World())
+    assert {part.path: part.values for part in pose.parts.values()} == {".x": [1.0], ".y": [[2.0, 3.0]]}
+    assert {part.path: part.type for part in world.parts.values()} == {"": "World"}

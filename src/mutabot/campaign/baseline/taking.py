@@ -23,6 +23,7 @@ from mutabot.campaign.baseline.baseline import (
 )
 from mutabot.campaign.comparison import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
+from mutabot.config.vocabulary import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
 from mutabot.families import OF_CALLS
@@ -34,7 +35,6 @@ from mutabot.model.events import Event, Problem, Remark, TestEnd
 from mutabot.model.job import Job
 from mutabot.model.mutant import Place
 from mutabot.operators import load_all
-from mutabot.vocabulary import problem_error
 
 from .site_names import Sources
 

@@ -9,11 +9,11 @@ from typing import Any
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.comparison import parts_of, readings_of
 from mutabot.campaign.request import Progress
+from mutabot.config.vocabulary import problem_error
 from mutabot.extensions import brought
 from mutabot.model import Operation, Pattern, Quantity, Vocabulary
 from mutabot.model.events import Problem, Remark
 from mutabot.model.quantity import is_number, value_text
-from mutabot.vocabulary import problem_error
 
 
 @dataclass(slots=True)

@@ -23,6 +23,7 @@ from mutabot.operators import Need, Operator, Subject, load_all, operator
 from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
 from mutabot.operators.registry import operator as operator_of
+from mutabot.operators.value import NOT_PASSED, NOT_RETURNED
 
 from .demanded import ladders_last, with_demanded
 
@@ -362,13 +363,16 @@ def _changed(subject: Subject, passage: Passage) -> Any:
 
 
 def _reason(subject: Subject, value: Any, hits: int) -> str:
-    calls = _calls(hits)
+    calls, quantity = _calls(hits), subject.quantity
+    if quantity is None:
+        return f"would change nothing in {calls}"
+    if value is None and hits == 1:
+        return NOT_PASSED if subject.is_written else NOT_RETURNED
     if value is None:
-        return "the call gives no such value" if hits == 1 else f"none of {hits} calls gives such a value"
-    shown = subject.quantity.text(value) if subject.quantity is not None else str(value)
-    limited = subject.quantity is not None and (subject.quantity.range or subject.quantity.values)
-    within = " within the values that the vocabulary allows" if limited else ""
-    return f"would change nothing in {calls}{within} (value {shown})"
+        verb, what = ("passes", "argument") if subject.is_written else ("returns", "value")
+        return f"none of the {hits} calls {verb} this {what}"
+    within = " within the values that the vocabulary allows" if quantity.range or quantity.values else ""
+    return f"would change nothing in {calls}{within} (value {quantity.text(value)})"
 
 
 def _calls(hits: int) -> str:

@@ -17,12 +17,12 @@ from mutabot.campaign.baseline.baseline import Baseline, cost
 from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.config.options import Shard
 from mutabot.frozen import frozen
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import SHARD, ShardOf
 from mutabot.model import Mutant
 from mutabot.model.codec import to_data
-from mutabot.settings.options import Shard
 
 #: a piece is at most this part of a shard, if it can be halved
 _PIECES = 8

@@ -1,12 +1,11 @@
-"""The folder of a report: pages, their data and what shows them; nothing of a user's is ever overwritten."""
+"""The folder of a report: pages, their data and what shows them; no file of a user is ever overwritten."""
 
 from __future__ import annotations
 
 import json
 import re
 import shutil
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -16,10 +15,9 @@ from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
 from mutabot.model import By
 from mutabot.report.document import data_of, finite
-from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
-from mutabot.report.texts import status_of, why_alone
+from mutabot.report.texts import effect_text, status_of
 from mutabot.results.results import MutantResult, Results, killers, unlooked
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestions
@@ -27,137 +25,21 @@ from mutabot.results.thresholds import line_of, thresholds_of
 
 from .mutant import Recorded, mutant_page
 
-#: items of a list of what was left out, per reason
-_ITEMS = 50
-#: lines of ladders; `mutabot thresholds` has all
+#: facts of a row of the list, by the names that they have in the results document
+_ROW = (
+    "number=mutant.number id=mutant.id operator=mutant.operator variant=mutant.variant family=mutant.family "
+    "role=mutant.site.role file=mutant.site.span.file span=mutant.site.span site=mutant.site.id "
+    "function=mutant.site.span.function operation=mutant.operation quantity=mutant.quantity "
+    "unit=quantity.unit description=mutant.description killed=kill_rate.killed valid=kill_rate.valid "
+    "indistinguishable worst earlier outdated"
+)
+_LADDER = (
+    "place name file=mutant.site.span.file line=mutant.site.span.line unit magnitudes=sizes none_up_to "
+    "all_from refused_from"
+)
+#: ladders that the page shows; `mutabot thresholds` prints all
 _LADDERS = 200
 _META = ("mutabot", "python", "versions", "seed", "engine", "families", "started", "seconds")
-
-
-def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
-    """All of it but sources and the pages of mutants.
-
-    Args:
-        name: what the project is called.
-    """
-    rows = Rows(campaign)
-    return {
-        "name": name,
-        **data_of.facts(
-            campaign,
-            "state attempt done planned rounds groups controls verification repeats drawing "
-            "flaky=flaky.tests confirmed=confirmation.text",
-        ),
-        "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
-        "operators": dict(campaign.operators),
-        "files": rows.files,
-        "tests": rows.tests,
-        "baseline": _baseline(campaign, rows.tests),
-        "sites": rows.sites,
-        "columns": rows.columns,
-        "mutants": rows.rows,
-        "unlooked": [
-            [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(campaign.mutants)
-        ],
-        "ladders": [
-            [f"{one.place} {one.name}", line_of(one)] for one in thresholds_of(campaign).ladders[:_LADDERS]
-        ],
-        "leftOut": _left_out(campaign),
-    }
-
-
-def _baseline(campaign: Results, tests: list[str]) -> list[list[Any]]:
-    """Per test: its outcomes on the original that occurred, and its simulated seconds."""
-    found: dict[str, list[Any]] = {name: [[], None] for name in tests}
-    for one in campaign.baseline:
-        ends, seconds = found[one.test.test]
-        if one.test.outcome not in ends:
-            ends.append(one.test.outcome)
-        found[one.test.test][1] = seconds if one.test.simulated is None else one.test.simulated
-    return list(found.values())
-
-
-def _left_out(campaign: Results) -> list[list[Any]]:
-    left_out = campaign.left_out
-    reasons = Counter(one.reason for one in left_out)
-    return [
-        [reason, count, [[one.id, one.description] for one in left_out if one.reason == reason][:_ITEMS]]
-        for reason, count in reasons.most_common()
-    ]
-
-
-class Rows:
-    """Rows that name what they share by numbers.
-
-    Attributes:
-        files: paths of sources.
-        tests: node ids of all tests that are known.
-        sites: the tests that reach a site, as numbers, by the number of the site.
-        columns: the names of the cells of a row.
-        rows: one row per mutant.
-    """
-
-    def __init__(self, campaign: Results) -> None:
-        self._campaign = campaign
-        self.tests = campaign.tests
-        self._tests = {name: number for number, name in enumerate(self.tests)}
-        self._files: dict[str, int] = {}
-        self._sites: dict[str, int] = {}
-        self.sites: list[list[int]] = []
-        made = [self._row(one) for one in campaign.mutants]
-        self.columns = [*made[0]] if made else []
-        self.rows = [[*one.values()] for one in made]
-        self.files = [*self._files]
-
-    def _row(self, result: MutantResult) -> dict[str, Any]:
-        span, status = result.mutant.site.span, status_of(result)
-        place = place_of(span, self._campaign.source(span.file), utf16)
-        return {
-            **data_of.facts(result, "number=mutant.number id=mutant.id"),
-            "file": self._files.setdefault(span.file, len(self._files)),
-            **data_of.facts(place, "line column endLine=end_line endColumn=end_column"),
-            **data_of.facts(
-                result,
-                "function=mutant.site.span.function operation=mutant.operation quantity=mutant.quantity "
-                "unit=quantity.unit operator=mutant.operator variant=mutant.variant family=mutant.family "
-                "role=mutant.site.role description=mutant.description killed=kill_rate.killed "
-                "valid=kill_rate.valid worst indistinguishable",
-            ),
-            "ends": "".join(mark_of(one).letter for one in result.rounds),
-            "status": status.value if status is not None else "not run",
-            "why": why_alone(result),
-            "site": self._site(result),
-            "kills": self._kills(result),
-            "earlier": result.earlier or result.outdated,
-            "drawn": _drawn(result) if result.mutant.operator in self._campaign.draws else None,
-        }
-
-    def _site(self, result: MutantResult) -> int:
-        """The number of the site, and the tests that reach it."""
-        key = result.mutant.site.id
-        if key not in self._sites:
-            self._sites[key] = len(self.sites)
-            self.sites.append([self._tests[test] for test in self._campaign.reached_by(result.mutant)])
-        return self._sites[key]
-
-    def _kills(self, result: MutantResult) -> list[list[int]]:
-        """The tests that are known to notice it: number, in how many rounds, in how many by a check."""
-        found: dict[int, list[int]] = {}
-        for outcome in result.outcomes:
-            for test, by in dict(killers(outcome)).items():
-                counts = found.setdefault(self._tests[test], [0, 0])
-                counts[0] += 1
-                counts[1] += by is By.CHECK
-        return [[test, *counts] for test, counts in found.items()]
-
-
-def _drawn(result: MutantResult) -> Sequence[Sequence[Any]]:
-    """What was drawn where it first acted, per round: the round, the value before, and after."""
-    found = ((number, one.example) for number, one in enumerate(result.rounds) if one is not None)
-    pairs = [(number, *pair) for number, pair in found if pair is not None and len(pair) == 2]
-    return [one for one in pairs if all(isinstance(value, int | float) for value in one[1:])]
-
-
 _MARK_TEXT = (
     "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
 )
@@ -167,6 +49,50 @@ _PAGE, _ASSETS, _DATA, _CLIPS = "index.html", "assets", "data", "clips"
 LIMIT = 23_000_000
 #: clips and pictures of a mutant are named by its number: 12.mp4, 12-side.png
 _CLIP = re.compile(r"(\d+)(?:[-_. ].*)?\.(mp4|webm|gif|png|jpe?g|svg|webp)", re.IGNORECASE)
+
+
+def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
+    """Return the results document as the page needs it: without sources and the rounds of mutants.
+
+    Args:
+        name: what the project is called.
+    """
+    tests = {test: number for number, test in enumerate(campaign.tests)}
+    rows = [_row(one, tests) for one in campaign.mutants]
+    return {
+        "name": name,
+        **data_of.facts(
+            campaign,
+            "state attempt done planned rounds groups controls verification repeats drawing tests baseline "
+            "reaching left_out operators flaky=flaky.tests confirmed=confirmation.text",
+        ),
+        "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
+        # thousands of rows do not repeat the names of their cells
+        "columns": [*rows[0]] if rows else [],
+        "mutants": [[*one.values()] for one in rows],
+        "unlooked": [one.text for one in unlooked(campaign.mutants)],
+        "ladders": [
+            {**data_of.facts(one, _LADDER), "text": line_of(one)}
+            for one in thresholds_of(campaign).ladders[:_LADDERS]
+        ],
+    }
+
+
+def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
+    """A mutant as the results document has it, with one letter per round, and the tests that noticed it."""
+    kills: dict[str, list[int]] = {}
+    for outcome in result.outcomes:
+        for test, by in dict(killers(outcome)).items():
+            counts = kills.setdefault(test, [tests[test], 0, 0])
+            counts[1] += 1
+            counts[2] += by is By.CHECK
+    return {
+        **data_of.facts(result, _ROW),
+        "status": data_of(status_of(result)) or "not run",
+        "why": effect_text(result),
+        "ends": "".join(mark_of(one).letter for one in result.rounds),
+        "kills": [*kills.values()],
+    }
 
 
 @frozen
@@ -216,7 +142,7 @@ def check_folder(folder: Path) -> None:
 
 
 def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Written:
-    """Write the report; an older one in the folder is replaced. Raises UsageError if it cannot be.
+    """Write the report; it replaces an older one in the folder. Raises UsageError if it cannot be written.
 
     Args:
         limit: bytes that all data may take; recordings that have no room are left out.
@@ -227,74 +153,64 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
         (folder / REPORT_MARK).write_text(_MARK_TEXT, encoding="utf-8")
         for name in (_ASSETS, _DATA):
             shutil.rmtree(folder / name, ignore_errors=True)
-            (folder / name).mkdir()
+        for path in (folder / _ASSETS, *(folder / _DATA / name for name in ("mutants", "originals"))):
+            path.mkdir(parents=True)
         without = _write_data(folder / _DATA, contents, _clips(folder / _CLIPS), limit)
-        _copy_assets(folder)
+        for one in files(__package__).joinpath(_ASSETS).iterdir():
+            target = folder / one.name if one.name == _PAGE else folder / _ASSETS / one.name
+            target.write_bytes(one.read_bytes())
     except OSError as error:
         raise UsageError(f"the report {folder} cannot be written: {error.strerror}") from error
     size = sum(one.stat().st_size for one in folder.rglob("*") if one.is_file())
     return Written(folder / _PAGE, size, without)
 
 
-def _copy_assets(folder: Path) -> None:
-    for one in files(__package__).joinpath(_ASSETS).iterdir():
-        target = folder / one.name if one.name == _PAGE else folder / _ASSETS / one.name
-        if one.is_file():
-            target.write_bytes(one.read_bytes())
-
-
 def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]], limit: int) -> int:
+    """Write all data; return how many recordings had no room."""
     campaign = contents.campaign
-    used = _write(folder / "campaign.js", "campaign", campaign_data(campaign, contents.name))
-    used += _write(
-        folder / "sources.js", "sources", [[file, text] for file, text in campaign.sources.items()]
-    )
-    for name in ("mutants", "originals"):
-        (folder / name).mkdir()
+    sources = [[file, text] for file, text in campaign.sources.items()]
+    used = (folder / "campaign.js").write_bytes(script("campaign", campaign_data(campaign, contents.name)))
+    used += (folder / "sources.js").write_bytes(script("sources", sources))
     for result in campaign.mutants:
         number = result.mutant.number
-        page = {
-            **mutant_page(result),
-            "suggestion": check_on_page(result, contents.suggestions),
-            "media": clips.get(number, []),
-        }
-        used += _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
+        check = check_on_page(result, contents.suggestions)
+        page = {**mutant_page(result), "suggestion": check, "media": clips.get(number, [])}
+        file = folder / "mutants" / f"{number}.js"
+        used += file.write_bytes(script(f"mutant {number}", page))
     recorded = Recorded(contents.evidence, contents.clean)
-    found, without = _recordings(recorded, campaign.worst_first, limit - used)
-    for number in found.keys() | without.keys():
-        data = {"recordings": found.get(number, []), "without": without.get(number, 0)}
-        with (folder / "mutants" / f"{number}.js").open("ab") as file:
-            file.write(_bytes(f"recordings {number}", data))
-    for number, original in enumerate(recorded.originals.values()):
-        _write(folder / "originals" / f"{number}.js", f"original {number}", original)
-    return sum(without.values())
+    found = _recordings(recorded, campaign.worst_first, limit - used)
+    lacking = 0
+    for result in campaign.mutants:
+        number, those = result.mutant.number, found.get(result.mutant.number, [])
+        without = recorded.count(result) - len(those)
+        lacking += without
+        if those or without:
+            with (folder / "mutants" / f"{number}.js").open("ab") as page_file:
+                page_file.write(script(f"recordings {number}", {"recordings": those, "without": without}))
+    for index, original in enumerate(recorded.originals.values()):
+        (folder / "originals" / f"{index}.js").write_bytes(script(f"original {index}", original))
+    return lacking
 
 
-def _recordings(
-    recorded: Recorded, results: Iterable[MutantResult], limit: int
-) -> tuple[dict[int, list[Any]], dict[int, int]]:
-    """The recordings of each mutant by its number, one of each before a second of any; and how many are left.
+def _recordings(recorded: Recorded, results: Iterable[MutantResult], limit: int) -> dict[int, list[Any]]:
+    """The recordings of each mutant by its number, one of each before a second of any.
 
     When one has no room, those behind it have none either.
     """
-    results = [*results]
     waiting = {one.mutant.number: recorded.of(one) for one in results}
     found: dict[int, list[Any]] = {}
     used = 0
-    while waiting and used < limit:
+    while waiting:
         for number, those in [*waiting.items()]:
             one = next(those, None)
             if one is None:
                 del waiting[number]
                 continue
-            used += len(_bytes("", one))
+            used += len(script("", one))
             if used > limit:
-                break
+                return found
             found.setdefault(number, []).append(one)
-    counts = {
-        one.mutant.number: recorded.count(one) - len(found.get(one.mutant.number, ())) for one in results
-    }
-    return found, {number: count for number, count in counts.items() if count}
+    return found
 
 
 def _clips(folder: Path) -> dict[int, list[str]]:
@@ -307,48 +223,27 @@ def _clips(folder: Path) -> dict[int, list[str]]:
     return found
 
 
-def _write(file: Path, name: str, data: Any) -> int:
-    """Write data, and say how many bytes they take."""
-    return file.write_bytes(_bytes(name, data))
-
-
-def _bytes(name: str, data: Any) -> bytes:
-    return script_of(name, data).encode("utf-8", errors="replace")
-
-
 #: what could end the script or its string, whatever reads it first: the page's parser or the language's
 _ESCAPES = str.maketrans(
-    {
-        "\\": "\\\\",
-        "'": "\\'",
-        "<": "\\x3c",
-        ">": "\\x3e",
-        "&": "\\x26",
-        "\u2028": "\\u2028",
-        "\u2029": "\\u2029",
-        "\r": "\\r",
-        "\n": "\\n",
-    }
+    {"\\": "\\\\", "'": "\\'"} | {sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029\r\n"}
 )
-#: as much as this is told with all its digits; and up to this, whole numbers are whole to the page as well
-_EXACT, _WHOLE = 1e4, 2**53
+#: from this size on a number keeps all its digits: of seconds since 1970, seven digits are some minutes
+_EXACT = 1e4
 
 
-def script_of(name: str, data: Any) -> str:
-    """A script that hands data to the page under a name.
+def script(name: str, data: Any) -> bytes:
+    """Return a script that hands data to the page under a name.
 
     The data are a text that is parsed as JSON: no key of theirs means anything to the language.
     """
     data = finite(data, _short)
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=str)
-    return f"mutabot.take('{name.translate(_ESCAPES)}','{text.translate(_ESCAPES)}');\n"
+    call = f"mutabot.take('{name.translate(_ESCAPES)}','{text.translate(_ESCAPES)}');\n"
+    return call.encode("utf-8", errors="replace")
 
 
 def _short(number: float) -> float | int:
-    """As many digits as a page shows, so that thousands of numbers stay small.
-
-    From ``_EXACT`` on these are too few: of seconds since 1970, seven digits are some minutes.
-    """
-    if number.is_integer() and abs(number) < _WHOLE:
+    """As many digits as a page shows, so that thousands of numbers stay small."""
+    if number.is_integer() and abs(number) < 2**53:  # up to this, whole numbers are whole to the page as well
         return int(number)
     return number if abs(number) >= _EXACT else float(f"{number:.7g}")

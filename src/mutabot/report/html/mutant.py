@@ -9,14 +9,13 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import isnan
+from math import inf, isnan
 from typing import Any
 
 from mutabot.evidence.recording import Kind, Recording, Told, Track
-from mutabot.model import Looked, Outcome
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of
-from mutabot.report.texts import mapped, rounds_text
+from mutabot.report.texts import mapped
 from mutabot.results.divergence import worst_of
 from mutabot.results.results import MutantResult
 from mutabot.results.stored import StoredEvidence
@@ -60,49 +59,32 @@ def thinned(track: Track, times: Sequence[float], usual: Track | None, usual_tim
 
 
 def kept_points(times: Sequence[float], rows: Sequence[Row], misses: Sequence[float]) -> list[int]:
-    """The points to keep: on a line between two of them, all others lie within ``misses`` per axis.
+    """Return the points to keep: on a line between two of them, all others lie within ``misses`` per axis.
 
     From each kept point on, the slopes are narrowed to those that pass every point so far; the last point
     within them is kept next. Each point is looked at once.
     """
-    if len(rows) < 3:
-        return list(range(len(rows)))
-    kept, cone, index = [0], _Cone(), 1
-    while index < len(rows):
-        anchor = kept[-1]
-        span = max(times[index] - times[anchor], 1e-9)
-        slopes = [(one - other) / span for one, other in zip(rows[index], rows[anchor], strict=True)]
-        if cone.holds(slopes):
-            cone.narrow(slopes, [miss / span for miss in misses])
-            index += 1
-        else:
-            kept.append(max(index - 1, anchor + 1))
-            cone, index = _Cone(), kept[-1] + 1
-    if kept[-1] != len(rows) - 1:
-        kept.append(len(rows) - 1)
-    return kept
+    kept: list[int] = [0]
+    low, high = [-inf] * len(misses), [inf] * len(misses)
+    for index in range(1, len(rows)):
+        slopes, room = _slopes(times, rows, kept[-1], index), _room(times, misses, kept[-1], index)
+        if not all(least <= one <= most for least, one, most in zip(low, slopes, high, strict=True)):
+            kept.append(index - 1)
+            slopes, room = _slopes(times, rows, index - 1, index), _room(times, misses, index - 1, index)
+            low, high = [-inf] * len(misses), [inf] * len(misses)
+        low = [max(least, one - miss) for least, one, miss in zip(low, slopes, room, strict=True)]
+        high = [min(most, one + miss) for most, one, miss in zip(high, slopes, room, strict=True)]
+    return kept if len(rows) < 2 else [*kept, len(rows) - 1]
 
 
-class _Cone:
-    """The slopes of lines that pass near enough to every point since the last that was kept."""
+def _slopes(times: Sequence[float], rows: Sequence[Row], first: int, last: int) -> list[float]:
+    span = max(times[last] - times[first], 1e-9)
+    return [(one - other) / span for one, other in zip(rows[last], rows[first], strict=True)]
 
-    def __init__(self) -> None:
-        self._low: list[float] | None = None
-        self._high: list[float] = []
 
-    def holds(self, slopes: Sequence[float]) -> bool:
-        """Whether a line with these slopes does."""
-        if self._low is None:
-            return True
-        return all(low <= one <= high for low, one, high in zip(self._low, slopes, self._high, strict=True))
-
-    def narrow(self, slopes: Sequence[float], misses: Sequence[float]) -> None:
-        """One more point: lines may miss it by so much."""
-        low = [one - miss for one, miss in zip(slopes, misses, strict=True)]
-        high = [one + miss for one, miss in zip(slopes, misses, strict=True)]
-        if self._low is not None:
-            low, high = [*map(max, low, self._low)], [*map(min, high, self._high)]
-        self._low, self._high = low, high
+def _room(times: Sequence[float], misses: Sequence[float], first: int, last: int) -> list[float]:
+    span = max(times[last] - times[first], 1e-9)
+    return [miss / span for miss in misses]
 
 
 def _rows(track: Track, times: Sequence[float]) -> tuple[list[Row], list[float], list[list[int]]]:
@@ -164,84 +146,19 @@ def _differences(numbers: Sequence[int]) -> list[int]:
 
 
 #: what the page takes for granted where nothing is said
-_NOTHING: tuple[Any, ...] = (None, (), [], "")
-#: checks of a test that are shown; the journal has more
-_CHECKS = 40
+_NOTHING: tuple[Any, ...] = (None, (), [], {}, "")
 
 
 def mutant_page(result: MutantResult) -> dict[str, Any]:
-    """All but what was recorded."""
-    return {
-        **data_of.facts(
-            result,
-            "number=mutant.number id=mutant.id pattern=mutant.pattern_name change "
-            "interval=kill_rate.interval",
-        ),
-        "places": [data_of.facts(result.mutant.site, "place function=span.function")],
-        "meaning": _meaning_words(result),
-        "roundsText": rounds_text(result),
-        "rounds": [_round(one) for one in result.rounds],
-        "looked": _looked(result),
-    }
+    """Return all but the recordings: the mutant of the results document, without what is empty."""
+    return {**told(data_of(result)), "change": result.change}
 
 
-def _meaning_words(result: MutantResult) -> list[str]:
-    quantity = result.quantity
-    if quantity is None:
-        return []
-    words = (
-        quantity.kind.value,
-        quantity.axis and f"axis {quantity.axis}",
-        quantity.unit and f"in {quantity.unit}",
-        quantity.mode and f"{quantity.mode.value} an amount" if quantity.mode == "by" else None,
-        quantity.frame and f"frame {quantity.frame}",
-    )
-    return [word for word in words if word]
-
-
-def _round(outcome: Outcome | None) -> dict[str, Any] | None:
-    if outcome is None:
-        return None
-    known = {
-        **data_of.facts(
-            outcome,
-            "test exception message place hits acted tests wall simulated divergence gaps "
-            "compared=compared.text indistinguishable engine repeats stuck beside",
-        ),
-        "away": [[why, count] for why, count in outcome.away.items()],
-        "example": [_value(one) for one in outcome.example] if outcome.example is not None else None,
-        "unconfirmed": outcome.confirmed is False or None,
-        "kills": [[one.test, one.by.value, one.message] for one in outcome.kills[1:]],
-        "diverged": [_told(data_of.facts(one, "*")) for one in outcome.diverged],
-    }
-    return _told(known)
-
-
-def _told(data: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in data.items() if value not in _NOTHING}
-
-
-def _looked(result: MutantResult) -> dict[str, Any] | None:
-    """The first round that it survived: who ran it, what they checked, and by how much that held."""
-    for number, outcome in enumerate(result.rounds):
-        if outcome is not None and outcome.looked:
-            first_of_use = sorted(outcome.looked, key=lambda one: not one.acted)
-            return {"round": number, "tests": [_test(one) for one in first_of_use]}
-    return None
-
-
-def _test(looked: Looked) -> dict[str, Any]:
-    more = looked.more + max(0, len(looked.checks) - _CHECKS)
-    return {
-        "test": looked.test,
-        "acted": looked.acted,
-        "more": more,
-        "checks": [[one.place, one.text, one.seen, one.spare, one.times] for one in looked.checks[:_CHECKS]],
-    }
-
-
-def _value(value: Any) -> Any:
-    return value if value is None or isinstance(value, bool | int | float | str) else repr(value)
+def told(value: Any) -> Any:
+    """Return data without what is empty."""
+    if isinstance(value, dict):
+        return {key: told(item) for key, item in value.items() if item not in _NOTHING}
+    return [told(item) for item in value] if isinstance(value, list) else value
 
 
 #: characters of a value that are shown

@@ -1,4 +1,4 @@
-"""The terminal as reports use it: never any markup in what users wrote, readable without colour."""
+"""The terminal as reports use it: texts without markup, tables, notes, and a mark for each verdict."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ from collections.abc import Iterable, Sequence
 from typing import IO
 
 from rich import box
-from rich.console import Console
+from rich.console import Console, RenderableType
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
 from mutabot.frozen import frozen
 from mutabot.model import By, Outcome, Span, Verdict
-from mutabot.results.statistics import Interval
+from mutabot.report.sections import Section
 
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
 class _Console(Console):
-    """A console whose reader may leave early, as ``head`` does: then nothing more is printed."""
+    """A console whose reader may leave early, as ``head`` does: then it prints nothing more."""
 
     def on_broken_pipe(self) -> None:
         self.quiet = True
@@ -30,7 +31,7 @@ class _Console(Console):
 
 
 def leave_pipe() -> None:
-    """Nobody reads standard output any more: what is still to be printed goes nowhere."""
+    """Discard all further output: nobody reads standard output any more."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         os.dup2(nowhere, sys.stdout.fileno())
@@ -39,48 +40,43 @@ def leave_pipe() -> None:
 
 
 def make_console(file: IO[str] | None = None, *, width: int | None = None, stderr: bool = False) -> Console:
-    """A console that prints texts as they are. ``file`` is standard output if None."""
+    """Make a console that prints texts as they are. ``file`` is standard output if None."""
     return _Console(file=file, width=width, stderr=stderr, markup=False, highlight=False, emoji=False)
 
 
 def plain(text: str) -> str:
-    """A text from a program under test without what would confuse the terminal."""
+    """Return a program's text without what would confuse the terminal."""
     return _CONTROLS.sub("", _ESCAPES.sub("", text)).expandtabs(4)
 
 
 def heading(text: str) -> Text:
-    """The heading of a section."""
-    return Text(f"\n{text}", style="bold")
+    """Return the heading of a section."""
+    return Text(f"\n{plain(text)}", style="bold", overflow="fold")
 
 
-def make_table(*, header: bool = True) -> Table:
-    """An empty table in the look of all our tables."""
-    return Table(box=box.SIMPLE_HEAD, show_header=header, pad_edge=False, padding=(0, 1), header_style="bold")
+def below(text: str, indent: int = 2, style: str = "") -> RenderableType:
+    """Return an indented text."""
+    return Padding(Text(plain(text), style=style, overflow="fold"), (0, 0, 0, indent), expand=False)
 
 
-def add_row(
-    table: Table, number: int | str, facts: Sequence[str], text: str, *more: Text, narrow: bool
-) -> None:
-    """A row about a mutant: short facts, one text, and what follows it.
-
-    On a narrow terminal the facts stand on a line above the text, in the same column.
-    """
-    cells = [f"{' · '.join(facts)}\n{plain(text)}"] if narrow else [*facts, plain(text)]
-    table.add_row(str(number), *cells, *more)
-
-
-def make_mutant_table(facts: Sequence[str], text: str, *, narrow: bool) -> Table:
-    """A table for ``add_row``, with the headings of the facts and of the text."""
-    table = make_table()
-    table.add_column("no.", justify="right", no_wrap=True)
-    for name in () if narrow else facts:
-        table.add_column(name, no_wrap=True)
-    table.add_column("mutant" if narrow else text, overflow="fold", ratio=1)
+def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
+    """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the room that is left."""
+    look = box.SIMPLE_HEAD
+    table = Table(box=look, show_header=header, pad_edge=False, padding=(0, 1), header_style="bold")
+    for name in columns:
+        is_number, is_wide = name.startswith(">"), name.startswith("*")
+        table.add_column(
+            name.lstrip(">*"),
+            justify="right" if is_number else "left",
+            no_wrap=not is_wide,
+            overflow="fold",
+            ratio=1 if is_wide else None,
+        )
     return table
 
 
 def short_place(span: Span, width: int = 24) -> str:
-    """``file:line``; a long path loses its first folders. What stands in no line has line 0."""
+    """Return ``file:line``; a long path loses its first folders. What stands in no line has line 0."""
     place = span.place
     if len(place) <= width:
         return place
@@ -90,39 +86,36 @@ def short_place(span: Span, width: int = 24) -> str:
     return place if "/".join(parts) == place else "…/" + "/".join(parts)
 
 
-def percent(share: float | None) -> str:
-    """A score as text: ``92.3 %``, or ``–`` where nothing was valid."""
-    return "–" if share is None else f"{100 * share:.1f} %"
-
-
-def between(interval: Interval | None) -> str:
-    """An interval as text: ``34–90 %``, or ``–`` where there is none."""
-    return "–" if interval is None else f"{100 * interval.low:.0f}–{100 * interval.high:.0f} %"
-
-
-def plural(count: int, singular: str, several: str | None = None) -> str:
-    """``1 mutant``, ``2 mutants``."""
-    return f"{count} {singular if count == 1 else several or singular + 's'}"
+def print_section(console: Console, section: Section, at_most: int | None = None) -> None:
+    """Print a section, of many rows and lines the first. Neighbouring columns of texts share a cell."""
+    style = "bold red" if section.is_alarm else "bold"
+    console.print(Text(f"\n{plain(section.title)}", style=style, overflow="fold"))
+    groups: list[list[int]] = []
+    for index, name in enumerate(section.columns):
+        if groups and name.startswith("*") and section.columns[index - 1].startswith("*"):
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    if groups:
+        names = (" and ".join(section.columns[index] for index in group) for group in groups)
+        table = make_table([name.replace(" and *", " and ") for name in names])
+        for row in section.rows[:at_most]:
+            table.add_row(*("\n".join(plain(row[index]) for index in group) for group in groups))
+        console.print(table)
+    for line in section.lines[:at_most]:
+        console.print(below(line.lstrip(), 2 + len(line) - len(line.lstrip())))
+    left = max(len(section.rows), len(section.lines)) - (at_most or 0)
+    if at_most is not None and left > 0:
+        console.print(below(f"and {left} more", style="dim"))
 
 
 @frozen
 class Mark:
-    """How an outcome is shown.
-
-    Attributes:
-        letter: a letter or sign of its own, so that colour is not needed.
-        style: colour.
-        words: what the legend says.
-    """
+    """How an outcome is shown: a letter, so that colour is not needed, its colour, and the legend's words."""
 
     letter: str
     style: str
     words: str
-
-    @property
-    def text(self) -> Text:
-        """The coloured letter."""
-        return Text(self.letter, style=self.style)
 
 
 _BY_CHECK = Mark("C", "green", "killed by a check")
@@ -130,7 +123,7 @@ _BY_EXCEPTION = Mark("X", "cyan", "killed by an exception")
 _OTHERS = {
     Verdict.SURVIVED: Mark("S", "bold red", "survived"),
     Verdict.NOT_COVERED: Mark("N", "red", "not covered"),
-    Verdict.TIMEOUT: Mark("T", "yellow", "killed by a time-out"),
+    Verdict.TIMEOUT: Mark("T", "yellow", "killed by a timeout"),
     Verdict.REFUSED: Mark("R", "blue", "refused by the robot"),
     Verdict.INVALID: Mark("I", "blue", "invalid"),
     Verdict.NO_EFFECT: Mark("=", "dim", "no effect"),
@@ -142,7 +135,7 @@ _ORDER = [_BY_CHECK, _BY_EXCEPTION, *_OTHERS.values(), _NOT_RUN]
 
 
 def mark_of(outcome: Outcome | None) -> Mark:
-    """The mark of an outcome; None is one that has not been run."""
+    """Return the mark of an outcome; None is one that has not been run."""
     if outcome is None:
         return _NOT_RUN
     if outcome.verdict is Verdict.KILLED:
@@ -151,13 +144,16 @@ def mark_of(outcome: Outcome | None) -> Mark:
 
 
 def marks_in(outcomes: Iterable[Outcome | None]) -> list[tuple[Mark, int]]:
-    """The marks that occur and how often, in the order of the legend."""
+    """Return the marks that occur and how often, in the order of the legend."""
     marks = [mark_of(outcome) for outcome in outcomes]
     return [(mark, marks.count(mark)) for mark in _ORDER if mark in marks]
 
 
 def legend(outcomes: Iterable[Outcome | None]) -> Text:
-    """What the letters that occur mean."""
+    """Explain the letters that occur."""
     # Spaces that do not break keep a letter and its words on one line.
-    words = [(mark, mark.words.replace(" ", "\N{NO-BREAK SPACE}")) for mark, _ in marks_in(outcomes)]
-    return Text("   ").join(Text.assemble(mark.text, f"\N{NO-BREAK SPACE}{text}") for mark, text in words)
+    parts = [
+        Text.assemble((mark.letter, mark.style), f" {mark.words}".replace(" ", "\N{NO-BREAK SPACE}"))
+        for mark, _ in marks_in(outcomes)
+    ]
+    return Text("   ").join(parts)

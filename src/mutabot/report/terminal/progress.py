@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
-from types import TracebackType
 from typing import Self
 
 from rich.console import Console, RenderableType
@@ -13,7 +12,6 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
-    ProgressColumn,
     TaskID,
     TextColumn,
     TimeRemainingColumn,
@@ -47,11 +45,6 @@ class Pace:
         self.done += 1
 
     @property
-    def is_done(self) -> bool:
-        """Whether all are, if it is known how many there are."""
-        return self.total is not None and self.done >= self.total
-
-    @property
     def spent(self) -> float:
         """Seconds since it began."""
         return self._clock() - self._began
@@ -67,51 +60,43 @@ class Pace:
 #: seconds between two plain lines
 EVERY = 5.0
 
-#: columns of the terminal from which on the bar has this width
-_BARS = ((120, 40), (80, 20), (0, 10))
-#: widths of ``100/1000`` and ``0:00:10``
-_COUNT, _TIME = 9, 7
-#: what lies between the columns, and the least for the last of them
-_GAPS = 6
-#: columns that stay free
+#: columns that stay free at the right: a ^C that the terminal prints there must not begin another line
 _SPARE = 3
+#: columns of the bar, the count, the time left and the gaps
+_BAR, _OTHERS = 10, 9 + 7 + 6
 
 
-def _column(width: int | None = None, *, at_most: int | None = None, ratio: int | None = None) -> Column:
-    return Column(min_width=width, max_width=at_most, ratio=ratio, no_wrap=True, overflow="ellipsis")
+def _column(width: int | None = None, ratio: int | None = None) -> Column:
+    return Column(min_width=width, max_width=width, ratio=ratio, no_wrap=True, overflow="ellipsis")
 
 
 def make_progress(console: Console) -> Bar | Lines:
-    """The progress that fits the console; each is one as ``mutabot.campaign`` wants it."""
+    """Make the progress that fits the console; each is one as ``mutabot.campaign`` wants it."""
     return Bar(console) if console.is_terminal else Lines(console)
 
 
 class _Progress(Progress):
-    """Leaves room at the right: a ^C that the terminal prints there must not begin another line."""
-
-    def __init__(self, *columns: ProgressColumn, console: Console) -> None:
-        self._on = console
-        super().__init__(*columns, console=console, expand=True)
+    room = 0
 
     def get_renderables(self) -> Iterable[RenderableType]:
-        yield Constrain(self.make_tasks_table(self.tasks), self._on.width - _SPARE)
+        yield Constrain(self.make_tasks_table(self.tasks), self.room)
 
 
 class Bar:
-    """A bar per stage on a terminal."""
+    """A bar per stage on a terminal, each on one line: texts are cut before the bar is."""
 
     def __init__(self, console: Console) -> None:
-        # every stage keeps to one line, whatever is told beside it: texts are cut before the bar is
-        bar = next(width for columns, width in _BARS if console.width >= columns)
-        room = max(10, console.width - _SPARE - bar - _COUNT - _TIME - _GAPS)
+        room = max(10, min(40, console.width - _SPARE - _BAR - _OTHERS))
         self._progress = _Progress(
-            TextColumn("{task.description}", markup=False, table_column=_column(at_most=room)),
-            BarColumn(bar_width=bar, table_column=_column(bar)),
-            MofNCompleteColumn(table_column=_column(_COUNT)),
-            TimeRemainingColumn(elapsed_when_finished=True, table_column=_column(_TIME)),
+            TextColumn("{task.description}", markup=False, table_column=Column(max_width=room, no_wrap=True)),
+            BarColumn(bar_width=_BAR, table_column=_column(_BAR)),
+            MofNCompleteColumn(table_column=_column(9)),
+            TimeRemainingColumn(elapsed_when_finished=True, table_column=_column(7)),
             TextColumn("{task.fields[line]}", markup=False, table_column=_column(ratio=1)),
             console=console,
+            expand=True,
         )
+        self._progress.room = console.width - _SPARE
         self._task: TaskID | None = None
 
     def stage(self, text: str, total: int | None = None) -> None:
@@ -137,9 +122,7 @@ class Bar:
         self._progress.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._close_stage()
         self._progress.stop()
 
@@ -175,10 +158,9 @@ class Lines:
         pace = self._pace
         if pace.total is None:
             return str(pace.done)
-        done = f"{pace.done}/{pace.total}"
-        if pace.is_done:
-            return f"{done}, took {pace.spent:.0f} s"
-        return done if pace.left is None else f"{done}, {pace.left:.0f} s left"
+        took = f", took {pace.spent:.0f} s" if pace.done >= pace.total else ""
+        left = f", {pace.left:.0f} s left" if not took and pace.left is not None else ""
+        return f"{pace.done}/{pace.total}{took or left}"
 
     def _print(self, text: str) -> None:
         self._console.print(plain(text), soft_wrap=True)
@@ -186,7 +168,5 @@ class Lines:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         pass

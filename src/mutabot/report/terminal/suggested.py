@@ -1,82 +1,60 @@
-"""What is suggested, on the terminal."""
+"""Suggested checks on the terminal, and the one for a mutant."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
-from rich.console import Console, RenderableType
-from rich.padding import Padding
+from rich.console import Console
 from rich.text import Text
 
+from mutabot.report.sections import Section, plural
+from mutabot.report.texts import numbers_text
 from mutabot.results.results import MutantResult
 from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
 
-from .console import heading, plain, plural
+from .console import print_section
 
-#: dropped checks that are shown
-_DROPPED = 5
+#: lines of a section that are shown; --json has all
+_MOST = 10
 
 
 def print_suggestions(console: Console, found: Suggestions) -> None:
-    """Print what was found: each check with what it is worth, the diff, and what is left."""
-    for part in _suggestion_parts(found):
-        console.print(part)
-    if found.diff:
-        console.print()
-        console.print(Text(found.diff.rstrip("\n")), soft_wrap=True)
-
-
-def _suggestion_parts(found: Suggestions) -> Iterator[RenderableType]:
+    """Print each check with what it kills and how sure it is, the survivors that are left, and the diff."""
     killed = {mutant for one in found.suggestions for mutant in one.kills}
-    survivors = len(killed) + len(found.unsolved)
-    checks = plural(len(found.suggestions), "check")
-    yield Text(f"{checks} for {len(killed)} of {plural(survivors, 'survivor')}", style="bold")
+    survivors = plural(len(killed) + len(found.unsolved), "survivor")
+    text = f"{plural(len(found.suggestions), 'check')} for {len(killed)} of {survivors}"
+    console.print(Text(text, style="bold"))
     for number, one in enumerate(found.suggestions, start=1):
-        yield heading(f"{number}  {one.test}")
-        for line in lines_of(one, found):
-            yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 3), expand=False)
-    never = [one for one in found.unsolved if one.never]
-    yield from _left("No check for", [one for one in found.unsolved if not one.never], found)
-    yield from _left("No observation in these tests can kill", never, found)
-    if found.dropped:
-        yield heading(f"Dropped: {plural(len(found.dropped), 'check')} that failed the proof")
-        for dropped in found.dropped[:_DROPPED]:
-            yield Padding(Text(plain(f"{dropped.statement}: {dropped.reason}")), (0, 0, 0, 2), expand=False)
-        if len(found.dropped) > _DROPPED:
-            yield Text(f"  and {len(found.dropped) - _DROPPED} more (--json has all)")
+        print_section(console, Section(f"{number}  {one.test}", lines=[*lines_of(one, found)]))
+    left = [_left(one, found) for one in found.unsolved if not one.never]
+    never = [_left(one, found) for one in found.unsolved if one.never]
+    dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]
+    sections = {
+        f"No check found for {plural(len(left), 'survivor')}": left,
+        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": never,
+        f"{plural(len(dropped), 'check')} dropped, because verification failed": dropped,
+    }
+    for name, lines in sections.items():
+        if lines:
+            print_section(console, Section(name, lines=lines), _MOST)
+    if found.diff:
+        console.print(f"\n{found.diff.rstrip()}", soft_wrap=True)
 
 
 def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
-    """A check: the assertion, how sure it is, and what it kills."""
+    """Yield the assertion, what it kills, its tolerance, and its false alarms."""
     yield one.statement
-    yield f"{one.moment}; {_band(one)}"
-    yield f"false alarms: {_alarms(one)}"
     yield f"kills {_kills(one, found)}"
-    if one.by_hand:
-        yield "another tool makes this test, so this is to be added by hand where it ends:"
-        yield from (f"  {line}" for line in one.by_hand.splitlines())
-
-
-def _band(one: Suggestion) -> str:
-    if one.tolerance is None or not one.spread:
-        return f"equal in {plural(one.runs, 'run')} of the original"
-    factor = f", {one.factor:.1f} standard deviations" if one.factor is not None else ""
-    return (
-        f"within {one.tolerance:g} ({one.band}{factor}); {plural(one.runs, 'run')} of the original "
-        f"spread {one.spread:.3g}"
+    seen = f"{plural(one.runs, 'run')} of the original"
+    yield f"{seen} spread {one.spread:.3g}" if one.spread else f"equal in {seen}"
+    yield (
+        f"false alarms: none in {plural(one.fresh, 'new seed')} "
+        f"(so at most {100 * one.unseen:.2g} % of runs, 95 % confidence)"
     )
-
-
-def _alarms(one: Suggestion) -> str:
-    seen = f"none in {one.fresh} fresh seeds, which alone shows at most {_share_text(one.unseen)}"
-    if one.factor is not None:
-        return f"at most {_share_text(one.alarm)} of runs if the spread is normal; {seen} (95 % confidence)"
-    return f"{seen}; the {one.runs} runs before show at most {_share_text(one.alarm)} (95 % confidence)"
-
-
-def _share_text(share: float) -> str:
-    return f"{100 * share:.2g} %"
+    if one.by_hand:
+        yield "another tool makes this test: add this by hand where it ends:"
+        yield from (f"  {line}" for line in one.by_hand.splitlines())
 
 
 def _kills(one: Suggestion, found: Suggestions) -> str:
@@ -86,58 +64,40 @@ def _kills(one: Suggestion, found: Suggestions) -> str:
         by_rounds.setdefault(tuple(rounds), []).append(found.numbers.get(mutant, 0))
     parts = []
     for rounds, numbers in by_rounds.items():
-        where = f" in round{'s' if len(rounds) > 1 else ''} {', '.join(str(one + 1) for one in rounds)}"
+        where = f" in {numbers_text(round + 1 for round in rounds)}"
         if len(rounds) == found.rounds:
             where = " in all rounds" if found.rounds > 1 else ""
         parts.append(", ".join(f"#{number}" for number in sorted(numbers)) + where)
     return "; ".join(parts)
 
 
-def _left(title: str, unsolved: Sequence[Unsolved], found: Suggestions) -> Iterator[RenderableType]:
-    if not unsolved:
-        return
-    yield heading(f"{title} {plural(len(unsolved), 'survivor')}")
-    for one in unsolved:
-        text = f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
-        yield Padding(Text(plain(text), overflow="fold"), (0, 0, 0, 2), expand=False)
+def _left(one: Unsolved, found: Suggestions) -> str:
+    return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
 
 
-def suggested_parts(result: MutantResult, found: Suggestions | None) -> Iterator[RenderableType]:
-    """The section of a survivor; nothing for other mutants."""
+def suggested_sections(result: MutantResult, found: Suggestions | None) -> Iterator[Section]:
+    """Yield the section of a survivor; nothing for other mutants."""
     if not result.is_survivor or result.mutant.ladder:
         return
-    yield heading("A check that would catch it")
-    for line in _would_catch(result, found):
-        yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 2), expand=False)
-
-
-def _would_catch(result: MutantResult, found: Suggestions | None) -> Iterator[str]:
-    mutant = result.mutant
-    one = _check_for(result, found)
-    if one is not None and found is not None:
-        yield f"at the end of {one.test}:" if one.moment.startswith("end") else f"in {one.test}:"
-        yield from lines_of(one, found)
-        if not one.by_hand:
-            yield "`mutabot suggest` prints it as a diff."
-        return
+    check = check_on_page(result, found)
     reasons = {one.mutant: one.reason for one in found.unsolved} if found is not None else {}
-    if mutant.id in reasons:
-        yield f"none was found: {reasons[mutant.id]}"
+    if check is not None:
+        lines = [f"in {check['test']}:", check["code"], *check["notes"]]
+        lines.append("`mutabot suggest` prints it as a diff.")
+    elif result.mutant.id in reasons:
+        lines = [f"None was found: {reasons[result.mutant.id]}"]
     elif result.indistinguishable:
-        yield "nothing differs that was compared: it needs another probe or another test, or is no fault"
+        add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
+        lines = [f"No measured difference. {add}"]
     else:
-        yield f"`mutabot suggest --only {mutant.number}` looks for one, and proves it"
-
-
-def _check_for(result: MutantResult, found: Suggestions | None) -> Suggestion | None:
-    """The check that was suggested for a mutant."""
-    suggestions = found.suggestions if found is not None else ()
-    return next((one for one in suggestions if result.mutant.id in one.kills), None)
+        lines = [f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."]
+    yield Section("A check that would catch it", lines=lines)
 
 
 def check_on_page(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
-    """The same as the mutant's page has it; None if there is none."""
-    one = _check_for(result, found)
+    """Return the check that was suggested for a mutant, with its notes; None if there is none."""
+    suggestions = found.suggestions if found is not None else ()
+    one = next((one for one in suggestions if result.mutant.id in one.kills), None)
     if one is None or found is None:
         return None
     statement, *notes = lines_of(one, found)

@@ -14,20 +14,13 @@ from dataclasses import fields, is_dataclass
 from types import ModuleType
 from typing import Any
 
-from mutabot.model.quantity import step_of
-
 #: parts that are noted of one reading, how deep, and how long a sequence may be
 _PARTS, _DEPTH, _LENGTH = 24, 3, 8
 #: characters of a text that may be a label
 _LABEL = 60
 _PLAIN = (bool, int, float, str, type(None))
 
-#: values of one reading along the way that are kept, and that may be told one by one
-_MOST, _TOLD = 5000, 10
-_CALL = " (call)"
-
 _noted: dict[str, dict[str, Any]] = {}
-_seen: dict[str, dict[str, list[Any]]] = {}
 
 
 def note(
@@ -49,7 +42,6 @@ def note(
         found.update(_parts_of(text, lambda value=value: value))  # type: ignore[misc]
         for more, read in _of_object(text, value, classes):
             found.update(_parts_of(more, read))
-    found.update(_along_the_way())
     _noted.clear()
     _noted[_test()] = found
 
@@ -73,64 +65,6 @@ def at_end(test: Callable[..., Any], end: Callable[[Callable[[str], Any]], None]
 
     with_end.__signature__ = own.replace(parameters=[*own.parameters.values(), *asks])  # type: ignore[attr-defined]
     return test if inspect.iscoroutinefunction(test) else with_end
-
-
-def watch(
-    commands: Sequence[tuple[str, str, str]],
-    looks: Sequence[tuple[str, Callable[[], Any]]] = (),
-    classes: Sequence[str] = (),
-) -> None:
-    """Look after each of these commands, from now on and in every test.
-
-    Args:
-        commands: module, class (empty for what the module has itself) and name.
-        looks: expressions, each with what evaluates it.
-        classes: readings of objects, ``module:Class.name``, of the object that was commanded.
-    """
-    for module, owner, name in commands:
-        holder: Any = sys.modules.get(module)
-        for part in filter(None, owner.split(".")):
-            holder = getattr(holder, part, None)
-        command = getattr(holder, name, None)
-        if callable(command) and not hasattr(command, "_mutabot_watched"):
-            setattr(holder, name, _watched(command, looks, classes))
-
-
-def _watched(
-    command: Callable[..., Any], looks: Sequence[tuple[str, Callable[[], Any]]], classes: Sequence[str]
-) -> Callable[..., Any]:
-    def and_seen(*args: Any, **kwargs: Any) -> Any:
-        __tracebackhide__ = True
-        result = command(*args, **kwargs)
-        _look(args[0] if args else None, looks, classes)
-        return result
-
-    and_seen._mutabot_watched = True  # type: ignore[attr-defined]
-    return and_seen
-
-
-def _look(commanded: Any, looks: Sequence[tuple[str, Callable[[], Any]]], classes: Sequence[str]) -> None:
-    if not os.environ.get("PYTEST_CURRENT_TEST", "").endswith(_CALL):
-        return
-    if _test() not in _seen:
-        _seen.clear()
-    seen = _seen.setdefault(_test(), {})
-    for text, read in (*looks, *_of_object("args[0]", commanded, classes, deep=False)):
-        for key, value in _parts_of(text, read).items():
-            series = seen.setdefault(key, [])
-            if len(series) < _MOST:
-                series.append(value)
-
-
-def _along_the_way() -> Iterator[tuple[str, Any]]:
-    """Of each reading along the way the extremes; what is no number is told whole."""
-    for text, series in _seen.get(_test(), {}).items():
-        if all(isinstance(value, int | float) and not isinstance(value, bool) for value in series):
-            yield f"max {text}", max(series)
-            yield f"min {text}", min(series)
-            yield f"step {text}", step_of(series)
-        elif len(series) <= _TOLD:
-            yield f"all {text}", repr(series)
 
 
 def values() -> dict[str, Any]:
@@ -159,12 +93,9 @@ def _attributes(value: Any) -> Iterator[tuple[str, Any]]:
     yield from ((name, one) for name, one in held.items() if not name.startswith("_"))
 
 
-def _of_object(
-    text: str, value: Any, targets: Sequence[str], *, deep: bool = True
-) -> Iterator[tuple[str, Callable[[], Any]]]:
-    """Readings that the vocabulary names, of an object at hand or (``deep``) of one that it holds."""
-    held_by_it = _attributes(value) if deep else ()
-    for where, held in ((text, value), *((f"{text}.{name}", one) for name, one in held_by_it)):
+def _of_object(text: str, value: Any, targets: Sequence[str]) -> Iterator[tuple[str, Callable[[], Any]]]:
+    """Readings that the vocabulary names, of an object at hand or of one that it holds."""
+    for where, held in ((text, value), *((f"{text}.{name}", one) for name, one in _attributes(value))):
         for target in targets:
             module, _, qualname = target.partition(":")
             owner, _, name = qualname.rpartition(".")

@@ -126,10 +126,7 @@ class SessionText:
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
-        from mutabot.runtime.interception.active_mutant import (
-            is_refusal,
-            with_refusal,  # as above
-        )
+        from mutabot.runtime.interception.active_mutant import is_refusal, with_refusal  # noqa: PLC0415
 
         if self.is_mutant and self.has_acted and is_refusal(error, refusals):
             self._refusals = with_refusal(self._refusals, error)

@@ -6,18 +6,23 @@ import ast
 import functools
 import inspect
 import os
+import re
 import sys
 import textwrap
-import typing
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.model import ANY
+from mutabot.model.job import Call
 from mutabot.model.path import class_name
+from mutabot.model.signature import described_in, spell_signature, takes_anything
 from mutabot.runtime.targets.target import NotFoundError, resolve
-from mutabot.runtime.watching.described import of_type
+
+#: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
+_OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)
+_UNNAMED, _NAMES = re.compile(r"\barg(\d+)\b"), re.compile(r"Parameter ``(\w+)``")
 
 
 @dataclass(frozen=True)
@@ -26,34 +31,67 @@ class Callee:
 
     Attributes:
         target: as vocabularies name it.
-        raw: the function itself, unbound.
+        raw: the function itself, unbound; None if only a stand-in was seen.
         owner: its class, or None.
         file: where its text stands; empty for a native one.
+        stands_in: whether a mock or a fake was called in its place.
     """
 
     target: str
     raw: Any
     owner: type | None
     file: str
+    stands_in: bool = False
 
-    @property
+    @functools.cached_property
     def signature(self) -> inspect.Signature | None:
         """Its arguments without ``self``; None if nothing tells them."""
+        return self._told[0]
+
+    @property
+    def is_documented(self) -> bool:
+        """Whether only a docstring tells its arguments, as those that pybind11 writes do."""
+        return self._told[1]
+
+    @functools.cached_property
+    def _told(self) -> tuple[inspect.Signature | None, bool]:
         try:
             signature = inspect.signature(_function(self.raw))
         except (TypeError, ValueError):
-            return None
+            documented = self._documented()
+            return documented, documented is not None
         parameters = list(signature.parameters.values())
         if self.owner is not None and not isinstance(self.raw, staticmethod):
             parameters = parameters[1:]
-        return signature.replace(parameters=parameters)
+        return signature.replace(parameters=parameters), False
+
+    def _documented(self) -> inspect.Signature | None:
+        """The signature in a docstring; of several overloads, that with most arguments."""
+        text = _OBJECT.sub("...", getattr(_function(self.raw), "__doc__", None) or "")
+        name = self.target.rpartition(":")[2].rpartition(".")[2]
+        found = []
+        for part in _OVERLOAD.split(text):
+            names = dict(enumerate(_NAMES.findall(part)))
+            named = _UNNAMED.sub(lambda match, names=names: names.get(int(match[1]), match[0]), part)
+            signature = described_in(named, name)
+            if signature is not None and not takes_anything(signature):
+                found.append(signature)
+        return max(found, key=lambda one: len(one.parameters), default=None)
+
+
+def meant_by(kind: type, name: str) -> Callee | None:
+    """The method ``name`` of a class that a mock or a fake stands for, even if a patch hides the class."""
+    owner = next((one for one in kind.__mro__ if name in vars(one)), None)
+    if owner is None or "<" in owner.__qualname__:
+        return None
+    raw = vars(owner)[name]
+    return Callee(f"{class_name(owner)}.{name}", raw, owner, _file_of(raw), stands_in=True)
 
 
 def method_of(value: Any, name: str) -> Callee | None:
     """The method or property ``name`` of an object, class or module; None if it has no name of its own."""
     if isinstance(value, ModuleType):
-        found = vars(value).get(name)
-        return function_of(found, f"{value.__name__}:{name}")
+        return function_of(vars(value).get(name), f"{value.__name__}:{name}")
     if isinstance(value, super):
         parts: Any = value
         classes = type(parts.__self__).__mro__
@@ -73,7 +111,9 @@ def method_of(value: Any, name: str) -> Callee | None:
 def any_method(name: str, seen: Callee | None = None) -> Callee:
     """The method ``name`` of whatever has it; its arguments are those of one that was seen."""
     target = f"{ANY}.{name}"
-    return Callee(target, None, None, "") if seen is None else replace(seen, target=target)
+    return (
+        Callee(target, None, None, "", True) if seen is None else replace(seen, target=target, stands_in=True)
+    )
 
 
 def function_of(found: Any, spelt: str = "") -> Callee | None:
@@ -82,34 +122,35 @@ def function_of(found: Any, spelt: str = "") -> Callee | None:
         return method_of(found.__self__, found.__name__)
     if not isinstance(found, FunctionType | BuiltinFunctionType) and not hasattr(found, "__wrapped__"):
         return None
-    if isinstance(found, BuiltinFunctionType) and not isinstance(found.__self__, ModuleType | None):
-        return None  # a method of a type written in C
+    holder = found.__self__ if isinstance(found, BuiltinFunctionType) else None
+    is_bound = not isinstance(holder, ModuleType | None)
+    if is_bound and not type(holder).__name__.startswith(("PyCapsule", "pybind11")):
+        return None  # a method of a type written in C; those of pybind11 are bound to its own records
     names = [f"{found.__module__}:{getattr(found, '__qualname__', '')}", spelt]
     made = (_nameable(name, found, None) for name in names if name)
     return next((callee for callee in made if callee is not None), None)
 
 
-def facts(callee: Callee) -> dict[str, Any]:
-    """All that the callable says about itself, for JSON."""
-    function, signature = _function(callee.raw), callee.signature
-    owner = callee.owner
+def described(callee: Callee, *, of_tests: bool, own: bool) -> Call:
+    """A call with all that the callable says about itself."""
+    function, signature, owner = _function(callee.raw), callee.signature, callee.owner
     parameters = signature.parameters.values() if signature is not None else ()
-    return {
-        "target": callee.target,
-        "file": callee.file,
-        "line": getattr(getattr(function, "__code__", None), "co_firstlineno", 0),
-        "owner": owner.__name__ if owner is not None else "",
-        "doc": (inspect.getdoc(function) or "")[:1500] if function is not None else "",
-        "owner_doc": (owner.__doc__ or "")[:1500] if owner is not None else "",
-        "is_property": _is_property(callee.raw),
-        "has_signature": signature is not None,
-        "annotations": {one.name: _written(one.annotation) for one in parameters},
-        "signature": _bare(signature),
-        "returns": _written(signature.return_annotation) if signature is not None else "",
-        "refusals": list(dict.fromkeys(_raised_by(function))),
-        "problem": _problem(callee),
-        "readings": list(_readings(owner)) if owner is not None else [],
-    }
+    return Call(
+        callee.target,
+        of_tests,
+        own,
+        doc=(inspect.getdoc(function) or "")[:3000] if function is not None else "",
+        owner=owner.__name__ if owner is not None else "",
+        owner_doc=(owner.__doc__ or "")[:1500] if owner is not None else "",
+        is_property=isinstance(callee.raw, property | functools.cached_property),
+        signature=spell_signature(signature) if signature is not None else "",
+        is_documented=callee.is_documented,
+        annotations={one.name: _written(one.annotation) for one in parameters if one.name != "self"},
+        returns=_written(signature.return_annotation) if signature is not None else "",
+        problem=_problem(callee),
+        raised=list(dict.fromkeys(_raised_by(function))),
+        stands_in=callee.stands_in,
+    )
 
 
 def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:
@@ -123,9 +164,12 @@ def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:
         return None
     if found is not raw:
         return None
+    return Callee(target, raw, owner, _file_of(raw))
+
+
+def _file_of(raw: Any) -> str:
     code = getattr(inspect.unwrap(_function(raw)), "__code__", None)
-    file = os.path.realpath(code.co_filename) if code is not None else ""
-    return Callee(target, raw, owner, file)
+    return os.path.realpath(code.co_filename) if code is not None else ""
 
 
 def _function(raw: Any) -> Any:
@@ -134,20 +178,6 @@ def _function(raw: Any) -> Any:
     if isinstance(raw, functools.cached_property):
         return raw.func
     return raw.__func__ if isinstance(raw, classmethod | staticmethod) else raw
-
-
-def _is_property(raw: Any) -> bool:
-    return isinstance(raw, property | functools.cached_property)
-
-
-def _bare(signature: inspect.Signature | None) -> str:
-    """A signature without annotations; defaults that no vocabulary could hold are dots."""
-    parameters = []
-    for one in signature.parameters.values() if signature is not None else ():
-        is_plain = one.default is one.empty or type(one.default) in (int, float, str, bool, type(None))
-        default = one.default if is_plain else ...
-        parameters.append(one.replace(annotation=one.empty, default=default))
-    return str(inspect.Signature(parameters)).replace("Ellipsis", "…")
 
 
 def _written(annotation: Any) -> str:
@@ -161,7 +191,7 @@ def _written(annotation: Any) -> str:
 
 def _problem(callee: Callee) -> str:
     """Why its calls cannot be intercepted; empty if they can."""
-    if callee.target.startswith(ANY):
+    if callee.target.startswith(ANY) or callee.stands_in:
         return ""
     module, _, qualname = callee.target.partition(":")
     owner, name, raw = resolve(sys.modules[module], qualname)
@@ -181,40 +211,8 @@ def _raised_by(function: Any) -> Iterator[str]:
     names = getattr(function, "__globals__", {})
     for node in ast.walk(tree):
         if isinstance(node, ast.Raise) and node.exc is not None:
-            raised = _named(node.exc.func if isinstance(node.exc, ast.Call) else node.exc, names)
+            spelt = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
+            first, *rest = ast.unparse(spelt).split(".")
+            raised = functools.reduce(lambda found, name: getattr(found, name, None), rest, names.get(first))
             if isinstance(raised, type) and issubclass(raised, BaseException):
                 yield class_name(raised)
-
-
-def _named(node: ast.expr, names: dict[str, Any]) -> Any:
-    if isinstance(node, ast.Name):
-        return names.get(node.id)
-    if isinstance(node, ast.Attribute):
-        return getattr(_named(node.value, names), node.attr, None)
-    return None
-
-
-def _readings(owner: type) -> Iterator[dict[str, Any]]:
-    """Methods and properties of a class that take nothing and promise an answer."""
-    for name, raw in vars(owner).items():
-        function: Callable[..., Any] | None = _function(raw)
-        if name.startswith("_") or not isinstance(function, FunctionType):
-            continue
-        callee = Callee(f"{class_name(owner)}.{name}", raw, owner, "")
-        signature = callee.signature
-        if signature is None or signature.parameters:
-            continue
-        try:
-            promised = typing.get_type_hints(function).get("return")
-        except Exception:  # a name in an annotation that does not exist while the program runs
-            continue
-        if promised not in (None, type(None)):
-            leaves = [asdict(leaf) for leaf in of_type(promised)]
-            yield {
-                "target": callee.target,
-                "line": function.__code__.co_firstlineno,
-                "doc": (inspect.getdoc(function) or "")[:300],
-                "returns": _written(signature.return_annotation),
-                "is_property": _is_property(raw),
-                "parts": leaves,
-            }

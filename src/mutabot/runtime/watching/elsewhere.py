@@ -18,6 +18,7 @@ from types import FrameType
 from typing import Any
 
 from mutabot import extensions
+from mutabot.model.codec import to_data
 from mutabot.model.event_file import FOLDER
 from mutabot.runtime.processes.environment import carry, write_wake
 from mutabot.runtime.program_text.loading import hook_script
@@ -68,10 +69,7 @@ def join(folder: str) -> None:
     leave = os._exit
 
     def write() -> None:
-        name = os.path.join(folder, f"{os.getpid()}{_SEEN}")
-        with open(f"{name}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
-            json.dump(watch.data(), file, default=str)
-        os.replace(f"{name}.new", name)
+        write_seen(os.path.join(folder, f"{os.getpid()}{_SEEN}"), to_data(watch.data()))
 
     def leave_at_once(status: int) -> None:
         write()
@@ -86,9 +84,16 @@ def join(folder: str) -> None:
         signal.signal(signal.SIGTERM, end)  # else nothing would be written
 
 
-def seen_elsewhere(folder: str) -> list[dict[str, list[Any]]]:
-    """What processes saw, each as ``Watch.data`` gives it."""
-    found: list[dict[str, list[Any]]] = []
+def write_seen(path: str, data: dict[str, Any]) -> None:
+    """Write what was seen, all of it or nothing."""
+    with open(f"{path}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
+        json.dump(data, file, default=str)
+    os.replace(f"{path}.new", path)
+
+
+def seen_elsewhere(folder: str) -> list[dict[str, Any]]:
+    """What processes saw, each as the data of a ``Seen``."""
+    found: list[dict[str, Any]] = []
     for name in sorted(os.listdir(folder)):
         if name.endswith(_SEEN):
             with open(os.path.join(folder, name), encoding="utf-8", errors="surrogateescape") as file:

@@ -15,9 +15,10 @@ import pytest
 
 from mutabot import extensions
 from mutabot.errors import MutabotError
+from mutabot.model.codec import to_data
 from mutabot.model.job import WATCH_VARIABLE
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.watching.elsewhere import seen_elsewhere, watch_elsewhere
+from mutabot.runtime.watching.elsewhere import seen_elsewhere, watch_elsewhere, write_seen
 from mutabot.runtime.watching.watch import Watch
 
 #: least seconds between two writings of what was found so far
@@ -56,12 +57,11 @@ class _Plugin:
     def _write(self) -> None:
         outcomes = list(self._outcomes.values())
         counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
-        every = [self._watch.data(), *seen_elsewhere(self._folder)]
-        seen = {key: [one for data in every for one in data[key]] for key in every[0]}
-        found = {**seen, "outcomes": counts, "problems": self._problems[:20]}
-        with open(f"{self._output}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
-            json.dump(found, file, default=str)
-        os.replace(f"{self._output}.new", self._output)
+        found = {**to_data(self._watch.data()), "outcomes": counts, "problems": self._problems[:20]}
+        for other in seen_elsewhere(self._folder):
+            for key in ("calls", "uses", "reached"):
+                found[key] += other[key]
+        write_seen(self._output, found)
         self._written = time.monotonic()
 
 

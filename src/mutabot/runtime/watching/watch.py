@@ -12,37 +12,29 @@ import builtins
 import functools
 import inspect
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
-from types import FrameType
+from types import FrameType, ModuleType
 from typing import Any
 
-from mutabot.model import ANY
+from mutabot.model.job import Call, Command, Seen, Values
 from mutabot.model.path import class_name
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text import loading as scripts
 from mutabot.runtime.program_text.standing import is_mock
 from mutabot.runtime.targets.target import Where
-from mutabot.runtime.watching.callee import Callee, any_method, facts, function_of, method_of
-from mutabot.runtime.watching.described import Leaves, ToldApart
-from mutabot.runtime.watching.named import NamesSeen
+from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
+from mutabot.runtime.watching.names import NamesSeen
+from mutabot.runtime.watching.values import look, plain
 
 METHOD, NAME, READ = "__mutabot_method__", "__mutabot_name__", "__mutabot_read__"
 #: these look at the frame that calls them
 _BOUND_TO_FRAME = frozenset({"super", "locals", "globals", "vars", "dir", "eval", "exec", "breakpoint"})
-
-
-def watch_imports(files: Mapping[str, str], new_place: Callable[[str, int], int]) -> None:
-    """From now on these files (real path to the name for people) are imported with calls that are watched.
-
-    ``new_place`` numbers a file and line.
-    """
-    loading.add(_Watched(files, new_place))
-    scripts.hook_runpy()
 
 
 class _Watched:
@@ -134,28 +126,29 @@ _NO_ROBOTS = frozenset(
         "networkx", "click", "typer", "PIL", "math3d", "transforms3d",
     }
 )  # fmt: skip
+#: names of arguments that tell which command a call is
+_TELLING = frozenset(
+    {
+        "node", "node_id", "nodeid", "name", "address", "register", "tag", "channel", "signal", "topic",
+        "variable",
+    }
+)  # fmt: skip
+_TALKS = re.compile(r"(?:^|_)(?:read|write|get|set|send|publish)(?:_|$)", re.IGNORECASE)
+#: more commands than these, and longer texts, are no list of commands
+_MOST_COMMANDS, _LONGEST = 24, 60
 
 
-@dataclass
+@dataclass(slots=True)
 class _Seen:
     """A callable and what was seen of it."""
 
     callee: Callee
-    own: bool
-    of_tests: bool
-    sites: dict[int, int] = field(default_factory=dict)
-    arguments: dict[str, Leaves] = field(default_factory=dict)
-    positional: Leaves = field(default_factory=Leaves)
-    result: Leaves = field(default_factory=Leaves)
-    given: dict[str, int] = field(default_factory=dict)
-    raised: dict[str, None] = field(default_factory=dict)
-    told_apart: ToldApart = field(default_factory=ToldApart)
-    looked_at: int = 0
-    answered: int = 0
-    is_coroutine: bool = False
+    call: Call
+    is_coroutine: bool
     returns_coroutine: bool = False
-    leads_to_names: bool = False
-    signature: inspect.Signature | None = None
+    looked_at: int = 0
+    raised: dict[str, None] = field(default_factory=dict)
+    has_no_commands: bool = False
 
 
 #: the calls that are under way here, the outermost first
@@ -184,6 +177,7 @@ class Watch:
         self._numbers: dict[tuple[str, int], int] = {}
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._known: dict[tuple[Any, str], Callee | None] = {}
+        self._patches: dict[tuple[str, str], type | None] = {}
         self._reached: dict[tuple[int, str], None] = {}
         self._names: NamesSeen | None = None
         self._files: dict[str, tuple[str, bool] | None] = {}
@@ -194,7 +188,8 @@ class Watch:
         setattr(builtins, METHOD, self.method)
         setattr(builtins, NAME, self.named)
         setattr(builtins, READ, self.read)
-        watch_imports({**self._program, **self._tests}, self._place)
+        loading.add(_Watched({**self._program, **self._tests}, self._place))
+        scripts.hook_runpy()
 
     def method(self, value: Any, name: str, place: int) -> Any:
         """``value.name`` is about to be called."""
@@ -204,7 +199,7 @@ class Watch:
             return found
         callee = self._method(value, name)
         if not self._is_of_tests(place):
-            callee = self._stood_for(value, name, callee)
+            callee = self._stood_for(value, name, callee, found)
         return self._wrapped(found, self._of(callee, place), place)
 
     def named(self, function: Any, place: int) -> Any:
@@ -224,13 +219,11 @@ class Watch:
                 self._answer(seen, found)
         return found
 
-    def data(self) -> dict[str, list[Any]]:
-        """What was seen, for JSON: callables, what was done under names, and all places that were come by."""
-        return {
-            "calls": [self._data(seen) for seen in list(self._seen.values())],
-            "names": self._names.data() if self._names is not None else [],
-            "reached": [[*self._places[place], name] for place, name in list(self._reached)],
-        }
+    def data(self) -> Seen:
+        """What was seen: callables, what was done under names, and all places that were come by."""
+        uses = list(self._names.uses.values()) if self._names is not None else []
+        reached = [(*self._places[place], name) for place, name in list(self._reached)]
+        return Seen([self._call(seen) for seen in list(self._seen.values())], uses, reached)
 
     def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
         """File, line and side of a frame or the nearest one around it, or of what is called back."""
@@ -255,7 +248,7 @@ class Watch:
     def _leads(self) -> None:
         """Something is done under a name: the calls that are under way lead to it."""
         for seen in _under_way.get():
-            seen.leads_to_names = True
+            seen.call.leads_to_names = True
 
     def _place(self, file: str, line: int) -> int:
         if (file, line) not in self._numbers:
@@ -272,19 +265,35 @@ class Watch:
             self._known[key] = method_of(value, name)
         return self._known[key]
 
-    def _stood_for(self, value: Any, name: str, callee: Callee | None) -> Callee | None:
-        """What a method of a mock or of a class of the tests stands for: the robot's, or any of its name."""
+    def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
+        """What a mock or a class of the tests stands for: the robot's callable, or any of its name."""
         mock = sys.modules.get("unittest.mock")
         if mock is not None and is_mock(mock, value):
-            kind = vars(value).get("_spec_class")
-            return (method_of(kind, name) if kind is not None else None) or any_method(name)
+            kind = vars(value).get("_spec_class") or self._patched(value._extract_mock_name(), name)
+            return (meant_by(kind, name) if kind is not None else None) or any_method(name)
+        if mock is not None and is_mock(mock, found) and isinstance(value, type | ModuleType):
+            where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
+            is_class = name[:1].isupper()
+            return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
         if callee is None or callee.owner is None or callee.file not in self._tests:
             return callee
-        for kind in callee.owner.__mro__[1:]:
-            meant = method_of(kind, name)
-            if meant is not None and meant.file not in self._tests:
-                return meant
-        return any_method(name, callee)
+        meant = (meant_by(kind, name) for kind in callee.owner.__mro__[1:-1])
+        robots = next((one for one in meant if one is not None and one.file not in self._tests), None)
+        return robots or any_method(name, callee)
+
+    def _patched(self, spelt: str, name: str) -> type | None:
+        """The class that a mock of this name stands for: the only one of that name with such a method."""
+        root = re.split(r"\W", spelt)[0]
+        if (root, name) in self._patches:
+            return self._patches[root, name]
+        kinds = {
+            id(kind): kind
+            for module in list(sys.modules.values())
+            for kind in [getattr(module, "__dict__", {}).get(root)]
+            if isinstance(kind, type) and kind.__name__ == root and callable(getattr(kind, name, None))
+        }
+        self._patches[root, name] = next(iter(kinds.values())) if len(kinds) == 1 else None
+        return self._patches[root, name]
 
     def _of(self, callee: Callee | None, place: int) -> _Seen | None:
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
@@ -292,13 +301,14 @@ class Watch:
             return None
         key = (callee.target, self._is_of_tests(place))
         known = self._seen.get(key)
-        if known is None:
+        if known is None or (known.callee.raw is None and callee.raw is not None):
             top = callee.target.partition(":")[0].partition(".")[0]
             if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
                 return None
-            known = self._seen[key] = _Seen(callee, callee.file in self._program, key[1])
-            known.signature = callee.signature
-            known.is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
+            call = described(callee, of_tests=key[1], own=callee.file in self._program)
+            call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
+            is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
+            known = self._seen[key] = _Seen(callee, call, is_coroutine)
         return known
 
     def _wrapped(self, function: Any, seen: _Seen | None, place: int) -> Any:
@@ -308,10 +318,10 @@ class Watch:
         instance = getattr(function, "__self__", None)
 
         def watched(*args: Any, **kwargs: Any) -> Any:
-            which: str | None = None
+            command: Command | None = None
             with suppress(Exception):  # looking at values must not disturb the program
-                values = self._arguments(seen, args, kwargs)
-                which = seen.told_apart.see(instance, seen.callee.target, values)
+                values = self._arguments(seen, args, kwargs, instance)
+                command = _command(seen, instance, values)
             token = _under_way.set((*_under_way.get(), seen))
             try:
                 result = function(*args, **kwargs)
@@ -322,13 +332,13 @@ class Watch:
                 _under_way.reset(token)
             if inspect.iscoroutine(result):
                 seen.returns_coroutine = not seen.is_coroutine
-                return self._awaited(seen, which, result)
-            self._answer(seen, result, which)
+                return self._awaited(seen, command, result)
+            self._answer(seen, result, command)
             return result
 
         return watched
 
-    async def _awaited(self, seen: _Seen, which: str | None, waiting: Any) -> Any:
+    async def _awaited(self, seen: _Seen, command: Command | None, waiting: Any) -> Any:
         token = _under_way.set((*_under_way.get(), seen))
         try:
             result = await waiting
@@ -338,71 +348,113 @@ class Watch:
         finally:
             with suppress(ValueError):  # a coroutine that is closed from elsewhere
                 _under_way.reset(token)
-        self._answer(seen, result, which)
+        self._answer(seen, result, command)
         return result
 
     def _counts(self, seen: _Seen, place: int) -> bool:
         """Count a call; whether its values are to be looked at."""
-        if seen.of_tests and (seen.own or seen.callee.file in self._tests):
+        if seen.call.of_tests and (seen.call.own or seen.callee.file in self._tests):
             return False
         self._pulse()
-        seen.sites[place] = seen.sites.get(place, 0) + 1
+        file, line = self._places[place]
+        where = f"{file}:{line}"
+        seen.call.sites[where] = seen.call.sites.get(where, 0) + 1
         seen.looked_at += 1
         return seen.looked_at <= MOST_CALLS
 
     def _is_of_tests(self, place: int) -> bool:
         return self._places[place][0] in self._tests.values()
 
-    def _arguments(self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any]) -> dict[str, Any]:
+    def _arguments(
+        self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any], instance: Any
+    ) -> dict[str, Any]:
         """Look at the arguments of a call, and return those whose names are known."""
-        values = dict(kwargs)
-        if seen.signature is None:
+        values, signature, call = dict(kwargs), seen.callee.signature, seen.call
+        if signature is None:
             for index, value in enumerate(args):
-                seen.positional.see(value, f"#{index}")
+                look(call.positional, value, f"#{index}")
         else:
             try:
-                bound = seen.signature.bind(*args, **kwargs)
+                bound = signature.bind(*args, **kwargs)
             except TypeError:
                 return {}
             bound.apply_defaults()
             values = dict(bound.arguments)
-            for name, parameter in seen.signature.parameters.items():
+            for name, parameter in signature.parameters.items():
                 if parameter.kind is inspect.Parameter.VAR_KEYWORD:
                     values.update(values.pop(name, {}))
         for name, value in values.items():
-            seen.given[name] = seen.given.get(name, 0) + 1
-            seen.arguments.setdefault(name, Leaves()).see(value, name)
+            known = call.arguments.setdefault(name, Values())
+            look(known, value, name)
+            limits = _limits(value, instance) if "step" in call.name else None
+            for part in known.parts.values():
+                if part.length is not None and limits is not None and len(limits) == part.length:
+                    part.limits = limits
         return values
 
-    def _answer(self, seen: _Seen, result: Any, which: str | None = None) -> None:
-        seen.answered += 1
+    def _answer(self, seen: _Seen, result: Any, command: Command | None = None) -> None:
         with suppress(Exception):
-            seen.result.see(result)
-            seen.told_apart.answer(which, result)
+            look(seen.call.result, result)
+            if command is not None:
+                look(command.result, result)
 
-    def _raised(self, target: str) -> list[str]:
-        """What a callable raised, whoever called it: tests make robots refuse."""
-        sides = (self._seen.get((target, of_tests)) for of_tests in (False, True))
-        return list(dict.fromkeys(name for side in sides if side is not None for name in side.raised))
+    def _call(self, seen: _Seen) -> Call:
+        sides = (self._seen.get((seen.call.target, of_tests)) for of_tests in (False, True))
+        raised = [
+            name for side in sides if side is not None for name in side.raised
+        ]  # tests make robots refuse
+        call = replace(seen.call, raised=list(dict.fromkeys([*seen.call.raised, *raised])))
+        if seen.returns_coroutine and not call.stands_in:
+            call.problem = "it returns a coroutine but is no coroutine function: name the one behind it"
+        return call
 
-    def _data(self, seen: _Seen) -> dict[str, Any]:
-        found = facts(seen.callee)
-        if seen.returns_coroutine and not seen.callee.target.startswith(ANY):
-            found["problem"] = "it returns a coroutine but is no coroutine function: name the one behind it"
-        return {
-            **found,
-            "own": seen.own,
-            "leads_to_names": seen.leads_to_names,
-            "of_tests": seen.of_tests,
-            "sites": [[*self._places[place], count] for place, count in seen.sites.items()],
-            "given": seen.given,
-            "arguments": {name: leaves.data() for name, leaves in seen.arguments.items()},
-            "positional": seen.positional.data(),
-            "result": seen.result.data(),
-            "answered": seen.answered,
-            "raised": self._raised(seen.callee.target),
-            "told_apart": seen.told_apart.data(),
-        }
+
+def _limits(value: Any, instance: Any) -> list[list[float]] | None:
+    """Least and greatest values of an action, as the environment or the simulated model tells them."""
+    space: Any = getattr(instance, "action_space", None)
+    if hasattr(space, "low") and hasattr(space, "high"):
+        pairs = zip(plain(space.low), plain(space.high), strict=True)
+        return [[float(low), float(high)] for low, high in pairs]
+    model = getattr(value, "model", None) if type(value).__name__ == "MjData" else None
+    return plain(model.actuator_ctrlrange) if model is not None else None
+
+
+def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command | None:
+    """Which command a call is, by a node, register or name that tells it apart; None if nothing does."""
+    call = seen.call
+    if seen.has_no_commands:
+        return None
+    by, text = _told_by(call.name, instance, values)
+    if not by or call.told_by not in ("", by) or len(text) > _LONGEST or len(call.commands) > _MOST_COMMANDS:
+        seen.has_no_commands, call.told_by = True, ""
+        call.commands.clear()
+        return None
+    call.told_by = by
+    command = call.commands.setdefault(text, Command())
+    for name, value in values.items():
+        if name != by:
+            look(command.arguments.setdefault(name, Values()), value, name)
+    return command
+
+
+def _told_by(name: str, instance: Any, values: Mapping[str, Any]) -> tuple[str, str]:
+    """Path and text of what tells a command apart; empty texts if nothing does."""
+    if not _TALKS.search(name):
+        return "", ""
+    for argument, value in values.items():
+        is_plain = isinstance(value, str | int) and not isinstance(value, bool)
+        if argument.lower() in _TELLING and (is_plain or _prints_itself(value)):
+            return argument, str(value)
+    return ("self", str(instance)) if _prints_itself(instance) else ("", "")
+
+
+def _prints_itself(value: Any) -> bool:
+    """Whether an object prints as a name of its own, as a node does by its id."""
+    own: Any = type(value).__str__
+    if value is None or own is object.__str__ or not hasattr(value, "__dict__"):
+        return False
+    text = str(value)
+    return "\n" not in text and " object at " not in text
 
 
 def _is_no_robot(top: str) -> bool:

@@ -2,7 +2,7 @@
 "use strict";
 (() => {
   const { h, address, here } = mutabot;
-  const PAGES = [["", "Overview"], ["mutants", "Mutants"], ["source", "Source"], ["tests", "Tests"], ["operators", "Operators"], ["noise", "Noise"]];
+  const PAGES = [["", "Overview"], ["mutants", "Mutants"], ["source", "Source"], ["tests", "Tests"], ["operators", "Operators"]];
   const KEYS = [
     ["/", "search the mutants"], ["j, k", "next and previous mutant of the list"], ["Enter", "open it"],
     ["n, p", "on a mutant's page: the next and the previous one of the list"],
@@ -34,16 +34,19 @@
   });
 
   function prepared(data) {
+    const numbers = new Map(data.tests.map((name, at) => [name, at]));
+    const reaching = new Map(Object.entries(data.reaching.sites).map(([site, tests]) => [site, [...new Set(tests)].map((at) => numbers.get(data.reaching.tests[at]))]));
     data.mutants = data.mutants.map((row) => {
-      const one = {};
-      data.columns.forEach((name, index) => { one[name] = row[index]; });
-      one.file = data.files[one.file] || "";
-      one.place = one.file ? `${one.file}:${one.line}` : "–";
-      one.reach = data.sites[one.site] || [];
+      const one = Object.fromEntries(data.columns.map((name, index) => [name, row[index]]));
+      [one.line, one.endLine] = [one.span.line, one.span.end_line];
+      one.place = one.line ? `${one.file}:${one.line}` : one.file || "–";
+      one.reach = reaching.get(one.site) || [];
       one.survives = /[SN]/.test(one.ends);
       one.haystack = [one.number, one.id, one.place, one.function, one.operator, one.description, one.why].join("\n").toLowerCase();
       return one;
     });
+    const programs = data.mutants.filter((one) => one.role === "program");
+    data.files = [...new Set([...programs, ...data.mutants].map((one) => one.file))]; // the program's first
     data.byNumber = new Map(data.mutants.map((one) => [one.number, one]));
     return data;
   }
@@ -97,9 +100,7 @@
   }
 
   function navigation(current) {
-    document.getElementById("nav").replaceChildren(h("ul", null, PAGES
-      .filter(([path]) => path !== "noise" || campaign.mutants.some((one) => one.drawn))
-      .map(([path, name]) => h("li", null, h("a", { href: address(path ? [path] : []), "aria-current": path === current ? "page" : null }, name)))));
+    document.getElementById("nav").replaceChildren(h("ul", null, PAGES.map(([path, name]) => h("li", null, h("a", { href: address(path ? [path] : []), "aria-current": path === current ? "page" : null }, name)))));
   }
 
   function foot() {

@@ -15,35 +15,35 @@
   }
 
   /** All charts of a pair; those in which the two differ come first, the others on demand. */
-  function charts(original, mutant, clock) {
+  function charts(original, mutant, clock, apart) {
     const end = clock.end;
     const made = [];
     for (const one of mutant.tracks.values()) {
       const usual = original && original.tracks.get(one.name);
       if (!one.times.length) continue;
-      for (const measure of measures(usual && usual.times.length ? usual : one)) made.push(chart(one, usual, measure, end, mutant.fault, clock));
+      for (const measure of measures(usual && usual.times.length ? usual : one)) made.push(chart(one, usual, measure, end, mutant.fault, clock, apart.find((each) => each.name === measure.name)));
     }
-    const apart = made.filter((one) => one.differs).sort((one, other) => other.share - one.share);
+    const different = made.filter((one) => one.differs).sort((one, other) => other.share - one.share);
     const same = made.filter((one) => !one.differs);
-    const box = h("div", { class: "charts" }, (apart.length ? apart : same).map((one) => one.element));
-    if (!apart.length || !same.length) return box;
-    const rest = h("details", null, h("summary", null, `${same.length} more, in which the two do not differ: ${same.map((one) => one.name).join(", ")}`),
+    const box = h("div", { class: "charts" }, (different.length ? different : same).map((one) => one.element));
+    if (!different.length || !same.length) return box;
+    const rest = h("details", null, h("summary", null, `${same.length} more without a difference: ${same.map((one) => one.name).join(", ")}`),
       h("div", { class: "charts" }, same.map((one) => one.element)));
     return h("div", null, box, rest);
   }
 
-  function chart(one, usual, measure, end, fault, clock) {
+  function chart(one, usual, measure, end, fault, clock, known) {
     const lines = [usual, one].map((track) => (track && track.times.length ? points(track, measure, end) : []));
     const values = lines.flat().map(([, value]) => value);
     let low = Math.min(...values), high = Math.max(...values);
     if (high - low < 1e-9) { low -= 0.5; high += 0.5; }
-    const [gap, when] = usual && usual.times.length ? largest(one, usual, measure) : [0, 0];
+    const [gap, when] = known ? [known.largest, known.at] : usual && usual.times.length ? largest(one, usual, measure) : [0, 0];
     const tolerance = measure.tolerance === null ? 0.02 * (high - low) : measure.tolerance;
     const x = (time) => WIDE * time / (end || 1);
     const y = (value) => 4 + (HIGH - 8) * (1 - (value - low) / (high - low));
     const cursor = svg("line", { class: "cursor", y1: 0, y2: HIGH });
     const drawing = svg("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, preserveAspectRatio: "none", role: "img",
-      "aria-label": `${measure.name} over time, in ${measure.unit || "its own unit"}: from ${number(low)} to ${number(high)}; ${gap > tolerance ? `apart by ${number(gap, 3)} at ${number(when, 3)} s` : "the same in both"}`,
+      "aria-label": `${measure.name} over time, in ${measure.unit || "its own unit"}: from ${number(low)} to ${number(high)}; ${gap > tolerance ? `max. difference ${number(gap, 3)} at ${number(when, 3)} s` : "the same in both"}`,
       onclick: (event) => clock.set(end * (event.offsetX / drawing.clientWidth)) },
     low < 0 && high > 0 ? svg("line", { class: "zero", x1: 0, x2: WIDE, y1: y(0), y2: y(0) }) : null,
     fault !== null && fault !== undefined ? svg("line", { class: "fault", x1: x(fault), x2: x(fault), y1: 0, y2: HIGH }) : null,
@@ -58,7 +58,7 @@
     const element = h("figure", { class: "chart" },
       h("figcaption", null, h("strong", null, measure.name), measure.unit ? ` ${measure.unit}` : "", now),
       h("div", { class: "plot" }, drawing, h("span", { class: "high" }, number(high, 3)), h("span", { class: "low" }, number(low, 3))),
-      gap > tolerance ? h("p", null, `apart by ${number(gap, 2)}${measure.unit ? ` ${measure.unit}` : ""} at ${number(when, 3)} s`) : h("p", null, usual ? "the same" : "not in the original"));
+      gap > tolerance ? h("p", null, `max. difference ${number(gap, 2)}${measure.unit ? ` ${measure.unit}` : ""} at ${number(when, 3)} s`) : h("p", null, usual ? "the same" : "not in the original"));
     return { element, name: measure.name, differs: gap > tolerance || !usual, share: gap / (tolerance || 1) };
   }
 

@@ -106,8 +106,11 @@ const mutabot = (() => {
     return found;
   }
 
+  /** A name that may break after the signs that join its words. */
+  const breakable = (name) => legible(name).split(/(?<=[_:/.])(?=[^_:/.])/).flatMap((part) => [part, h("wbr")]);
+
   /** What a page says where there is nothing to show. */
   const empty = (title, ...children) => h("div", { class: "empty" }, h("p", { class: "empty-title" }, title), h("p", null, children));
 
-  return { take, load, forget, taken: (name) => taken.get(name), h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, views };
+  return { take, load, forget, taken: (name) => taken.get(name), h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, breakable, views };
 })();

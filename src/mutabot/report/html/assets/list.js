@@ -43,7 +43,7 @@
       const id = `by-${name}`;
       return h("div", { class: "field" }, h("label", { for: id }, label),
         h("select", { id, onchange: (event) => { state[name] = event.target.value; delete state.page; update(); } },
-          h("option", { value: "" }, "any"), values.map(([value, text]) => h("option", { value, selected: String(state[name]) === value }, text))));
+          h("option", { value: "" }, "all"), values.map(([value, text]) => h("option", { value, selected: String(state[name]) === value }, text))));
     }
     const each = (key) => [...new Set(campaign.mutants.map((one) => one[key]))].sort().map((value) => [value, value]);
 
@@ -65,7 +65,7 @@
       h("div", { class: "filters", role: "search", "aria-label": "Filter mutants" },
         h("div", { class: "field wide" }, h("label", { for: "search" }, "Search"), search), chips,
         h("div", { class: "selects" }, select("role", "Role", each("role")), select("family", "Family", each("family")), select("operator", "Operator", each("operator")),
-          select("file", "File", each("file")), select("world", "Survivors whose world", [["differs", "differs"], ["same", "is the same"]]), select("test", "Reached by", campaign.tests.map((name, index) => [String(index), name])), reset)),
+          select("file", "File", each("file")), select("world", "Survivors by effect", [["differs", "with an effect"], ["same", "no measured effect"]]), select("test", "Reached by", campaign.tests.map((name, index) => [String(index), name])), reset)),
       told, results);
 
     function update(isFirst) {
@@ -77,7 +77,7 @@
       const shown = found.slice(PAGE * (page - 1), PAGE * page);
       const line = state.line && state.file ? ` at ${state.file}:${state.line}` : "";
       told.textContent = mutabot.legible(`${count(found.length, "mutant")}${found.length === campaign.mutants.length ? "" : ` of ${campaign.mutants.length}`}${line}${pages > 1 ? `, page ${page} of ${pages}` : ""}`);
-      results.replaceChildren(found.length ? table(shown, state, sort) : empty("No mutant fits.", "Take a filter away, or search for less: ",
+      results.replaceChildren(found.length ? table(shown, state, sort) : empty("No matching mutants.", "Remove a filter or shorten the search text: ",
         h("a", { href: address(["mutants"]) }, "show all mutants"), "."), pager(page, pages));
       reset.hidden = !Object.keys(state).some((name) => !["sort", "down", "page"].includes(name) && state[name]);
       if (!isFirst) history.replaceState(null, "", address(["mutants"], state));
@@ -117,8 +117,8 @@
     };
     const letters = new Set(shown.flatMap((one) => [...one.ends]));
     return h("div", null, h("table", { class: "mutants" },
-      h("thead", null, h("tr", null, head("number", "no.", "n"), head("place", "place"), head("operator", "operator"), h("th", { scope: "col" }, "what it does, and what came of it"),
-        head("status", "rounds"), head("killed", "killed", "n"), head("worst", "how far", "n", "how far the world was from the original's at the worst moment, in multiples of the tolerance"))),
+      h("thead", null, h("tr", null, head("number", "no.", "n"), head("place", "place"), head("operator", "operator"), h("th", { scope: "col" }, "fault and result"),
+        head("status", "rounds"), head("killed", "killed", "n"), head("worst", "deviation", "n", "largest deviation from the original, in multiples of the tolerance"))),
       body(shown)), marks.legend(letters));
   }
 

@@ -4,7 +4,7 @@
   const { h } = mutabot;
   const LETTERS = {
     C: ["check", "killed by a check"], X: ["exception", "killed by an exception"], S: ["survived", "survived"],
-    N: ["uncovered", "not covered"], T: ["timeout", "killed by a time-out"], R: ["refused", "refused by the robot"],
+    N: ["uncovered", "not covered"], T: ["timeout", "killed by a timeout"], R: ["refused", "refused by the robot"],
     I: ["invalid", "invalid"], "=": ["idle", "no effect"], U: ["unstable", "unstable"], E: ["error", "error"], "·": ["unrun", "not run"],
   };
   const STATUS = {
@@ -13,8 +13,8 @@
   const ORDER = Object.keys(STATUS);
   const MEANING = {
     survived: "at least one round let it through", "not covered": "no test reaches it", killed: "every valid round killed it",
-    timeout: "it only ran out of its budget", error: "the tool, a worker or the simulator failed", unstable: "equal runs disagree",
-    refused: "the robot refused the command", invalid: "no program or no command", "no effect": "it changed no value", "not run": "not run yet",
+    timeout: "it exceeded its time limit in every round", error: "mutabot, a worker or the simulator failed", unstable: "equal runs gave different results",
+    refused: "the robot refused the command", invalid: "no valid program or command", "no effect": "it changed no value", "not run": "not run yet",
   };
 
   /** The mark of one letter. Its words are its name for those who do not see it. */

@@ -2,7 +2,7 @@
 "use strict";
 (() => {
   const { h, address, amount, between, count, number, empty, marks } = mutabot;
-  const AROUND = 3;
+  const AROUND = 3, CHECKS = 40;
 
   mutabot.views.set("mutant", (body, parts) => {
     const campaign = mutabot.campaign;
@@ -21,7 +21,7 @@
         step(before, "← Previous", "p"), h("span", null, where >= 0 ? `${where + 1} of ${order.length}` : ""), step(after, "Next →", "n")),
       h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
       h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, " in ", one.function), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
-      h("p", { class: "story big" }, one.why));
+      h("p", { class: "story big" }, mutabot.breakable(one.why)));
     const holder = h("div", null, h("p", { class: "wait" }, "The mutant is being read …"));
     body.append(holder);
     const stops = [];
@@ -38,12 +38,12 @@
     return () => { gone = true; stops.forEach((stop) => stop()); };
   });
 
-  const NOTHING = { test: null, exception: null, message: null, place: null, away: [], example: null, divergence: [], gaps: [], compared: null, indistinguishable: null, repeats: 0, stuck: null, beside: null, kills: [], diverged: [] };
+  const NOTHING = { test: null, exception: null, message: null, place: null, away: {}, example: null, divergence: [], gaps: [], indistinguishable: null, repeats: 0, stuck: null, beside: null, kills: [], diverged: [], looked: [] };
   const ALIKE = { at: null, what: "", story: "", apart: [], near: [], fault: null };
   /** The data of the page, with what they leave out where nothing is to be said. */
   function whole(one, page) {
     const { recordings, without } = mutabot.taken(`recordings ${one.number}`) || { recordings: [], without: 0 };
-    const rounds = page.rounds.map((outcome) => outcome && { ...NOTHING, ...outcome, diverged: (outcome.diverged || []).map((each) => ({ ...ALIKE, ...each })) });
+    const rounds = page.rounds.map((outcome) => outcome.verdict ? { ...NOTHING, ...outcome, diverged: (outcome.diverged || []).map((each) => ({ ...ALIKE, ...each })) } : null);
     return { ...page, rounds, recordings, withoutRecordings: without };
   }
 
@@ -53,8 +53,11 @@
       media(page), robot(one, page, stops), looked(one, page), suggestion(page), rounds(one, page));
   }
 
+  /** How many characters stand before a column, which counts bytes of UTF-8 from 1. */
+  const characters = (line, column) => new TextDecoder().decode(new TextEncoder().encode(line).slice(0, column - 1)).length;
+
   function excerpt(one, page) {
-    const section = h("section", { "aria-labelledby": "there" }, h("h2", { id: "there" }, "Where it stands"));
+    const section = h("section", { "aria-labelledby": "there" }, h("h2", { id: "there" }, "Source location"));
     mutabot.load("sources", "data/sources.js").then((sources) => {
       const text = new Map(sources).get(one.file);
       if (text === undefined) { section.append(empty("The text of this file was not written down.")); return; }
@@ -64,24 +67,23 @@
       for (let at = from; at <= to; at += 1) {
         const line = lines[at - 1];
         const inside = at >= one.line && at <= one.endLine;
-        const a = at === one.line ? one.column - 1 : line.search(/\S|$/), b = at === one.endLine && one.endColumn ? one.endColumn - 1 : line.length;
+        const a = at === one.line ? characters(line, one.span.column) : line.search(/\S|$/), b = at === one.endLine ? characters(line, one.span.end_column) : line.length;
         box.append(h("div", { class: `line${inside ? " marked" : ""}` }, h("span", { class: "at" }, at), h("code", null, inside ? [line.slice(0, a), h("mark", null, line.slice(a, b)), line.slice(b)] : line || " ")));
       }
-      section.append(box, page.change ? h("p", null, `Where it first acted, the program ${page.change}.`) : "",
+      section.append(box, page.change ? h("p", null, `At first, the program ${page.change}.`) : "",
         h("p", null, h("a", { class: "more", href: address(["source", one.file], { line: String(one.line) }) }, "The whole file")));
     }, (error) => section.append(h("p", null, error.message)));
     return section;
   }
 
   function facts(one, page) {
-    const rows = [["id", h("code", null, page.id)], ["place", page.places.map((each) => `${each.place} in ${each.function}`).join("; ")],
+    const rows = [["id", h("code", null, page.id)], ["place", `${one.place} in ${one.function}`],
       one.operation ? ["operation", one.operation + (page.pattern ? `, command ${page.pattern}` : "")] : null,
-      one.operation ? ["quantity", one.quantity ? `${one.quantity}${page.meaning.length ? `: ${page.meaning.join(", ")}` : ""}` : "the call as a whole"] : null,
+      one.operation ? ["quantity", one.quantity ? `${one.quantity}${page.meaning ? `: ${["kind", "axis", "unit", "frame"].map((name) => page.meaning[name]).filter(Boolean).join(", ")}` : ""}` : "the call as a whole"] : null,
       ["operator", h("span", null, `${one.operator}${one.variant ? ` (${one.variant})` : ""}`, mutabot.campaign.operators[one.operator] ? h("small", null, mutabot.campaign.operators[one.operator]) : null)],
-      ["killed", `in ${one.killed} of the ${count(one.valid, "round")} in which it was valid${page.interval ? `; 95 % interval ${between(page.interval)}` : ""}`],
-      ["rounds", page.roundsText],
-      ["reached by", one.reach.length ? h("ul", { class: "plain" }, one.reach.slice(0, 6).map((test) => h("li", null, h("code", null, mutabot.campaign.tests[test]))), one.reach.length > 6 ? h("li", null, `and ${one.reach.length - 6} more tests`) : null) : "no test"],
-      one.earlier ? ["note", "some of this was found by an earlier campaign"] : null];
+      ["killed", `in ${one.killed} of ${count(one.valid, "valid round")}${page.kill_rate.interval ? `; 95 % interval ${between(page.kill_rate.interval)}` : ""}`],
+      ["reached by", one.reach.length ? h("ul", { class: "plain" }, one.reach.slice(0, 6).map((test) => h("li", null, h("code", null, mutabot.breakable(mutabot.campaign.tests[test])))), one.reach.length > 6 ? h("li", null, `and ${one.reach.length - 6} more tests`) : null) : "no test"],
+      one.earlier || one.outdated ? ["note", "some of these results are from an earlier campaign"] : null];
     return h("section", { "aria-labelledby": "facts" }, h("h2", { id: "facts" }, "What it is"), h("dl", { class: "facts" }, rows.filter(Boolean).map(([name, value]) => [h("dt", null, name), h("dd", null, value)])));
   }
 
@@ -129,8 +131,8 @@
   function nothingRecorded(one, page) {
     if (page.withoutRecordings) return empty("There was no room for its recordings.", `The report holds those of the survivors that went farthest first. \`mutabot show ${one.number}\` prints what they tell.`);
     if (one.indistinguishable) return empty("The robot did the same as in the original.", "Nothing that was recorded, read or returned differs; there are no two paths to show.");
-    if (!one.valid && one.status !== "refused") return empty("It was not run to be looked at.", marks.MEANING[one.status], ".");
-    if (one.status === "not covered") return empty("No test reaches it.", "So the robot never met it. A test that runs this line comes first.");
+    if (!one.valid && one.status !== "refused") return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
+    if (one.status === "not covered") return empty("No test runs this line.", "The fault was never executed. Add a test that runs this line.");
     return empty("Nothing was recorded that differs.", "Paths, contacts and commands are recorded where the simulator feeds them: mutabot's cell does so by itself, and any other in ten lines (",
       h("code", null, "mutabot.evidence.Feed"), ").");
   }
@@ -143,7 +145,7 @@
     const clock = new mutabot.recordings.Clock(Math.max(...ends), begin ?? Math.max(...ends));
     const named = (each) => each && [...each.tracks.values()].some((track) => track.times.length);
     holder.replaceChildren();
-    if (diverged && diverged.story && diverged.story !== one.why) holder.append(h("p", { class: "story" }, diverged.story));
+    if (diverged && diverged.story && !one.why.includes(diverged.story)) holder.append(h("p", { class: "story" }, diverged.story));
     if (diverged && diverged.what) holder.append(h("p", null, h("strong", null, "First difference"), diverged.at !== null ? ` at ${number(diverged.at, 4)} s: ` : ": ", diverged.what));
     const drawn = h("div", { class: "drawn-world" });
     if (named(mutant) || named(usual)) {
@@ -151,12 +153,20 @@
       const made = mutabot.scene(worlds, clock);
       stop.push(made.stop);
       drawn.append(h("div", { class: "world" }, key(usual), made.canvas, made.controls));
-      drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock)));
+      drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock, diverged ? diverged.apart : [])));
       holder.append(slider(clock, mutant, made.canvas, stop), drawn);
     }
-    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, one.description), apart(diverged));
+    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, fault(one, outcome)), apart(diverged));
     if (mutant.problems.length) holder.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
     if (!mutant.simulated) holder.append(h("p", { class: "hint" }, "Times are of the wall clock: the vocabulary names no simulated clock."));
+  }
+
+  /** What the fault sends or reads in place of the program's value. */
+  function fault(one, outcome) {
+    const [before, after] = (outcome && outcome.example) || [];
+    const isValue = one.quantity && after !== undefined;
+    return { name: isValue ? one.quantity : null, value: after, isSkipped: one.operator === "skip",
+      text: isValue ? `${one.quantity} ${value(after, one.unit)} instead of ${value(before, one.unit)}` : one.description };
   }
 
   const key = (usual) => h("ul", { class: "legend" }, usual ? h("li", null, h("span", { class: "swatch of-original", "aria-hidden": "true" }), "original") : null,
@@ -208,7 +218,7 @@
           h("td", { class: "n" }, `${number(each.at, 3)} s`), h("td", { class: "n" }, amount(each.final, each.unit)), h("td", { class: "n" }, each.aside === null || each.aside === undefined ? "–" : amount(each.aside, each.unit)))))))));
     }
     if (diverged.near.length) {
-      box.append(h("div", null, h("h3", null, "Nearer than in the original"), h("ul", { class: "plain" }, diverged.near.map((each) => h("li", null,
+      box.append(h("div", null, h("h3", null, "Closer to obstacles than in the original"), h("ul", { class: "plain" }, diverged.near.map((each) => h("li", null,
         `${each.body} came within ${amount(each.distance, "m")} of ${each.obstacle} at ${number(each.at, 3)} s; in the original ${amount(each.original, "m")}`)))));
     }
     return box;
@@ -217,32 +227,33 @@
   // Who looked, suggestion, rounds
 
   function looked(one, page) {
-    const section = h("section", { "aria-labelledby": "looked" }, h("h2", { id: "looked" }, "Who looked"));
-    if (!page.looked) {
-      if (!one.survives) return "";
-      section.append(one.status === "not covered" ? empty("No test ran it.", "A test that reaches this line comes before any check.")
+    const section = h("section", { "aria-labelledby": "looked" }, h("h2", { id: "looked" }, "Checks that ran"));
+    const outcome = page.rounds.find((each) => each && each.looked.length);
+    if (!one.survives) return "";
+    if (!outcome) {
+      section.append(one.status === "not covered" ? empty("No test ran it.", "Add a test that runs this line first.")
         : empty("It is not known what the tests checked.", "Checks are seen where pytest rewrites assertions; this journal holds none for this mutant."));
       return section;
     }
-    section.append(h("p", { class: "hint" }, `Round ${page.looked.round + 1}: each check that was made, the values it compared, and by how much it held.`));
-    page.looked.tests.forEach((test, index) => section.append(checked(one, test, index === 0)));
+    section.append(h("p", { class: "hint" }, `Round ${outcome.round}: each check, the values it compared, and by how much it held.`));
+    outcome.looked.toSorted((test, other) => other.acted - test.acted).forEach((test, index) => section.append(checked(one, { checks: [], ...test }, index === 0)));
     return section;
   }
 
   function checked(one, test, isOpen) {
     const many = test.checks.length + test.more;
-    const spares = test.checks.map((check) => check[3]).filter((spare) => spare !== null);
+    const spares = test.checks.map((check) => check.spare).filter((spare) => spare !== undefined);
     const nearest = Math.min(...spares);
-    const told = !test.acted ? "the mutant changed nothing in it" : !many ? "no check of its own was seen; assertions that pytest does not rewrite are not"
+    const told = !test.acted ? "the mutant changed nothing in it" : !many ? "no check was seen; assertions that pytest does not rewrite are not"
       : `${count(many, "check")} held${spares.length ? `, the nearest by ${number(nearest, 3)}` : ""}`;
-    if (!test.acted || !test.checks.length) return h("p", null, h("code", null, test.test), `: ${told}`);
-    return h("details", { class: "test-box", open: isOpen }, h("summary", null, h("code", null, test.test), `: ${told}`),
+    if (!test.acted || !test.checks.length) return h("p", null, h("code", null, mutabot.breakable(test.test)), `: ${told}`);
+    return h("details", { class: "test-box", open: isOpen }, h("summary", null, h("code", null, mutabot.breakable(test.test)), `: ${told}`),
       h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": `Checks of ${test.test}` }, h("table", { class: "checks" },
         h("thead", null, h("tr", null, h("th", { scope: "col" }, "place"), h("th", { scope: "col" }, "check"), h("th", { scope: "col" }, "with"), h("th", { scope: "col", class: "n" }, "to spare"))),
-        h("tbody", null, test.checks.map(([place, text, seen, spare, times]) => h("tr", { class: spare !== null && spare === nearest ? "nearest" : null },
+        h("tbody", null, test.checks.slice(0, CHECKS).map(({ place, text, seen, spare, times }) => h("tr", { class: spare === nearest ? "nearest" : null },
           h("td", null, place.replace(/^.*\//, "")), h("td", null, h("code", null, text), times > 1 ? h("small", null, `${times} times, the nearest to fail`) : null),
-          h("td", null, seen ? h("code", null, seen) : "–"), h("td", { class: "n" }, spare === null ? "–" : number(spare, 3))))))),
-      test.more ? h("p", { class: "hint" }, `and ${count(test.more, "more check")}; \`mutabot show ${one.number} --json\` has those that were kept.`) : null);
+          h("td", null, seen ? h("code", null, seen) : "–"), h("td", { class: "n" }, number(spare, 3))))))),
+      many > CHECKS ? h("p", { class: "hint" }, `and ${count(many - CHECKS, "more check")}; \`mutabot show ${one.number} --json\` has those that were kept.`) : null);
   }
 
   function suggestion(page) {
@@ -272,12 +283,12 @@
     return h("div", { class: "round-box" }, head,
       outcome.test ? h("p", null, "in ", h("code", null, outcome.test), outcome.place ? [" at ", h("code", null, outcome.place)] : null) : null,
       outcome.message ? h("pre", { tabindex: "0", "aria-label": "What the test said" }, `${outcome.exception ? `${outcome.exception.replace(/^.*:/, "")}: ` : ""}${outcome.message.trimEnd()}`) : null,
-      outcome.kills.length ? h("p", null, "Also noticed by ", outcome.kills.map(([test, by], index) => [index ? ", " : "", h("code", null, test), ` (${by})`])) : null,
+      outcome.kills.length > 1 ? h("p", null, "Also killed by ", outcome.kills.slice(1).map(({ test, by }, index) => [index ? ", " : "", h("code", null, test), ` (${by})`])) : null,
       outcome.divergence.length || outcome.gaps.length ? h("ul", { class: "plain" }, outcome.divergence.map((line) => h("li", null, line)), outcome.gaps.map((line) => h("li", null, `not compared: ${line}`))) : null,
       values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
         h("tbody", null, those.map((each) => [each, page.rounds[each]]).filter(([, each]) => each && each.example && each.example.length === 2).map(([each, found]) => h("tr", null, h("td", { class: "n" }, each + 1), h("td", { class: "n" }, value(found.example[0], one.unit)), h("td", { class: "n" }, value(found.example[1], one.unit))))))) : null,
-      h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, count(outcome.tests, "test") + " run", outcome.compared && `compared ${outcome.compared}${outcome.indistinguishable ? ": nothing differs" : ""}`,
-        `${number(outcome.wall, 2)} s`, outcome.unconfirmed ? "not confirmed by the whole suite" : null, outcome.repeats ? `run again ${outcome.repeats} times, the same` : null, outcome.beside ? `run alone, since beside others the wall clock had ended it: ${outcome.beside}` : null, ...outcome.away.map(([why, many]) => `stayed away ${many} times: ${why}`)].filter(Boolean).join(" · ")),
+      h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, `${count(outcome.tests, "test")} run`, outcome.indistinguishable && "no measured difference",
+        `${number(outcome.wall, 2)} s`, outcome.confirmed === false ? "not confirmed by the whole suite" : null, outcome.repeats ? `re-run ${count(outcome.repeats, "time")} with the same result` : null, outcome.beside ? `re-run alone, because beside others it exceeded the wall clock: ${outcome.beside}` : null, ...Object.entries(outcome.away).map(([why, many]) => `left ${count(many, "call")} unchanged: ${why}`)].filter(Boolean).join(" · ")),
       outcome.stuck ? h("pre", { tabindex: "0", "aria-label": "Where it was stuck" }, outcome.stuck) : null);
   }
   const value = (found, unit) => `${typeof found === "number" ? number(found, 7) : String(found)}${unit && typeof found === "number" ? ` ${unit}` : ""}`;

@@ -38,14 +38,14 @@
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
       complete || isUnderWay(campaign) ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
-        `${campaign.done} of ${campaign.planned} outcomes are known. `, "`mutabot run` goes on where it stopped."),
-      campaign.attempt ? h("p", { class: "notice" }, `A later campaign ended before it ran anything: ${campaign.attempt}`) : null,
+        `${campaign.done} of ${campaign.planned} outcomes are known. `, "`mutabot run` continues it."),
+      campaign.attempt ? h("p", { class: "notice" }, `A later run ended before its first mutant: ${campaign.attempt}`) : null,
     ].flat().reduce((box, one) => { if (one) box.append(one); return box; }, h("div", { class: "state" }));
   }
 
   function scores(campaign) {
     if (!campaign.groups.length && campaign.ladders && campaign.ladders.length) {
-      return empty("Graded mutants alone, which have no score.", "How big a fault must be before the tests notice is told below.");
+      return empty("Only graded mutants, which have no score.", "The table below shows how large a fault must be before the tests notice.");
     }
     if (!campaign.groups.length) {
       return empty("No mutants were planned.", "No operator of the chosen families fits a call that the tests reach. ",
@@ -56,8 +56,8 @@
     return h("section", { "aria-labelledby": "scores" }, h("h2", { id: "scores" }, "Scores"),
       h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Table of scores" },
         h("table", { class: "scores" }, h("thead", null, head), h("tbody", null, campaign.groups.map((one) => group(one))))),
-      h("p", { class: "hint" }, "Score: killed of valid mutants, the mean over rounds. Check score: what the tests' own checks found. ",
-        "Bar: 95 % interval; ticks: single rounds; hollow mark: check score. Families and roles are never added up."));
+      h("p", { class: "hint" }, "Score: share of valid mutants that were killed, averaged over rounds. Check score: the share killed by an assertion rather than by a crash or robot error. ",
+        "Bar: 95 % interval; ticks: single rounds; hollow mark: check score. There is no combined score across families and roles."));
   }
 
   function group(one) {
@@ -85,7 +85,7 @@
       one.score !== null ? svg("circle", { class: "mean", cx: x(one.score), cy: 11, r: 4 }) : null);
   }
 
-  const KINDS = [["check", "C", "killed by a check"], ["exception", "X", "by an exception"], ["timeout", "T", "by a time-out"], ["survived", "S", "survived"],
+  const KINDS = [["check", "C", "killed by a check"], ["exception", "X", "by an exception"], ["timeout", "T", "by a timeout"], ["survived", "S", "survived"],
     ["uncovered", "N", "not covered"], ["refused", "R", "refused"], ["invalid", "I", "invalid"], ["idle", "=", "no effect"], ["unstable", "U", "unstable"], ["error", "E", "error"]];
   const NAMES = { timeout: "timeout", survived: "survived", uncovered: "not covered", refused: "refused", invalid: "invalid", idle: "no effect", unstable: "unstable", error: "error" };
   function bar(one) {
@@ -104,60 +104,68 @@
   }
 
   function toActOn(survivors, campaign) {
-    const heading = h("h2", { id: "survivors" }, survivors.length ? `Survivors: ${survivors.length}, the farthest from the original first` : "Survivors");
+    const [loud, calm] = [false, true].map((is) => survivors.filter((one) => one.indistinguishable === is));
+    const heading = h("h2", { id: "survivors" }, survivors.length ? `${count(survivors.length, "survivor")}, largest deviation from the original first` : "Survivors");
     if (!survivors.length) {
       const judged = campaign.mutants.some((one) => one.valid);
       return h("section", null, heading, judged
-        ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", "The tests noticed every mutant that was valid. The check score above tells how many of these were found by checks, and not by an exception on the way.")
+        ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", "The tests noticed every mutant that was valid. The check score above counts those that an assertion killed.")
         : isUnderWay(campaign) ? empty("Nothing is judged yet.", "A mutant is, as soon as its tests have run as the mutant and as the original.")
         : empty("Nothing was judged.", "No mutant was valid in any round; the list below says why."));
     }
     return h("section", { "aria-labelledby": "survivors" }, heading,
-      h("ol", { class: "findings" }, survivors.slice(0, SHOWN).map((one) => finding(one))),
-      survivors.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived,not covered", sort: "worst" }) }, `All ${survivors.length} survivors`)) : null);
+      h("ol", { class: "findings" }, loud.slice(0, SHOWN).map((one) => finding(one))),
+      calm.length ? h("p", { class: "hint" }, `${count(calm.length, "survivor")} without a measured effect on what the robot did: `, calm.slice(0, 3 * SHOWN).map((one, index) => [index ? ", " : "", h("a", { href: address(["mutant", String(one.number)]) }, one.number)])) : null,
+      loud.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived,not covered", sort: "worst" }) }, `All ${survivors.length} survivors`)) : null);
   }
 
   function ladders(campaign) {
-    return h("section", { "aria-labelledby": "thresholds" }, h("h2", { id: "thresholds" }, "How big a fault must be before the tests notice, the loosest first"),
-      h("ul", { class: "plain" }, campaign.ladders.map(([name, line]) => h("li", null, h("code", null, name), ` ${line}`))));
+    const kind = (one, size) => one.all_from !== null && size >= one.all_from ? "all" : one.refused_from !== null && size >= one.refused_from ? "refused" : size <= one.none_up_to ? "none" : "some";
+    const words = { none: "no round notices", some: "some rounds notice", all: "all rounds notice", refused: "the robot refuses" };
+    return h("section", { "aria-labelledby": "thresholds" }, h("h2", { id: "thresholds" }, "How large a fault must be before the tests notice, the loosest first"),
+      h("ul", { class: "legend" }, Object.entries(words).map(([name, text]) => h("li", null, h("span", { class: `step is-${name}`, "aria-hidden": "true" }), text))),
+      h("ul", { class: "plain ladders" }, campaign.ladders.map((one) => h("li", null, h("a", { href: address(["source", one.file], { line: String(one.line) }) }, `${one.place} ${one.name}`),
+        h("span", { class: "steps", role: "img", "aria-label": one.text }, one.magnitudes.map((size) => h("span", { class: `step is-${kind(one, size)}`, title: `${number(size)} ${one.unit || ""}: ${words[kind(one, size)]}` }))),
+        h("small", null, one.text)))));
   }
 
   function finding(one) {
     return h("li", null,
       h("div", { class: "finding-head" }, marks.ends(one.ends), h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`),
         h("span", { class: "place" }, one.place, " · ", one.operator)),
-      h("p", { class: "story" }, one.why));
+      h("p", { class: "story" }, mutabot.breakable(one.why)));
   }
 
   function unseen(campaign) {
     const none = campaign.tests.map((name, index) => [name, index]).filter(([, index]) => !campaign.mutants.some((one) => one.kills.some((kill) => kill[0] === index)));
-    const section = h("section", { "aria-labelledby": "unseen" }, h("h2", { id: "unseen" }, "Nobody looks"));
+    const section = h("section", { "aria-labelledby": "unseen" }, h("h2", { id: "unseen" }, "Gaps: unchecked readings and idle tests"));
     if (!campaign.unlooked.length && !none.length) {
-      section.append(empty("Every test kills something.", "Each test noticed a mutant, and every reading that the tests take is looked at, as far as mutants can tell."));
+      section.append(h("p", { class: "hint" }, "Every test killed at least one mutant, and every reading the tests take is checked by at least one of them."));
       return section;
     }
-    if (campaign.unlooked.length) section.append(h("h3", null, "Readings that no test looks at"), h("ul", { class: "plain" }, campaign.unlooked.map((one) => h("li", null, h("code", null, one[one.length - 1])))));
+    if (campaign.unlooked.length) section.append(h("h3", null, "Readings that no test checks"), h("ul", { class: "plain" }, campaign.unlooked.map((one) => h("li", null, h("code", null, one)))));
     if (none.length) {
       section.append(h("h3", null, `Tests that kill nothing: ${none.length} of ${campaign.tests.length}`),
-        h("ul", { class: "plain" }, none.slice(0, SHOWN).map(([name]) => h("li", null, h("code", null, name)))),
-        h("p", null, h("a", { class: "more", href: address(["tests"]) }, "Tests and what they kill")));
+        h("ul", { class: "plain" }, none.slice(0, SHOWN).map(([name]) => h("li", null, h("code", null, mutabot.breakable(name))))),
+        h("p", { class: "hint" }, "A run stops at the first test that kills the mutant, so another test may simply have come first."),
+        h("p", null, h("a", { class: "more", href: address(["tests"]) }, "Tests and the mutants they kill")));
     }
     return section;
   }
 
   function outside(campaign) {
-    const section = h("section", { "aria-labelledby": "outside" }, h("h2", { id: "outside" }, "Not judged"));
+    const section = h("section", { "aria-labelledby": "outside" }, h("h2", { id: "outside" }, "Not counted in the score"));
     const found = ["error", "unstable", "refused", "invalid", "no effect", "not run"]
       .map((name) => [name, campaign.mutants.filter((one) => one.status === name).length]).filter(([, many]) => many);
     if (found.length) {
       section.append(h("ul", { class: "plain" }, found.map(([name, many]) => h("li", null,
         h("a", { href: address(["mutants"], { status: name }) }, marks.status(name)), ` ${count(many, "mutant")}: ${marks.MEANING[name]}`))));
-    } else section.append(h("p", { class: "hint" }, "Every planned mutant was judged."));
-    if (campaign.leftOut.length) {
-      const all = campaign.leftOut.reduce((sum, [, many]) => sum + many, 0);
-      section.append(h("h3", null, `Left out of the plan: ${all}`), ...campaign.leftOut.map(([reason, many, items]) => h("details", null,
-        h("summary", null, `${many} × ${reason}`), h("ul", { class: "plain small" }, items.map(([id, text]) => h("li", null, text, " ", h("code", null, id))),
-          many > items.length ? h("li", null, `and ${many - items.length} more, which \`mutabot list\` prints`) : null))));
+    } else section.append(h("p", { class: "hint" }, "Every planned mutant was run and is counted."));
+    const reasons = Map.groupBy(campaign.left_out, (one) => one.reason);
+    if (reasons.size) {
+      section.append(h("h3", null, `Skipped because they would not change anything: ${campaign.left_out.length}`), ...[...reasons].map(([reason, items]) => h("details", null,
+        h("summary", null, `${items.length} × ${reason}`), h("ul", { class: "plain small" }, items.slice(0, 50).map((one) => h("li", null, one.description, " ", h("code", null, one.id))),
+          items.length > 50 ? h("li", null, `and ${items.length - 50} more, which \`mutabot list --all\` prints`) : null))));
     }
     return section;
   }
@@ -167,23 +175,23 @@
     const wrong = campaign.controls.filter((one) => !one.ok);
     if (campaign.controls.length) {
       lines.push(wrong.length
-        ? h("li", { class: "bad" }, `${count(wrong.length, "control")} ended wrongly: `, wrong.map((one) => `${one.control} for ${one.test_file}, ${one.detail}`).join("; "))
-        : h("li", null, `${count(campaign.controls.length, "control")} ended as they must: one that changes nothing survives, one that breaks everything dies.`));
+        ? h("li", { class: "bad" }, `${count(wrong.length, "control")} failed: `, wrong.map((one) => `${one.control} for ${one.test_file}, ${one.detail}`).join("; "))
+        : h("li", null, "Both control mutants behaved correctly: the no-op survived, the crashing one was killed."));
     }
-    if (campaign.flaky.length) lines.push(h("li", { class: "bad" }, `${count(campaign.flaky.length, "test")} cannot be relied on:`, h("ul", null, campaign.flaky.map((one) => h("li", null, one)))));
+    if (campaign.flaky.length) lines.push(h("li", { class: "bad" }, `${count(campaign.flaky.length, "unreliable test")} excluded:`, h("ul", null, campaign.flaky.map((one) => h("li", null, one)))));
     if (campaign.confirmed) lines.push(h("li", null, `${campaign.confirmed}.`));
     const verified = campaign.verification;
     if (verified) {
       lines.push(verified.disagreements.length
-        ? h("li", { class: "bad" }, `${verified.disagreements.length} of ${verified.checked} outcomes came out otherwise in a fresh process:`,
-          h("ul", null, verified.disagreements.map(({ number: many, round, first, second }) => h("li", null, h("a", { href: address(["mutant", String(many)]) }, `mutant ${many}`), `, round ${round}: ${first}; afresh ${second}`))))
-        : h("li", null, `${count(verified.checked, "outcome")} were run again in fresh processes, and came out the same.`));
+        ? h("li", { class: "bad" }, `${verified.disagreements.length} of ${verified.checked} outcomes differ in a fresh process:`,
+          h("ul", null, verified.disagreements.map(({ number: many, round, first, second }) => h("li", null, h("a", { href: address(["mutant", String(many)]) }, `mutant ${many}`), `, round ${round}: ${first}; re-run: ${second}`))))
+        : h("li", null, `Verified: ${count(verified.checked, "outcome")} re-run in fresh processes, all with the same result.`));
     }
     for (const name of ["kills", "survivors"]) {
       const found = campaign.repeats[`false_${name}`];
-      if (found) lines.push(h("li", null, `False ${name}, by repeats: ${number(found.expected, 2)} expected among ${found.known} (95 % interval ${number(found.low, 2)} to ${number(found.high, 2)}).`));
+      if (found) lines.push(h("li", null, `Estimated wrong ${name}: ${number(found.expected, 2)} of ${found.known} (95 % interval ${number(found.low, 2)}–${number(found.high, 2)}), from re-runs.`));
     }
     if (!lines.length) return "";
-    return h("section", { "aria-labelledby": "trust" }, h("h2", { id: "trust" }, "Can it be trusted?"), h("ul", { class: "plain" }, lines));
+    return h("section", { "aria-labelledby": "trust" }, h("h2", { id: "trust" }, "Reliability of these results"), h("ul", { class: "plain" }, lines));
   }
 })();

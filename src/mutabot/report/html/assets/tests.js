@@ -6,7 +6,7 @@
 
   mutabot.views.set("tests", (body) => {
     const campaign = mutabot.campaign;
-    body.append(h("h1", { tabindex: "-1" }, "Tests and what they kill"));
+    body.append(h("h1", { tabindex: "-1" }, "Tests and the mutants they kill"));
     if (!campaign.tests.length) { body.append(empty("No test is known.", "The campaign ended before its baseline; ", h("code", null, "mutabot check"), " tries the set-up.")); return undefined; }
     const rows = summed(campaign);
     const none = rows.filter((one) => !one.kills);
@@ -14,13 +14,13 @@
       h("p", { class: "lead" }, none.length
         ? `${none.length} of ${count(rows.length, "test")} ${none.length === 1 ? "kills" : "kill"} nothing.`
         : rows.length === 1 ? "The only test kills mutants." : `Each of the ${rows.length} tests kills mutants.`),
-      h("p", { class: "hint" }, "A mutant's run ends with the first test that notices it, unless the campaign was run with --every-test: a test that kills nothing here may only have come too late. ",
+      h("p", { class: "hint" }, "A run stops at the first test that kills the mutant: a test that kills nothing may simply have run after another test had already killed it. ",
         "“Alone” counts mutants that no other test is known to kill."));
     const letters = h("ul", { class: "legend" }, [["check", "C", "killed by a check"], ["exception", "X", "killed otherwise"], ["reached", " ", "reached, not killed by it"], ["blank", " ", "not reached"]]
       .map(([kind, letter, words]) => h("li", null, h("span", { class: `mark m-${kind}`, "aria-hidden": "true" }, letter), words)));
     const holder = h("div", null);
     body.append(letters, holder);
-    let { order, page } = mutabot.lastTests || { order: "file", page: 1 };
+    let { order, page } = mutabot.lastTests || { order: "kills", page: 1 };
     const orders = { file: (one) => one.index, reaches: (one) => -one.reaches, kills: (one) => -one.kills, alone: (one) => -one.alone };
     const stop = [];
     function draw() {
@@ -49,7 +49,12 @@
   });
 
   function summed(campaign) {
-    const rows = campaign.tests.map((name, index) => ({ name, index, reaches: 0, kills: 0, byCheck: 0, alone: 0, cells: new Uint8Array(campaign.mutants.length), baseline: campaign.baseline[index] || [[], null] }));
+    const rows = campaign.tests.map((name, index) => ({ name, index, reaches: 0, kills: 0, byCheck: 0, alone: 0, cells: new Uint8Array(campaign.mutants.length), odd: new Set(), simulated: null }));
+    const byName = new Map(rows.map((row) => [row.name, row]));
+    for (const { test, outcome, simulated } of campaign.baseline) {
+      if (outcome !== "passed") byName.get(test).odd.add(outcome);
+      byName.get(test).simulated = simulated ?? byName.get(test).simulated;
+    }
     campaign.mutants.forEach((one, at) => {
       for (const test of one.reach) { rows[test].reaches += 1; rows[test].cells[at] = 1; }
       for (const [test, , byCheck] of one.kills) {
@@ -65,7 +70,7 @@
   }
 
   function line(one, campaign) {
-    const odd = one.baseline[0].filter((end) => end !== "passed");
+    const [file, name] = one.name.includes("::") ? one.name.split(/::(.*)/s) : [null, one.name];
     const canvas = h("canvas", { "data-test": one.index, role: "img", "aria-label": `of ${campaign.mutants.length} mutants it reaches ${one.reaches} and kills ${one.kills}`, height: 22,
       onclick: (event) => {
         const at = Math.floor(campaign.mutants.length * event.offsetX / event.target.clientWidth);
@@ -76,9 +81,9 @@
         event.target.title = found ? mutabot.legible(`${found.number} ${found.description}`) : "";
       } });
     return h("tr", { class: one.kills ? null : "kills-nothing" },
-      h("th", { scope: "row" }, one.name.includes("::") ? h("small", null, one.name.slice(0, one.name.indexOf("::"))) : null,
-        h("a", { href: address(["mutants"], { test: String(one.index) }) }, one.name.includes("::") ? one.name.slice(one.name.indexOf("::") + 2) : one.name), odd.length ? h("small", null, ` on the original: ${odd.join(", ")}`) : null,
-        typeof one.baseline[1] === "number" ? h("small", null, ` ${number(one.baseline[1], 3)} s simulated`) : null),
+      h("th", { scope: "row" }, file ? h("small", null, mutabot.breakable(file)) : null,
+        h("a", { href: address(["mutants"], { test: String(one.index) }) }, mutabot.breakable(name)), one.odd.size ? h("small", null, ` on the original: ${[...one.odd].join(", ")}`) : null,
+        one.simulated === null ? null : h("small", null, ` ${number(one.simulated, 3)} s simulated`)),
       h("td", { class: "n" }, one.reaches), h("td", { class: "n" }, one.kills || h("strong", null, "0")), h("td", { class: "n" }, one.byCheck), h("td", { class: "n" }, one.alone),
       h("td", { class: "cells" }, canvas));
   }

@@ -3,7 +3,9 @@
 (() => {
   const { h, number } = mutabot;
   const BEFORE = 3, AFTER = 14;
-  const same = (one, other) => JSON.stringify([one.written, one.read]) === JSON.stringify([other.written, other.read]);
+  const text = (value) => typeof value === "number" ? number(value, 5) : String(value);
+  const shown = (pairs) => pairs.map(([name, value]) => [name, text(value)]);
+  const same = (one, other) => JSON.stringify([shown(one.written), shown(one.read)]) === JSON.stringify([shown(other.written), shown(other.read)]);
   const key = (one) => `${one.operation}\n${one.place}\n${one.pattern}`;
 
   /** Rows of two events each, beside each other what is the same call; null where one has none. */
@@ -43,18 +45,21 @@
 
   const differs = ([one, other]) => !one || !other || (one.call ? !same(one.call, other.call) : Math.abs((one.time ?? 0) - (other.time ?? 0)) > 0.3);
   const name = (call) => call.operation.replace(/^.*:/, "");
-  const amounts = (pairs) => pairs.filter(([, value]) => value !== 0 || pairs.length === 1).map(([what, value]) => h("span", { class: "amount" }, `${what.replace(/^\./, "")} `, h("b", null, typeof value === "number" ? number(value, 5) : String(value))));
+  const amounts = (pairs, fault) => pairs.filter(([what, value]) => value !== 0 || pairs.length === 1 || (fault && what === fault.name))
+    .map(([what, value]) => h("span", { class: "amount" }, `${what.replace(/^\./, "")} `, h("b", null, text(value))));
+  /** The values as the fault changed them. */
+  const changed = (pairs, fault) => pairs.map(([what, value]) => [what, fault && what === fault.name ? fault.value : value]);
 
-  function cell(one, other, does) {
+  function cell(one, other, fault, isMutant) {
     if (!one) return h("td", { class: "gone" }, h("span", { class: "unseen" }, "nothing"), "—");
     const inside = one.call
-      ? [h("span", { class: `event ${one.call.role}` }, name(one.call)), " ", amounts(one.call.written), one.call.read.length ? [" → ", amounts(one.call.read)] : null, h("small", null, one.call.place)]
+      ? [h("span", { class: `event ${one.call.role}` }, name(one.call)), " ", isMutant && fault && fault.isSkipped ? h("strong", null, "not sent") : amounts(isMutant ? changed(one.call.written, fault) : one.call.written, fault), one.call.read.length ? [" → ", amounts(isMutant ? changed(one.call.read, fault) : one.call.read, fault)] : null, h("small", null, one.call.place)]
       : [h("span", { class: "event contact" }, one.what === "touch" ? "touch" : one.what === "part" ? "part" : "note"), " ", one.text];
     const apart = one.call && other && other.call && !same(one.call, other.call);
-    return h("td", { class: apart ? "apart" : null }, inside, does ? h("p", { class: "acts" }, `the mutant acts: ${does}`) : null);
+    return h("td", { class: apart ? "apart" : null }, inside, fault && isMutant ? h("p", { class: "acts" }, `fault: ${fault.text}`) : null);
   }
 
-  function table(original, mutant, clock, does) {
+  function table(original, mutant, clock, fault) {
     const rows = aligned(original ? events(original) : [], events(mutant));
     let first = rows.findIndex(differs);
     const at = rows.findIndex(([, other]) => other && other.call && other.index === mutant.faultyCall);
@@ -66,7 +71,7 @@
       const faulty = other && other.call && other.index === mutant.faultyCall;
       return h("tr", { class: `${differs([one, other]) ? "differs" : ""}${faulty ? " faulty" : ""}` },
         h("td", { class: "n" }, time === null || time === undefined ? "" : h("button", { type: "button", class: "time", onclick: () => clock.set(time), "aria-label": `show ${number(time, 4)} s` }, number(time, 4)), faulty ? h("span", { class: "flag" }, "fault") : null),
-        cell(one, other), cell(other, one, faulty ? does : null));
+        cell(one, other, faulty ? fault : null, false), cell(other, one, faulty ? fault : null, true));
     };
     const show = (from, to) => body.replaceChildren(...rows.slice(from, to).map(make));
     const from = first < 0 ? 0 : Math.max(0, first - BEFORE), to = first < 0 ? Math.min(rows.length, AFTER) : first + AFTER;

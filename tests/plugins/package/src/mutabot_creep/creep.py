@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.operators import Example, Operator, Subject
-from mutabot.operators.numbers import is_number
+from mutabot.operators.value import is_number
 
 #: what each reading adds to the error, m
 STEP = 0.005

@@ -1,0 +1,491 @@
+"""The configuration: ``[tool.mutabot]`` in ``pyproject.toml``, or ``mutabot.toml``."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from itertools import product
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+from mutabot import limits
+from mutabot.errors import ConfigurationError, nearest_name
+from mutabot.extensions import brought, not_installed
+from mutabot.families import USUAL
+from mutabot.faults import families_brought, known_families, need_vocabulary, why_unknown
+from mutabot.limits import shortened
+from mutabot.model import Moment
+from mutabot.model.graded import Demand
+from mutabot.model.mutant import EVERY
+
+from .demands import check_demands
+from .document import Document
+from .mistakes import Place, raise_errors
+from .options import overridden
+from .table import Table
+
+_NO_VOCABULARY = (
+    "the key 'vocabulary' is missing or empty; mutants of calls need one, those of other families ({}) do not"
+)
+_PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
+_INIT = "run `mutabot init` to propose one"
+_MEMORY = re.compile(r"\s*(\d{1,18}(?:\.\d{1,18})?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
+_PREFIXES = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
+#: signs of a path, and bytes of a name in it, that a file system takes
+_LONGEST_PATH, _LONGEST_NAME = 4000, 255
+_LEAST_MEMORY = 100_000_000
+_WILD = re.compile(r"[*?\[]")
+
+
+def _amount(value: Any, what: str, write: str) -> Any:
+    """The bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
+    if not isinstance(value, str):
+        return value
+    match = _MEMORY.fullmatch(value)
+    if match is None:
+        raise ValueError(f"{shortened(value)!r} is no amount of {what}; write it like {write}")
+    unit = match[2].lower().removesuffix("b")
+    base = 1024 if unit.endswith("i") else 1000
+    return round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
+
+
+def parse_memory(value: Any) -> Any:
+    """Bytes of memory, which Python and pytest need some of."""
+    value = _amount(value, "memory", "'4 GB'")
+    if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
+        raise ValueError(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
+    return value
+
+
+def _parse_size(value: Any) -> Any:
+    """Bytes on a disk, of which there may be none at all."""
+    value = _amount(value, "room", "'200 MB', or 0 for none")
+    if isinstance(value, int) and not isinstance(value, bool) and value < 0:
+        raise ValueError(f"{value} bytes are less than nothing; write it like '200 MB', or 0 for none")
+    return value
+
+
+def _known_family(name: str) -> str:
+    why = why_unknown(name)
+    if why is not None:
+        raise ValueError(why)
+    return name
+
+
+class _FamilyNames:
+    """What a schema says of them: packages are asked only where it is made."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"enum": list(known_families())}
+
+
+def _moment(text: str) -> str:
+    Moment.parse_any(text)
+    return text
+
+
+def _node_name(name: str) -> str:
+    if not name.startswith(("/", "*")):
+        raise ValueError(f"{name!r} is not resolved: the name of a node begins with /, such as '/{name}'")
+    return name
+
+
+_NodeName = Annotated[str, AfterValidator(_node_name)]
+_Texts = Annotated[tuple[str, ...], Field(strict=False)]
+_SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
+_Family = Annotated[str, AfterValidator(_known_family), _FamilyNames()]
+_Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
+_Moment = Annotated[str, AfterValidator(_moment)]
+_Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]
+_Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class Settings(Table):
+    """The keys a user can write, beside the tables that packages bring."""
+
+    program: _SomeTexts
+    """Files and folders of the robot program; globs may be used. Calls in them are mutated, in the role
+    `program`.
+
+        program = ["mission.py", "cell/*.py"]
+    """
+    oracle: _Texts = ()
+    """The same for code of the tests that takes readings for their own checks. Calls
+    in it are mutated in the role `oracle`, whose score is a score of its own. No file can be both.
+
+        oracle = ["tests/sensors.py"]
+    """
+    oracle_nodes: Annotated[tuple[_NodeName, ...], Field(strict=False)] = ()
+    """Nodes of the tests' own, by resolved names in which `*` stands for any text. What is done under a name
+    in such a node (a topic received, a service called) has the role `oracle`, in whichever of the files above
+    it stands.
+
+        oracle_nodes = ["/checker*"]
+    """
+    tests: _SomeTexts = ("tests",)
+    """Pytest's arguments that say which tests there are: folders, files,
+    node ids.
+
+        tests = ["tests", "acceptance/test_cell.py"]
+    """
+    vocabulary: _Texts = ()
+    """Vocabulary files of the project, or names of vocabularies that come with
+    mutabot; see [vocabulary](vocabulary.md). Mutants of calls need one; those of the program text
+    (`classical`, `text`) do not.
+
+        vocabulary = ["robot.toml"]
+    """
+    rounds: Annotated[int, Field(ge=1, le=limits.ROUNDS)] = 1
+    """How often everything is repeated, each time with other
+    seeds. `--rounds` goes before it.
+
+        rounds = 5
+    """
+    seed: Annotated[int, Field(ge=0, le=limits.SEED)] = 1
+    """The campaign's seed, from which those of all rounds and tests
+    come. `--seed` goes before it.
+
+        seed = 42
+    """
+    jobs: Annotated[int, Field(ge=1, le=limits.JOBS)] | None = None
+    """Runs at a time. Without it, one per core that
+    may be used. A run that only waits, as for a message that never comes, lends its place to another one;
+    with 1, there is never more than one. `--jobs` goes before it.
+
+        jobs = 1
+    """
+    selection: str | None = None
+    """File with the ids of the mutants to run, one per line. Without it, all are
+    run.
+
+        selection = "published.txt"
+    """
+    timeout_factor: Annotated[float, Field(gt=1, le=limits.FACTOR)] = 10.0
+    """How many times the operations and the simulated
+    time of the original a mutant may use in a test.
+
+        timeout_factor = 3.0
+    """
+    timeout_seconds: Annotated[float, Field(gt=0, le=limits.SECONDS)] = 60.0
+    """Seconds of wall clock that every test gets at
+    least, be the original ever so quick: the safety net for mutants that neither operations nor simulated
+    time can end.
+
+        timeout_seconds = 300.0
+    """
+    private_files: bool = True
+    """Whether each run of the tests keeps to itself what it does to
+    the project's and the temporary files, and finds them as they were before any run. That needs a mount
+    namespace; where the system refuses it, you are told if it matters.
+
+        private_files = false
+    """
+    evidence: Annotated[int, Field(le=limits.BYTES), BeforeValidator(_parse_size)] = 200_000_000
+    """How much is kept of what the robot did: where tool and objects were, what was
+    commanded and read, of the original and of mutants that differ from it; see
+    [evidence](evidence.md). If room is short, that of survivors stays. 0 records nothing.
+
+        evidence = "1 GB"
+    """
+    memory: Annotated[int, Field(le=limits.BYTES), BeforeValidator(parse_memory)] = 4_000_000_000
+    """Address space of a process, as
+    a text with a unit or in bytes.
+
+        memory = "16 GB"
+    """
+    unstable_limit: _Share = 0.1
+    """Share of outcomes that may be unstable; above it, `run` ends with 4.
+
+        unstable_limit = 0.0
+    """
+    timeout_limit: _Share = 1.0
+    """Share of outcomes that may be time-outs; above it, `run` ends with 5.
+
+        timeout_limit = 0.2
+    """
+    error_limit: _Share = 0.0
+    """Share of outcomes that may be errors, in which nothing is known of the
+    mutant; above it, `run` ends with 4.
+
+        error_limit = 0.05
+    """
+    min_score: Annotated[float, Field(ge=0, le=100)] | None = None
+    """Least score in percent, for each
+    family and role by itself; below it, `run` ends with 1. `--min-score` goes before it.
+
+        min_score = 80.0
+    """
+    pytest_args: _Texts = ()
+    """Further arguments for pytest.
+
+        pytest_args = ["-m", "not slow"]
+    """
+    when: _Moments = (EVERY,)
+    """At which of the calls of its site a mutant acts, a mutant each: `"every"` call; the third (`"3"`); all
+    `"from 10"` on; `"once"`, at a call drawn anew for each round and test; or while the simulated time of the
+    test is within a window (`"2-2.5 s"`). In a control loop a fault at every step is noticed by any test.
+
+        when = ["every", "once", "from 10"]
+    """
+    families: _Families = USUAL
+    """Families of mutants to plant: `robot` in calls, `classical` and
+    `text` in the program's text. `--family` goes before it.
+
+        families = ["robot", "classical"]
+    """
+    baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
+    """How often the original is run per round; without it, as often as the engine
+    needs. More runs find more of the tests that fail at random.
+
+        baseline_repetitions = 10
+    """
+    repeats: bool = True
+    """Whether kills that may be a coincidence are run once more; see
+    [verdicts](verdicts.md#a-second-look).
+
+        repeats = false
+    """
+    demand: Annotated[tuple[dict[str, Any], ...], Field(strict=False)] = ()
+    """How small a fault may be that the tests do not notice: a table each, with double brackets; see
+    [thresholds](thresholds.md#demands). `run` ends with 1 if a site tolerates more.
+
+        demand = [{ site = "mission.py:38", quantity = "y", notice = "5 mm" }]
+    """
+
+
+class Configuration(Settings):
+    """What a campaign is to do: the settings, with paths expanded and sorted.
+
+    Attributes:
+        root: absolute path of the project.
+        file: the file it was read from, relative to ``root``.
+        demands: what ``demand`` says, checked.
+        tables: the tables of packages that it has, by name.
+    """
+
+    root: Path
+    file: str
+    demands: tuple[Demand, ...] = ()
+    tables: Mapping[str, Table] = {}
+
+
+def load_configuration(
+    folder: Path, families: Collection[str] = (), overrides: Sequence[str] = ()
+) -> Configuration:
+    """The configuration of the project in ``folder``.
+
+    ``families``: those that are asked for instead of those that it names. ``overrides``: keys that the
+    command line sets, as ``KEY=VALUE``.
+
+    Raises ConfigurationError or UnknownNameError: the first mistake, with a message that tells about all.
+    """
+    place = _find(folder)
+    found = _checked(place, folder, families, ())
+    if not overrides:
+        return found
+    # the file is without a mistake, so what is wrong now is wrong with what the command line says
+    flags = " ".join(f"-o {text}" for text in overrides)
+    said = Place(Document(flags, place.document.data, {}, ConfigurationError), path=place.path)
+    return _checked(said, folder, families, overrides).model_copy(update={"file": found.file})
+
+
+def _checked(
+    place: Place, folder: Path, families: Collection[str], overrides: Sequence[str]
+) -> Configuration:
+    given: Any = place.document.data
+    for part in place.path:
+        given = given[part]
+    if not isinstance(given, dict):
+        place.table(Settings, given)
+        raise_errors(place.errors)
+    models = _tables_of_packages(given, overrides)
+    lists = {f"{name}.{key}" for name, model in models.items() for key in model.lists()}
+    raw = overridden(given, overrides, lists | Settings.lists())
+    if place.document.file == _OWN and isinstance(raw.get("tool"), dict) and "mutabot" in raw["tool"]:
+        (place / "tool" / "mutabot").error(f"in {_OWN} the keys stand at the top, without [tool.mutabot]")
+        raise_errors(place.errors)
+    own = _without(raw, models, place)
+    known = brought("tables", Settings.model_fields) if own.keys() - Settings.model_fields.keys() else ()
+    settings = place.table(Settings, own, salvage=True, also=known)
+    if settings is None:
+        raise_errors(place.errors)
+        raise AssertionError("a table without a mistake is refused")
+    paths = _Paths(folder.resolve())
+    program = paths.sources(place / "program", settings.program)
+    oracle = paths.sources(place / "oracle", settings.oracle)
+    _refuse_overlap(place / "oracle", program, oracle)
+    paths.check(place, settings, has_tests="tests" in raw)
+    if not settings.vocabulary and need_vocabulary(families or settings.families):
+        others = ", ".join(families_brought(without_vocabulary=True)) or "there are none"
+        at = place / "vocabulary" if "vocabulary" in raw else place
+        at.error(_NO_VOCABULARY.format(others))
+    tables = {}
+    for name in sorted(models.keys() & raw.keys()):
+        table = (place / name).table(models[name], raw[name])
+        if table is not None:
+            tables[name] = table
+            for key in table.paths():
+                paths.check_patterns(place / name / key, getattr(table, key))
+    demands = check_demands(place / "demand", settings.demand)
+    raise_errors(place.errors)
+    changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": place.document.file}
+    return Configuration(**{**dict(settings), **changed, "demands": demands, "tables": tables})
+
+
+def _tables_of_packages(given: dict[str, Any], overrides: Sequence[str]) -> dict[str, type[Table]]:
+    """The models of the tables of packages that are written down, or set by the command line."""
+    named = {text.partition("=")[0].partition(".")[0].strip() for text in overrides}
+    named |= given.keys()
+    if not named - Settings.model_fields.keys():
+        return {}
+    found = brought("tables", Settings.model_fields).items()
+    return {name: part.load_class(Table) for name, part in found if name in named}
+
+
+def _without(raw: dict[str, Any], models: Collection[str], place: Place) -> dict[str, Any]:
+    """The keys of the core. A table of a package that is not installed is noted."""
+    own = {key: value for key, value in raw.items() if key not in models}
+    for key in own.keys() - Settings.model_fields.keys():
+        why = not_installed(key, "tables")
+        if why is not None:
+            (place / key).error(why)
+            del own[key]
+    return own
+
+
+def _find(folder: Path) -> Place:
+    """Where the keys of the configuration stand."""
+    if not folder.is_dir():
+        raise ConfigurationError("there is no such folder", file=str(folder))
+    found: list[Place] = []
+    hint = ""
+    if (folder / _PYPROJECT).exists():
+        document = Document.read(folder / _PYPROJECT, _PYPROJECT, ConfigurationError)
+        tool = document.data.get("tool", {})
+        if isinstance(tool, dict) and "mutabot" in tool:
+            found.append(Place(document, path=("tool", "mutabot")))
+        near = nearest_name("mutabot", tool) if isinstance(tool, dict) else None
+        hint = f" (there is [tool.{near}]; did you mean [tool.mutabot]?)" if near else ""
+    if (folder / _OWN).exists():
+        found.append(Place(Document.read(folder / _OWN, _OWN, ConfigurationError)))
+    if not found:
+        problem = f"no [tool.mutabot] in {_PYPROJECT} and no {_OWN} in {folder}{hint}; {_INIT}"
+        raise ConfigurationError(problem)
+    if len(found) > 1:
+        found[0].error(f"there is also {_OWN}; keep the configuration in one of the two")
+        raise_errors(found[0].errors)
+    return found[0]
+
+
+class _Paths:
+    """The paths of a configuration: inside the project, and really there."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+
+    def sources(self, place: Place, names: tuple[str, ...]) -> tuple[str, ...]:
+        """Files and folders, relative to the root, sorted; globs expanded."""
+        found: set[str] = set()
+        for index, name in enumerate(names):
+            at = place / index
+            if self._is_pattern(name):
+                found.update(at.attempt(self._sources_in, name) or ())
+            elif at.attempt(self._existing, name) is not None:
+                found.add(PurePosixPath(name).as_posix())
+        return tuple(sorted(found))
+
+    def check(self, place: Place, settings: Settings, *, has_tests: bool) -> None:
+        """Note what is wrong with the paths of the tests, the vocabulary and the selection."""
+        for index, argument in enumerate(settings.tests):
+            after_option = index > 0 and settings.tests[index - 1].startswith("-")
+            name = argument.partition("::")[0]
+            if argument.startswith("-") or after_option:
+                continue
+            if has_tests:
+                (place / "tests" / index).attempt(self._existing, name)
+            elif not (self.root / name).exists():
+                text = f'there is no folder {name!r}; say where the tests are: tests = ["…"]'
+                (place / "tests").error(text)
+        for index, name in enumerate(settings.vocabulary):
+            (place / "vocabulary" / index).attempt(self._inside, name)
+        if settings.selection is not None:
+            (place / "selection").attempt(self._existing, settings.selection)
+
+    def check_patterns(self, place: Place, names: tuple[str, ...]) -> None:
+        """Note each path or pattern that fits nothing."""
+        for index, name in enumerate(names):
+            read: Callable[[str], object] = self._matches if self._is_pattern(name) else self._existing
+            (place / index).attempt(read, name)
+
+    def _is_pattern(self, name: str) -> bool:
+        return bool(_WILD.search(name)) and not self._exists(name)
+
+    def _exists(self, name: str) -> bool:
+        return len(name) <= _LONGEST_PATH and "\0" not in name and (self.root / name).exists()
+
+    def _inside(self, name: str) -> str:
+        """Return a path in the project. Raises ValueError for any other."""
+        path = PurePosixPath(name)
+        if not name.strip():
+            raise ValueError("is an empty path")
+        if len(name) > _LONGEST_PATH or any(len(os.fsencode(part)) > _LONGEST_NAME for part in path.parts):
+            raise ValueError(f"{shortened(name)!r} is too long for a path")
+        if "\0" in name:
+            raise ValueError(f"{name!r} is no path")
+        if path.is_absolute() or name.startswith("~"):
+            raise ValueError(f"{name!r} must be relative to the project's folder")
+        if ".." in path.parts or not (self.root / path).resolve().is_relative_to(self.root):
+            raise ValueError(f"{name!r} leads out of the project's folder")
+        return name
+
+    def _existing(self, name: str) -> str:
+        """Return the path of a file or folder in the project. Raises ValueError if there is none."""
+        if (self.root / self._inside(name)).exists():
+            return name
+        near = self._nearest(name)
+        raise ValueError(f"there is no {name!r}{f'; did you mean {near!r}?' if near else ''}")
+
+    def _matches(self, pattern: str) -> list[Path]:
+        """What a pattern fits, relative to the root. Raises ValueError if that is nothing."""
+        self._inside(pattern)
+        try:
+            found = [match.relative_to(self.root) for match in self.root.glob(pattern)]
+        except (ValueError, NotImplementedError) as error:
+            raise ValueError(f"{pattern!r} is no pattern of paths: {error}") from None
+        if not found:
+            raise ValueError(f"{pattern!r} matches nothing")
+        return found
+
+    def _sources_in(self, pattern: str) -> list[str]:
+        found = [path.as_posix() for path in self._matches(pattern) if _is_source(self.root, path)]
+        if not found:
+            raise ValueError(f"{pattern!r} matches no Python file or folder")
+        return found
+
+    def _nearest(self, name: str) -> str | None:
+        folder = (self.root / name).parent
+        while not folder.is_dir():
+            folder = folder.parent
+        known = [path.relative_to(self.root).as_posix() for path in _visible(folder)]
+        return nearest_name(name, known)
+
+
+def _refuse_overlap(place: Place, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
+    """Note each part of the oracle that is a part of the program as well."""
+    for path, other in product(oracle, program):
+        one, two = PurePosixPath(path), PurePosixPath(other)
+        if one.is_relative_to(two) or two.is_relative_to(one):
+            place.error(f"{path!r} overlaps program ({other!r}); a call is the program's or the tests'")
+
+
+def _is_source(root: Path, path: Path) -> bool:
+    hidden = any(part.startswith(".") or part == "__pycache__" for part in path.parts)
+    return not hidden and (path.suffix == ".py" or (root / path).is_dir())
+
+
+def _visible(folder: Path) -> Iterator[Path]:
+    return (path for path in sorted(folder.iterdir()) if not path.name.startswith((".", "__")))

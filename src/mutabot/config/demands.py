@@ -1,0 +1,96 @@
+"""Demands of the configuration: ``[[tool.mutabot.demand]]``, read and checked."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
+
+from mutabot.errors import unknown_name_text
+from mutabot.model import Kind
+from mutabot.model.graded import OFFSET, Demand, parse_amount
+from mutabot.model.quantity import DIMENSIONS, MEASURED, WHOLE
+from mutabot.model.units import UNITS, Dimension, dimension_of
+
+from .mistakes import Place
+from .table import Table
+
+#: what every quantity can be off by beside its own measure: it comes late, or is scaled
+_ANY = (Dimension.TIME, Dimension.RATIO)
+_NUMBERS = re.compile(r"\d+(-\d+)?(,\d+(-\d+)?)*")
+
+
+def _check_kind(kind: Kind | None) -> Kind | None:
+    if kind is not None and kind not in MEASURED:
+        raise ValueError(f"a {kind} has no magnitude; only what is measured has")
+    return kind
+
+
+class DemandTable(Table):
+    """One ``[[tool.mutabot.demand]]``."""
+
+    notice: str | float
+    site: Annotated[str | None, Field(min_length=1)] = None
+    quantity: Annotated[str | None, Field(min_length=1)] = None
+    kind: Annotated[Kind | None, Field(strict=False), AfterValidator(_check_kind)] = None
+    operator: str = OFFSET
+    share: Annotated[float | None, Field(gt=0, lt=1)] = None
+
+
+def check_demands(place: Place, tables: Sequence[Mapping[str, Any]]) -> tuple[Demand, ...]:
+    """The demands that these tables mean; what is wrong with them is noted."""
+    found = (_demand(place / index, raw) for index, raw in enumerate(tables))
+    return tuple(one for one in found if one is not None)
+
+
+def _demand(place: Place, raw: Mapping[str, Any]) -> Demand | None:
+    mistakes = len(place.errors)
+    table = place.table(DemandTable, raw)
+    if table is None:
+        return None
+    notice, unit = _amount(place / "notice", table.notice)
+    if table.operator != OFFSET:
+        _check_operator(place / "operator", table.operator)
+    if table.site is not None and _NUMBERS.fullmatch(table.site):
+        text = f"{table.site!r} is the number of a mutant, which may change; write file:line or an id"
+        (place / "site").error(text)
+    if len(place.errors) == mistakes and table.kind is not None:
+        (place / "notice").attempt(_check_measure, table.operator, table.kind, unit)
+    if len(place.errors) > mistakes:
+        return None
+    line = place.document.line(place.path)
+    source = f"{place.document.file}:{line}" if line is not None else place.document.file
+    return Demand(notice, unit, table.site, table.quantity, table.kind, table.operator, table.share, source)
+
+
+def _amount(place: Place, notice: str | float) -> tuple[float, str | None]:
+    """The magnitude and its unit; (0, None) if they cannot be read, which is noted."""
+    try:
+        return parse_amount(notice if isinstance(notice, str) else f"{notice:g}")
+    except KeyError as error:
+        place.unknown("unit", str(error.args[0]), UNITS)
+    except ValueError as error:
+        place.error(str(error))
+    return 0.0, None
+
+
+def _check_operator(place: Place, name: str) -> None:
+    from mutabot.operators import load_all  # noqa: PLC0415  # few configurations name one
+
+    known = [rule.name for rule in load_all() if rule.has_sizes]
+    if name not in known:
+        place.error(unknown_name_text("graded operator", name, [*known, OFFSET]))
+
+
+def _check_measure(operator: str, kind: Kind, unit: str | None) -> None:
+    """Raise ValueError for a unit that no fault of this kind has."""
+    own = (Dimension.ANGLE,) if kind in WHOLE else tuple(DIMENSIONS.get(kind, ()))
+    allowed = own if operator == OFFSET else (*own, *_ANY)
+    units = ", ".join(name for name in UNITS if dimension_of(name) in allowed)
+    if unit is None and allowed:
+        raise ValueError(f"a {kind} has a unit; write it behind the number: {units}")
+    if unit is not None and dimension_of(unit) not in allowed:
+        text = f"use {units}" if allowed else "it has no unit"
+        raise ValueError(f"{unit!r} measures no {operator} of a {kind}; {text}")

@@ -1,0 +1,251 @@
+"""Mistakes in TOML files, told in the user's words: file, line, key and what would have worked."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ParamSpec, TypeVar
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, unknown_name_text
+from mutabot.limits import shortened
+from mutabot.model.events import Problem
+
+from .document import Document
+from .toml_lines import KeyPath
+
+M = TypeVar("M", bound=BaseModel)
+P = ParamSpec("P")
+T = TypeVar("T")
+
+#: more than these are not listed one by one
+MOST_REPORTED = 10
+
+#: what people call it -> what it is called here
+ALSO_KNOWN_AS: Mapping[str, Mapping[str, str]] = {
+    "unit": {
+        **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+        **dict.fromkeys(("millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
+        **dict.fromkeys(("centimeter", "centimeters", "centimetre", "centimetres"), "cm"),
+        **dict.fromkeys(("degree", "degrees", "°"), "deg"),
+        **dict.fromkeys(("radian", "radians"), "rad"),
+        **dict.fromkeys(("sec", "second", "seconds"), "s"),
+        **dict.fromkeys(("msec", "millisecond", "milliseconds"), "ms"),
+        **dict.fromkeys(("%", "per cent"), "percent"),
+        **dict.fromkeys(("ratio", "1"), "fraction"),
+    },
+    "kind": {
+        **dict.fromkeys(("color", "colour", "text", "string", "enum"), "label"),
+        **dict.fromkeys(("bool", "boolean"), "flag"),
+        **dict.fromkeys(("gripper", "grip"), "opening"),
+        **dict.fromkeys(("joint", "joint angle"), "angle"),
+        **dict.fromkeys(("time", "wait"), "duration"),
+        **dict.fromkeys(("range", "length"), "distance"),
+    },
+    "mode": {
+        **dict.fromkeys(("relative", "rel", "incremental"), "by"),
+        **dict.fromkeys(("absolute", "abs"), "to"),
+    },
+    "axis": {"roll": "x", "pitch": "y", "yaw": "z"},
+    "key": {
+        **dict.fromkeys(("transform", "frame"), "tf"),
+        **dict.fromkeys(("publisher", "subscriber"), "topic"),
+        **{"param": "parameter", "srv": "service"},
+    },
+}
+
+#: keys of the configuration that there were, and why there are none any more
+_GONE = dict.fromkeys(("order", "pairs"), "a mutant is one fault, no pair of them")
+_EXPECTED = {
+    "string_type": "text",
+    "bool_type": "true or false",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "int_parsing": "a whole number",
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "finite_number": "a finite number",
+    "list_type": "a list",
+    "tuple_type": "a list",
+    "dict_type": "a table",
+    "model_type": "a table",
+}
+_BOUNDS = {
+    "greater_than": ("gt", "more than"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "less than"),
+    "less_than_equal": ("le", "at most"),
+}
+_SOURCE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?(?: · (?P<key>.*))?")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place in a document under inspection; ``place / "key"`` is one inside it.
+
+    All places of a document collect their mistakes in one list, so that all can be told at once.
+    """
+
+    document: Document
+    errors: list[ConfigurationError] = field(default_factory=list)
+    path: KeyPath = ()
+
+    def __truediv__(self, key: str | int) -> Place:
+        return replace(self, path=(*self.path, key))
+
+    def source(self, name: str) -> str:
+        """Where something is described: ``robot.toml:12 · robot:Arm.move_by``."""
+        line = self.document.line(self.path)
+        return f"{self.document.file}{f':{line}' if line is not None else ''} · {name}"
+
+    def error(self, problem: str) -> None:
+        """Note a mistake."""
+        self.errors.append(self.document.error(self.path, problem))
+
+    def unknown(self, kind: str, name: str, known: Iterable[str]) -> None:
+        """Note a name that does not exist."""
+        document, known = self.document, list(known)
+        alias = ALSO_KNOWN_AS.get(kind, {}).get(name.casefold())
+        where: dict[str, Any] = {
+            "file": document.file,
+            "key": document.key(self.path),
+            "line": document.line(self.path),
+        }
+        alias = alias if alias in known else None
+        self.errors.append(UnknownNameError(kind, name, known, nearest=alias, **where))
+
+    def attempt(self, read: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | None:
+        """Call ``read``; note the ValueError that it raises as a mistake, and return None."""
+        try:
+            return read(*given, **named)
+        except ValueError as error:
+            self.error(str(error))
+            return None
+
+    def table(
+        self, model: type[M], raw: Any, *, salvage: bool = False, also: Collection[str] = ()
+    ) -> M | None:
+        """Validate ``raw`` as a ``model``; note its mistakes and return None if it has any.
+
+        With ``salvage``, keys with mistakes are left out and the others validated once more. ``also``: keys
+        that may stand beside the model's.
+        """
+        try:
+            return model.model_validate(raw)
+        except ValidationError as error:
+            details = error.errors(include_url=False)
+        self._explain(details, [*model.model_fields, *also])
+        bad = {detail["loc"][0] for detail in details if detail["loc"]}
+        if not salvage or not isinstance(raw, dict):
+            return None
+        try:
+            return model.model_validate({key: value for key, value in raw.items() if key not in bad})
+        except ValidationError:
+            return None
+
+    def _explain(self, details: list[ErrorDetails], keys: list[str]) -> None:
+        extras = [str(detail["loc"][-1]) for detail in details if detail["type"] == "extra_forbidden"]
+        meant = {nearest_name(extra, keys) for extra in extras}
+        for detail in details:
+            at = replace(self, path=self.path + detail["loc"])
+            name = str(at.path[-1]) if at.path else ""
+            match detail["type"]:
+                case "extra_forbidden" if name in _GONE and "program" in keys:
+                    at.error(f"the key {name!r} is gone: {_GONE[name]}")
+                case "extra_forbidden":
+                    at.unknown("key", name, keys)
+                case "enum" | "literal_error" if isinstance(detail["input"], str):
+                    at.unknown(name, detail["input"], re.findall(r"'([^']*)'", detail["ctx"]["expected"]))
+                case "missing" if name not in meant:
+                    replace(at, path=at.path[:-1]).error(f"the key {name!r} is missing")
+                case other if other != "missing":
+                    at.error(explained(detail))
+
+
+def explained(detail: ErrorDetails) -> str:
+    """One sentence for a mistake that pydantic found, in the words of the files' authors."""
+    kind, value = detail["type"], detail["input"]
+    if kind in ("enum", "literal_error"):
+        return f"expected text, got {shown(value)}; known: {detail['ctx']['expected']}"
+    if kind in _EXPECTED:
+        return f"expected {_EXPECTED[kind]}, got {shown(value)}{_list_hint(detail)}"
+    if kind in _BOUNDS:
+        bound, words = _BOUNDS[kind]
+        return f"must be {words} {detail['ctx'][bound]}, got {shown(value)}"
+    if kind in ("too_short", "too_long"):
+        return _length_text(detail)
+    if kind == "value_error":  # our own validators say it all
+        return str(detail["ctx"]["error"])
+    return f"{shown(value)} does not fit here"
+
+
+def _length_text(detail: ErrorDetails) -> str:
+    context = detail["ctx"]
+    least, most = context.get("min_length"), context.get("max_length")
+    wanted = f"at least {least}" if least is not None else f"at most {most}"
+    found = context["actual_length"]
+    return "must not be empty" if found == 0 else f"needs {wanted} entries, got {found}"
+
+
+def _list_hint(detail: ErrorDetails) -> str:
+    if detail["type"] not in ("list_type", "tuple_type") or not detail["loc"]:
+        return ""
+    key, value = detail["loc"][-1], detail["input"]
+    if isinstance(value, dict):
+        return f"; write [[{key}]] with double brackets"
+    return f'; write {key} = ["{value}"]' if isinstance(value, str) else ""
+
+
+def shown(value: Any) -> str:
+    """A value of a TOML file, in words."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return f"the number {value}"
+    if isinstance(value, str):
+        return f"the text {shortened(value)!r}"
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list | tuple):
+        return "a list"
+    return f"the {type(value).__name__} {value}"
+
+
+def raise_errors(errors: list[ConfigurationError]) -> None:
+    """Raise the first error in the order of the files' lines, telling about the others as well."""
+    if not errors:
+        return
+    files = list(dict.fromkeys(error.file for error in errors))
+    errors = sorted(errors, key=lambda error: (files.index(error.file), error.line or 0))
+    first = errors[0]
+    lines = [str(error) for error in errors[:MOST_REPORTED]]
+    if len(errors) > MOST_REPORTED:
+        lines.append(f"… and {len(errors) - MOST_REPORTED} more")
+    first.args = ("\n".join(lines),)
+    raise first
+
+
+def problem_error(problem: Problem) -> ConfigurationError:
+    """The error for a problem that was noticed beside the robot program.
+
+    ``problem.text`` is either a sentence or, if it does not mention the name that is wrong, what kind
+    of name it is (``argument``).
+    """
+    source = _SOURCE.fullmatch(problem.source)
+    file, line, key = source.group("file", "line", "key") if source else (problem.source, None, None)
+    where: dict[str, Any] = {
+        "file": file or None,
+        "key": " · ".join(part for part in (key, problem.key) if part) or None,
+        "line": int(line) if line else None,
+    }
+    name, text = problem.name, problem.text
+    if name is None:
+        return ConfigurationError(text, **where)
+    if name not in text:
+        return UnknownNameError(text, name, problem.known, **where)
+    if ";" not in text and problem.known:  # the text of an unknown name ends with what would be right
+        text += ";" + unknown_name_text("", name, problem.known).partition(";")[2]
+    return UnknownNameError("", name, problem.known, text=text, **where)

@@ -1,0 +1,341 @@
+"""``mutabot init``: look at a project, write a configuration and a vocabulary, say what comes next."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary.load import shipped
+from mutabot.errors import ConfigurationError, UsageError
+from mutabot.model import ANY, Vocabulary
+from mutabot.model.job import Call
+
+from .commands import commands_of, tells_commands
+from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached
+from .messages import Entry, entries
+from .observe import LIMIT, observe
+from .operations import Proposal, proposals
+from .text import questions_in, value_text, vocabulary_text
+
+CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
+#: vocabularies of environments that are reached through the wrappers of another one
+_BEHIND = {"metaworld": "gymnasium"}
+
+
+@dataclass(frozen=True)
+class Known:
+    """A shipped vocabulary that describes calls of the program.
+
+    Attributes:
+        name: as the configuration names it.
+        vocabulary: what it says.
+        overridden: names of methods that it describes with all that override them.
+        packages: where these may come from.
+        seen: how many of the callables that were seen it describes.
+    """
+
+    name: str
+    vocabulary: Vocabulary
+    overridden: frozenset[str]
+    packages: frozenset[str]
+    seen: int = 0
+
+    def describes(self, call: Call) -> bool:
+        """Whether it has this callable, as an operation or as its clock; wrappers and subclasses included."""
+        clock = self.vocabulary.clock
+        if call.name in self.overridden and call.package in self.packages:
+            return True
+        targets = [*(one.target for one in self.vocabulary.operations), *([clock.tick] if clock else [])]
+        return call.target in targets
+
+    def knows_arguments(self, call: Call) -> bool:
+        """Whether it says what arguments of such a call mean."""
+        return self.describes(call) and any(
+            one.arguments for one in self.vocabulary.operations if one.target.endswith(f".{call.name}")
+        )
+
+    def reads(self, call: Call) -> bool:
+        """Whether it has this callable as a reading."""
+        return any(one.target == call.target and not one.command for one in self.vocabulary.operations)
+
+
+def known_vocabularies(layout: Layout, calls: Sequence[Call]) -> list[Known]:
+    """The shipped vocabularies with calls that were seen; without any calls, those that the text imports."""
+    files = (*layout.program, *layout.tests)
+    imported = {name.partition(".")[0] for path in files for name in imported_modules(path)}
+    every: dict[str, Known] = {}
+    for name in shipped():
+        vocabulary = load([name], layout.root)
+        packages = frozenset(one.module.partition(".")[0] for one in vocabulary.operations)
+        overridden = frozenset(
+            one.target.rpartition(".")[2] for one in vocabulary.operations if one.overrides
+        )
+        every[name] = Known(name, vocabulary, overridden, packages)
+    for name, wrapper in _BEHIND.items():
+        if name in imported:
+            own, other = every[name], every.pop(wrapper)
+            names, packages = own.overridden | other.overridden, own.packages | other.packages
+            every[name] = replace(own, overridden=names, packages=packages)
+    found = []
+    for known in every.values():
+        seen = sum(known.describes(call) for call in calls)
+        if seen or (not calls and known.packages & imported):
+            found.append(replace(known, seen=seen))
+    return found
+
+
+class _Look:
+    """What was found out about a project.
+
+    Attributes:
+        layout: where what lies.
+        seen: the watched run of the tests.
+        known: shipped vocabularies that fit it.
+        named: proposed operations that have a name on a middleware.
+        found: proposed operations that no shipped vocabulary has.
+        others: calls of which nothing shows what they mean.
+        oracle: files on the tests' side that read from the robot.
+        unreached: calls of the program's text that no test makes.
+    """
+
+    def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
+        self.layout = look(root, given)
+        tell("running the tests once, to see what the program calls")
+        self.seen = observe(self.layout, limit)
+        self.program = [self.layout.relative(path) for path in self.layout.program]
+        self.calls = without_doubles([call for call in self.seen.calls if call.sites])
+        self.known: list[Known] = known_vocabularies(self.layout, self.calls)
+        self.named: list[Entry] = entries(self.seen.uses)
+        groups = compared_with(self.layout)
+        mine, rest = _by_side([call for call in self.calls if not call.leads_to_names])
+        self.found, self.others = proposals(self._new([call for call in mine if not call.own]), groups)
+        if not (self.found or self.known or self.named):  # program and robot share a file
+            self.found, self.others = proposals(mine, groups)
+        self._add_readings(proposals(self._new(rest), groups)[0])
+        if not (self.found or self.known or self.named):  # what is called at all can be skipped and repeated
+            for one in self.others:
+                one.is_plain = not one.call.problem and not one.call.is_property
+            self.found = [one for one in self.others if one.is_plain]
+            self.others = [one for one in self.others if not one.is_plain]
+        self.unreached: list[Unreached] = [
+            *unreached(self.layout, self._reached()),
+        ]
+
+    @property
+    def vocabulary(self) -> list[str]:
+        """Names for the configuration."""
+        names = [one.name for one in self.known]
+        return [*names, VOCABULARY] if self.found or self.named or not names else names
+
+    @property
+    def needs_vocabulary(self) -> bool:
+        """Whether there is anything to say that no shipped vocabulary says."""
+        return bool(self.found or self.named or self.others or self.unreached or not self.known)
+
+    def text(self) -> str:
+        """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
+        text = self._text()
+        if not (self.found or self.named) or _loads(text):
+            return text
+        for proposal in self.found:
+            proposal.current = proposal.opposite = None
+        kept = [one for one in self.found if _loads(vocabulary_text([one], [], self.program))]
+        self.others = [*(one for one in self.found if one not in kept), *self.others]
+        self.found = kept
+        for entry in self.named:
+            entry.is_taken = _loads(vocabulary_text([], [], self.program, named=[entry]))
+        return self._text()
+
+    def _text(self) -> str:
+        return vocabulary_text(self.found, self.others, self.program, self.unreached, self.named)
+
+    def _new(self, calls: Sequence[Call]) -> list[Call]:
+        """Calls to be described here: those of shipped vocabularies only where the program tells more."""
+        return [
+            call
+            for call in calls
+            if not any(one.describes(call) for one in self.known)
+            or _nodes_tell(call)
+            or (_has_limits(call) and not any(one.knows_arguments(call) for one in self.known))
+        ]
+
+    def _add_readings(self, rest: Sequence[Proposal]) -> None:
+        """Readings that only the tests take, and the files where they take any."""
+        known = {proposal.target: proposal for proposal in self.found}
+        known.update((one.target, one) for one in rest if one.is_reading and one.call.sites)
+        self.found = list(known.values())
+        targets = {proposal.target for proposal in self.found if proposal.is_reading}
+        files = [
+            where.rpartition(":")[0]
+            for call in self.seen.calls
+            if call.target in targets or any(one.reads(call) for one in self.known)
+            for where in call.sites
+        ]
+        files += [file for entry in self.named if entry.of_tests for file in entry.files]
+        self.oracle = [file for file in dict.fromkeys(files) if file not in self.program]
+
+    def _reached(self) -> list[tuple[str, int, str]]:
+        places = [(where.rpartition(":"), call.name) for call in self.seen.calls for where in call.sites]
+        return [*((file, int(line), name) for (file, _, line), name in places), *self.seen.reached]
+
+
+def propose(
+    root: Path,
+    program: Sequence[Path] = (),
+    *,
+    limit: float = LIMIT,
+    tell: Callable[[str], None] = lambda text: None,
+) -> list[str]:
+    """Write ``mutabot.toml`` and ``robot.toml``; the lines say what was found and what to do next.
+
+    ``program`` are files or folders of the robot program, relative to the working folder or to ``root``;
+    without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
+    program calls; ``tell`` is told before. No existing file is touched.
+
+    Raises UsageError if there is a configuration already, or no program.
+    """
+    root = root.resolve()
+    _refuse_existing(root)
+    found = _Look(root, program, limit, tell)
+    text = found.text()
+    if found.needs_vocabulary:
+        _write(root / VOCABULARY, text)
+    _write(root / CONFIGURATION, _configuration(found))
+    return _told(found, questions_in(text) if found.needs_vocabulary else 0)
+
+
+def without_doubles(calls: Sequence[Call]) -> list[Call]:
+    """Without methods of whatever has them where the robot's own was seen: a mock of it is one."""
+    owned = {
+        call.name
+        for call in calls
+        if not call.target.startswith(ANY) and "." in call.target.partition(":")[2]
+    }
+    return [call for call in calls if not (call.target.startswith(ANY) and call.name in owned)]
+
+
+def _nodes_tell(call: Call) -> bool:
+    return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
+
+
+def _has_limits(call: Call) -> bool:
+    """Whether it takes an action of which the environment tells least and greatest values."""
+    return any(part.limits for values in call.arguments.values() for part in values.parts.values())
+
+
+def _by_side(calls: Sequence[Call]) -> tuple[list[Call], list[Call]]:
+    """What the program calls, and what only the tests do."""
+    mine = [call for call in calls if not call.of_tests]
+    targets = {call.target for call in mine}
+    return mine, [call for call in calls if call.target not in targets]
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def _refuse_existing(root: Path) -> None:
+    if not root.is_dir():
+        raise UsageError(f"{root}: there is no such folder")
+    for name in (CONFIGURATION, VOCABULARY):
+        if (root / name).exists():
+            raise UsageError(f"{root / name} exists already; init never overwrites a file")
+    try:
+        data = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+        return
+    if "mutabot" in data.get("tool", {}):
+        raise UsageError(f"{root / 'pyproject.toml'} has [tool.mutabot] already; there is nothing to propose")
+
+
+def _loads(text: str) -> bool:
+    with TemporaryDirectory() as folder:
+        (Path(folder) / VOCABULARY).write_text(text, encoding="utf-8")
+        try:
+            load([VOCABULARY], Path(folder))
+        except ConfigurationError:
+            return False
+    return True
+
+
+def _configuration(found: _Look) -> str:
+    listed = {"program": found.program, "oracle": found.oracle, "tests": found.layout.arguments or ["tests"],
+              "vocabulary": found.vocabulary}  # fmt: skip
+    notes = {
+        "program": "  # makes the robot's calls",
+        "oracle": "  # reads from the robot for the tests' checks",
+    }
+    lines = [f"{key} = {value_text(names)}{notes.get(key, '')}" for key, names in listed.items() if names]
+    return "\n".join([*lines, "rounds = 1", "seed = 1"]) + "\n"
+
+
+def _told(found: _Look, questions: int) -> list[str]:
+    seen = found.seen
+    how = " (guessed; to choose other files: mutabot init FILE…)" if found.layout.guessed else ""
+    counts = ", ".join(f"{count} {outcome}" for outcome, count in seen.outcomes.items())
+    lines = [f"program: {', '.join(found.program)}{how}"]
+    if seen.trouble:
+        lines.append(f"the tests could not be watched: {seen.trouble}")
+    if counts:
+        lines.append(f"tests: {counts}; {_counted(found)}")
+    lines += [f"  {problem}" for problem in seen.problems[:3] if not seen.trouble]
+    hint = ""
+    if (found.layout.root / "pyproject.toml").exists():
+        hint = "; its lines may as well stand in pyproject.toml, under [tool.mutabot]"
+    lines.append(f"wrote {CONFIGURATION}{hint}")
+    for one in found.known:
+        lines.append(f"vocabulary {one.name}: comes with mutabot, describes {_number(one.seen, 'call')}")
+    if found.needs_vocabulary:
+        lines.append(_about_vocabulary(found, questions))
+    stood = [one.call for one in found.found if one.call.stands_in]
+    meant = [call.target for call in stood if not call.target.startswith(ANY)]
+    free = [call.name for call in stood if call.target.startswith(ANY)]
+    if meant:
+        lines.append(f"seen on mocks or fakes, proposed as what they stand for: {', '.join(meant)}")
+    if free:
+        lines.append(f"seen on mocks or fakes, proposed for any object that has them: {', '.join(free)}")
+    return [*lines, _next(found, questions)]
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _counted(found: _Look) -> str:
+    mine, rest = _by_side([call for call in found.seen.calls if call.sites])
+    times = _number(sum(call.count for call in mine), "time")
+    names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}
+    more = f", the tests {len(rest)} more" if rest else ""
+    more += f", and uses {_number(len(names), 'name')} of ROS" if names else ""
+    return f"the program calls {_number(len(mine), 'callable')}, {times}{more}"
+
+
+def _about_vocabulary(found: _Look, questions: int) -> str:
+    commented = len(found.others) + len(found.unreached)
+    also = f"; {_number(commented, 'more call')} as comments" if commented else ""
+    count = sum(entry.is_taken for entry in found.named) + len(found.found)
+    if count:
+        asked = f" and {_number(questions, 'question')}" if questions else ""
+        return f"wrote {VOCABULARY} with {_number(count, 'operation')}{asked}{also}"
+    if found.known:
+        return f"wrote {VOCABULARY}, which is not used yet{also}"
+    return f"wrote {VOCABULARY} without an operation: no call was seen{also}"
+
+
+def _next(found: _Look, questions: int) -> str:
+    if found.found or found.known or found.named:
+        answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
+        return f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"
+    names = " ".join(found.layout.arguments) or "tests"
+    return (
+        f"next: make `python -m pytest {names}` run tests that call the program, remove {CONFIGURATION} and "
+        f"{VOCABULARY}, and run `mutabot init` again; or describe the robot by hand (docs/vocabulary.md)"
+    )

@@ -1,0 +1,187 @@
+"""What words mean in the names of robot libraries: one table of verbs, one of nouns, one of units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+_WORD = re.compile(r"(?<![A-Za-z])[A-Za-z]{1,2}\d+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+
+
+def words_of(name: str) -> tuple[str, ...]:
+    """The words of a name in lower case: ``set``, ``digital``, ``out``; ``move``, ``j``."""
+    return tuple(word.lower() for word in _WORD.findall(name))
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+def _by_word(table: Mapping[str, str]) -> dict[str, str]:
+    return {word: meaning for meaning, words in table.items() for word in words.split()}
+
+
+#: what a motion does, by the verb in the name of a callable
+VERBS = _by_word(
+    {
+        "translation": "move movel movep movec servol servop go goto travel drive fly approach translate "
+        "shift jog slide lift lower raise drop ascend descend curve linear",
+        "rotation": "rotate turn spin swivel rot clockwise counterclockwise anticlockwise cw ccw movej "
+        "servoj",
+        "duration": "wait sleep pause dwell delay",
+    }
+)
+#: along which axis, by the direction in the name of a callable
+DIRECTIONS = _by_word(
+    {
+        "z": "up down lift lower raise drop ascend descend",
+        "x": "forward forwards back backward backwards",
+        "y": "left right",
+    }
+)
+TURNS = _words("clockwise counterclockwise anticlockwise cw ccw left right")
+MODES = _by_word(
+    {
+        "by": "by relative rel offset shift jog translate rotate turn delta increment forward forwards back "
+        "backward backwards left right up down lift lower raise drop ascend descend clockwise "
+        "counterclockwise anticlockwise cw ccw",
+        "to": "to absolute abs goto target set movel movej movep movec servol servoj ptp lin position pose "
+        "positions joints",
+    }
+)
+#: callables that make the robot do something, and those that only read
+COMMANDS = _words(
+    "home park move movej movel movep movec go goto pick place grasp grip release open close wait "
+    "sleep stop lift lower raise drop rotate turn translate attach detach push start feed insert "
+    "press screw weld dock undock servo servoj servol speedj speedl step write jog drive set send "
+    "command enable disable ptp lin calibrate takeoff land fly up down left right forward "
+    "forwards back backward backwards curve flip clockwise counterclockwise on off toggle blink "
+    "emergency arm disarm pulse pause resume aspirate dispense"
+)
+READERS = _words(
+    "read get getl getj query ask measure is has recv receive where locate detect scan actual current"
+)
+#: what is made ready before the robot does anything, and the clock of a simulator
+SETUP = _words("create connect disconnect load make init initialize configure simulation reset safety")
+TALK = _words("log print say show info warn warning debug error display")
+#: predicates of replies and of connections, which no sensor reads
+HOUSEKEEPING = _words("error ok success connected alive valid failed exception")
+REPLIES = _words("response reply result error exception future pdu packet message status")
+#: what a person moves, and not the robot
+INPUTS = _words("joystick gamepad stick xbox keyboard mouse")
+GRIPPER = _words("gripper grip hand finger fingers claw jaw vacuum suction suck grasp grasping hande robotiq")
+OUTPUT = _words("output outputs digital signal valve relay lamp coil io do out led gpio solenoid")
+
+#: words that undo each other
+OPPOSITES = (
+    ("lift", "drop"), ("raise", "lower"), ("up", "down"), ("pick", "release"), ("grip", "release"),
+    ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("left", "right"),
+    ("start", "stop"), ("attach", "detach"),
+)  # fmt: skip
+
+#: what a value is, by the last noun in its name
+NOUNS = _by_word(
+    {
+        "speed": "speed speeds velocity velocities vel vels speedl speedj",
+        "acceleration": "acceleration accelerations acc accel mvacc a_max",
+        "jerk": "jerk",
+        "force": "force forces thrust",
+        "torque": "torque torques effort moment",
+        "mass": "mass payload weight",
+        "temperature": "temperature temp",
+        "pressure": "pressure",
+        "voltage": "voltage volts",
+        "frequency": "frequency freq hz",
+        "ratio": "ratio percent percentage brightness throttle power throttle duty",
+        "height": "height altitude depth lift",
+        "length": "distance dist length amount travel range gap ultrasonic lidar width",
+        "angle": "angle angles theta degrees deg radians rad heading bearing rotation turn",
+        "joints": "joints jnts joint q qpos qs jpos",
+        "place": "pose tpose poses tcp xyz pos position positions location point waypoint coord coords "
+        "translation target where locate goto goal getl movel",
+        "turned": "orientation rotvec rpy euler orn",
+        "time": "seconds secs sec duration time delay dwell pause milliseconds t wait sleep",
+        "opening": "opening openness gripper",
+        "switch": "on off enable enabled signal level active closed open state grip",
+        "label": "color colour label kind type category",
+        "generic": "value val command cmd setpoint data",
+        "action": "action actions act ctrl",
+        "none": "boot stamp timestamp mask rate axis code status err errno id index idx port channel "
+        "timeout name mode number num count blocking radius gain gains limit limits size rgb "
+        "lookahead key flag flags",
+    }
+)
+#: what a setter may be about, whatever its argument is called
+SUBJECTS = _words("speed acceleration jerk force torque mass temperature pressure voltage frequency ratio")
+#: which kind of quantity such a value is, written and read, and in which units
+KINDS: Mapping[str, tuple[str, str, str]] = {
+    **{kind: (kind, kind, kind) for kind in SUBJECTS},
+    "height": ("translation", "distance", "length"),
+    "length": ("translation", "distance", "length"),
+    "angle": ("rotation", "angle", "angle"),
+    "time": ("duration", "", "time"),
+}
+_LENGTHS = {
+    "mm": r"mm|(?i:millimet(?:er|re)s?)",
+    "cm": r"cm|(?i:centimet(?:er|re)s?)",
+    "m": r"m|(?i:met(?:er|re)s?)",
+}
+_ANGLES = {"deg": r"(?i:deg|degrees?)|°", "rad": r"(?i:rad|radians?)"}
+_PER_SECOND = r"(?:\s*/\s*s(?:ec(?:ond)?s?)?|\s+per\s+second)"
+_SQUARED = r"\s*/\s*s(?:ec)?\s*(?:\^2|²|\*\*2|2|/\s*s(?:ec)?)"
+#: how docstrings and names write each unit; what is longer comes first
+_SPELT: Mapping[str, str] = {
+    **{f"{unit}/s^3": rf"(?:{text})\s*/\s*s(?:\^3|³|\*\*3|3)" for unit, text in (_LENGTHS | _ANGLES).items()},
+    **{f"{unit}/s^2": rf"(?:{text}){_SQUARED}" for unit, text in (_LENGTHS | _ANGLES).items()},
+    **{f"{unit}/s": rf"(?:{text}){_PER_SECOND}" for unit, text in (_LENGTHS | _ANGLES).items()},
+    "rpm": r"(?i:rpm)",
+    **_LENGTHS,
+    **_ANGLES,
+    "ms": r"ms|(?i:msecs?|milliseconds?)",
+    "s": r"s|(?i:secs?|seconds?)",
+    "Nm": r"N\s?m|(?i:newton[ -]?met(?:er|re)s?)",
+    "N": r"N|(?i:newtons?)",
+    "kg": r"kg|(?i:kilograms?)",
+    "V": r"V|(?i:volts?)",
+    "Hz": r"Hz|(?i:hertz)",
+    "percent": r"%|(?i:percent)",
+    "degC": r"°C|(?i:celsius)",
+}
+_UNIT = re.compile(
+    r"(?<![\w/'’°])(?:"
+    + "|".join(f"(?P<u{number}>{text})" for number, text in enumerate(_SPELT.values()))
+    + r")(?![\w/²³^'’])"
+)
+UNITS: Mapping[str, tuple[str, ...]] = {
+    "length": ("m", "cm", "mm"),
+    "angle": ("rad", "deg"),
+    "time": ("s", "ms"),
+    "speed": ("m/s", "cm/s", "mm/s", "rad/s", "deg/s", "rpm"),
+    "acceleration": ("m/s^2", "mm/s^2", "rad/s^2", "deg/s^2"),
+    "jerk": ("m/s^3", "mm/s^3", "rad/s^3", "deg/s^3"),
+    "force": ("N",),
+    "torque": ("Nm",),
+    "mass": ("kg", "g"),
+    "temperature": ("degC",),
+    "pressure": ("Pa", "kPa", "bar"),
+    "voltage": ("V",),
+    "frequency": ("Hz",),
+    "ratio": ("percent", "fraction"),
+}
+
+
+def units_in(text: str, dimension: str) -> list[str]:
+    """The different units of a dimension that a text names, in their order."""
+    names = list(_SPELT)
+    found = [names[int(str(match.lastgroup)[1:])] for match in _UNIT.finditer(text)]
+    return [unit for unit in dict.fromkeys(found) if unit in UNITS[dimension]]
+
+
+def noun_of(words: Sequence[str]) -> str:
+    """What a value with such a name is: the last noun tells; empty for one that no table has."""
+    return next((NOUNS[word] for word in reversed(words) if word in NOUNS), "")
+
+
+def first(table: Mapping[str, str], words: Iterable[str]) -> str | None:
+    """The meaning of the first word that a table has."""
+    return next((table[word] for word in words if word in table), None)

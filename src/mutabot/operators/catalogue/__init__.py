@@ -1,1 +1,0 @@
-"""Faults that robots have: each stands for a class of bugs that studies of robot software count."""

@@ -1,0 +1,1 @@
+"""The operators on calls: a file for each kind of fault."""

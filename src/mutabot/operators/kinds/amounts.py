@@ -1,0 +1,319 @@
+"""Numbers that are taken for another unit, and commanded amounts that are too small, too large or limited."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import ClassVar
+
+from mutabot.families import CATALOGUE
+from mutabot.model import Kind, Mode, Operation, Path, Quantity
+from mutabot.model.quantity import Value
+from mutabot.model.units import convert
+from mutabot.operators.examples import COMMANDS, PARAMETERS, UNITS, changed, reading, unchanged, writing
+from mutabot.operators.operator import Context, Subject, quantity_of
+from mutabot.operators.value import ValueOperator, like, map_numbers, middle_of, within
+
+#: the robot, or the program, takes the number as if it were in the other unit
+_TAKEN = "taken"
+#: the number is worked out in the other unit, and nobody converts it
+_GIVEN = "given"
+
+_METRES = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 2.0))
+_MOVE_TO = Operation("robot:Arm.move_to", (_METRES,))
+_MOVE_BY = Operation(
+    "robot:Arm.move_by", (Quantity("x", Path("x"), Kind.TRANSLATION, "x", "m", "base", Mode.BY),)
+)
+_MILLIMETRES = Quantity("x", Path("x"), Kind.TRANSLATION, "x", "mm", "base", Mode.TO, range=(0.0, 800.0))
+_MOVE_IN_MM = Operation("robot:Arm.move_to", (_MILLIMETRES,))
+_TURN = Operation(
+    "robot:Arm.turn_by", (Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.BY),)
+)
+_J1 = Quantity("[0]", Path.parse("[0]", rooted=False), Kind.ANGLE, "j1", "rad")
+_JOINTS = Operation("robot:Arm.joints", result=(_J1,), command=False)
+_IN_CM, _IN_MM = (reading("laser:distance", Kind.DISTANCE, unit=unit) for unit in ("cm", "mm"))
+_WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s")
+
+
+class _OtherUnit(ValueOperator):
+    """Takes numbers for another unit, or gives them so.
+
+    Class attributes:
+        units: the other unit, by a quantity's own.
+        ways: which of the two mistakes.
+    """
+
+    family = CATALOGUE
+    stands_for = f"A number in another unit: {UNITS}."
+    units: ClassVar[Mapping[str, str]]
+    ways: ClassVar[tuple[str, ...]] = (_TAKEN, _GIVEN)
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.unit in self.units
+
+    def variants_of(self, quantity: Quantity) -> Iterable[str]:
+        return (f"{way}-{self.units[quantity.unit or '']}" for way in self.ways)
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        way, _, other = context.subject.variant.partition("-")
+        own = context.quantity.unit or ""
+        units = (other, own) if way == _TAKEN else (own, other)
+        return map_numbers(value, lambda number: like(number, convert(number, *units)))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        told = super().describe(subject, before, after)
+        how = "taken for" if subject.variant.startswith(_TAKEN) else "given in"
+        return f"{told} ({how} {self.units[quantity_of(subject).unit or '']})"
+
+
+def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
+    """The same units, and the other way round."""
+    return {**units, **{other: one for one, other in units.items()}}
+
+
+class CentimetreForMetre(_OtherUnit):
+    """A length or linear speed in metres is taken for centimetres, or is given in centimetres; and the other
+    way round.
+
+    Where: written and read quantities in m, cm, m/s or cm/s.
+    """
+
+    name = "cm-for-m"
+    rank = 300
+    units = _both_ways({"m": "cm", "m/s": "cm/s"})
+    examples = (
+        changed(_MOVE_TO, 0.5, 0.005, "taken-cm"),
+        changed(_MOVE_TO, 0.01, 1.0, "given-cm"),
+        changed(_IN_CM, 12.0, 0.12, "given-m"),
+        unchanged(_MOVE_TO, 0.5, "50 m is outside the range [0, 2]", "given-cm"),
+    )
+
+
+class MillimetreForMetre(_OtherUnit):
+    """A length or linear speed in metres is taken for millimetres, or is given in millimetres; and the other
+    way round.
+
+    Where: written and read quantities in m or mm, and their speeds and accelerations.
+    """
+
+    name = "mm-for-m"
+    rank = 301
+    units = _both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
+    examples = (
+        changed(_MOVE_BY, 0.5, 0.0005, "taken-mm"),
+        changed(_MOVE_BY, 0.5, 500.0, "given-mm"),
+        changed(_IN_MM, 12, 12000, "taken-m"),
+        unchanged(_MOVE_BY, 0.0, "zero is zero in any unit", "taken-mm"),
+    )
+
+
+class InchForMillimetre(_OtherUnit):
+    """A length in millimetres is taken for inches, or is given in inches; and the other way round.
+
+    Where: written and read quantities in mm or inch.
+    """
+
+    name = "inch-for-mm"
+    rank = 302
+    units = _both_ways({"mm": "inch"})
+    examples = (
+        changed(_MOVE_IN_MM, 10, 254, "taken-inch"),
+        changed(_MOVE_IN_MM, 254, 10, "given-inch"),
+        changed(_IN_MM, 508.0, 20.0, "given-inch"),
+        unchanged(_MOVE_IN_MM, 40, "1016 mm is out of range", "taken-inch"),
+    )
+
+
+class DegreeForRadian(_OtherUnit):
+    """An angle or angular speed in radians is taken for degrees, or is given in degrees; and the other way
+    round.
+
+    Where: written and read quantities in rad or deg, rotation vectors and Euler angles included, and their
+    speeds and accelerations.
+    """
+
+    name = "deg-for-rad"
+    rank = 303
+    units = _both_ways({"rad": "deg", "rad/s": "deg/s", "rad/s^2": "deg/s^2"})
+    examples = (
+        changed(_TURN, 3.0, 171.88733853924697, "taken-rad"),
+        changed(_TURN, 180.0, 3.141592653589793, "given-rad"),
+        changed(_JOINTS, 1.0, 57.29577951308232, "given-deg"),
+        unchanged(_TURN, 0.0, "zero is zero in any unit", "given-rad"),
+    )
+
+
+class MillisecondForSecond(_OtherUnit):
+    """A duration in seconds is taken for milliseconds. The other way round it is so long that any test only
+    times out.
+
+    Where: durations in s.
+    """
+
+    name = "ms-for-s"
+    rank = 304
+    units: ClassVar[Mapping[str, str]] = {"s": "ms"}
+    ways = (_TAKEN,)
+    of_read = False
+    examples = (
+        changed(_WAIT, 0.8, 0.0008, "taken-ms"),
+        unchanged(_WAIT, 0.0, "no time is no time", "taken-ms"),
+    )
+
+
+_SPEED = writing("robot:Arm.set_speed", "speed", Kind.SPEED, unit="m/s", range=(0.0, 1.0))
+_PRESS = writing("robot:Arm.press", "force", Kind.FORCE, unit="N")
+_GRIP = writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(20.0, 235.0))
+_LIMITED = writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(0.0, 100.0))
+_PAYLOAD = writing("robot:Arm.set_payload", "mass", Kind.MASS, unit="kg", range=(0.0, 5.0))
+_OPEN = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
+
+
+class _Factor(ValueOperator):
+    """Multiplies a commanded number; what leaves its range stays at the end of it.
+
+    Class attributes:
+        is_limited: whether it does.
+    """
+
+    family = CATALOGUE
+    stands_for = f"A wrong parameter: {PARAMETERS}."
+    of_read = False
+    variants: ClassVar[Mapping[str, float]] = {"x0.5": 0.5, "x2": 2.0}
+    is_limited: ClassVar[bool] = True
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        limits = context.quantity.range if self.is_limited else None
+        return map_numbers(value, lambda number: like(number, within(context.option * number, limits)))
+
+
+class SpeedOverride(_Factor):
+    """A speed or acceleration is 50 % or 200 % of what is commanded, within its range.
+
+    Where: written quantities of kind speed, acceleration or jerk.
+    """
+
+    name = "speed-override"
+    rank = 350
+    kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
+    examples = (
+        changed(_SPEED, 0.5, 0.25, "x0.5"),
+        changed(_SPEED, 0.8, 1.0, "x2", note="its range ends there"),
+        unchanged(_SPEED, 1.0, "it is at the end of its range", "x2"),
+    )
+
+
+class ForceOverride(_Factor):
+    """A force or torque is 50 % or 200 % of what is commanded, within its range.
+
+    Where: written quantities of kind force or torque.
+    """
+
+    name = "force-override"
+    rank = 351
+    kinds = frozenset({Kind.FORCE, Kind.TORQUE})
+    examples = (
+        changed(_PRESS, 40.0, 20.0, "x0.5"),
+        changed(_PRESS, 40.0, 80.0, "x2"),
+        unchanged(_PRESS, 0.0, "twice nothing is nothing", "x2"),
+    )
+
+
+class WeakGrip(_Factor):
+    """A gripper has 30 % of the force that it is told to have, or the least of its range.
+
+    Where: written quantities of kind force, in calls that command no motion.
+    """
+
+    name = "weak-grip"
+    rank = 352
+    variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
+    examples = (
+        changed(_GRIP, 160, 48, "x0.3"),
+        changed(_GRIP, 40, 20, "x0.3", note="the least of its range"),
+        unchanged(_GRIP, 20, "it is the least already", "x0.3"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        motions = (Kind.TRANSLATION, Kind.ROTATION)
+        return quantity.kind is Kind.FORCE and not any(
+            one.kind in motions or one.is_whole for one in whole.written
+        )
+
+
+class WrongPayload(_Factor):
+    """The payload that is set is none, or twice as heavy as it is.
+
+    Where: written quantities of kind mass.
+    """
+
+    name = "wrong-payload"
+    rank = 353
+    kinds = frozenset({Kind.MASS})
+    variants: ClassVar[Mapping[str, float]] = {"none": 0.0, "double": 2.0}
+    is_limited = False
+    examples = (
+        changed(_PAYLOAD, 1.2, 0.0, "none"),
+        changed(_PAYLOAD, 1.2, 2.4, "double"),
+        unchanged(_PAYLOAD, 4.0, "the robot takes 5 kg at most", "double"),
+        unchanged(_PAYLOAD, 0.0, "there is none to forget", "none"),
+    )
+
+
+class PartialOpening(ValueOperator):
+    """A gripper stops half way, as seen from the end of its range that is farther off: half open, half
+    closed.
+
+    Where: openings with a range or clip; those of two values take no other.
+    """
+
+    name = "partial-opening"
+    family = CATALOGUE
+    rank = 354
+    stands_for = f"Commands that are not carried out in full, as by a gripper that jams: {COMMANDS}."
+    of_read = False
+    examples = (
+        changed(_OPEN, 80.0, 40.0),
+        changed(_OPEN, 0.0, 42.5, note="half closed"),
+        unchanged(_OPEN, {}, "the call says nothing of it"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.kind is Kind.OPENING and _has_limits(quantity)
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        low, high = middle_of(context.quantity, 1.0)
+
+        def half(number: float) -> float:
+            far = low if number - low >= high - number else high
+            return like(number, (number + far) / 2.0)
+
+        return map_numbers(value, half)
+
+
+class SilentLimit(ValueOperator):
+    """A commanded value is limited to the middle 80 % of its range, without notice.
+
+    Where: written numbers with a range or clip.
+    """
+
+    name = "silent-limit"
+    family = CATALOGUE
+    rank = 355
+    stands_for = f"A wrong parameter: {PARAMETERS}."
+    of_read = False
+    examples = (
+        changed(_LIMITED, 100, 90),
+        unchanged(_LIMITED, 50, "it is within"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        is_number = quantity.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)
+        return is_number and _has_limits(quantity) and not quantity.is_whole
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        limits = middle_of(context.quantity, 0.8)
+        return map_numbers(value, lambda number: like(number, within(number, limits)))
+
+
+def _has_limits(quantity: Quantity) -> bool:
+    return (quantity.range or quantity.clip) is not None and quantity.values is None

@@ -1,0 +1,397 @@
+"""Commands that are lost, repeated, turned round, too early, too late or in the wrong order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+from mutabot.families import CATALOGUE
+from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Reply
+from mutabot.model.notation import Notation
+from mutabot.model.quantity import WHOLE, Value, are_same
+from mutabot.operators.command import CommandOperator, idle_of
+from mutabot.operators.examples import (
+    CLOSE,
+    COMMANDS,
+    GRIP,
+    MOVE_BY,
+    MOVE_TO,
+    TIMING,
+    changed,
+    unchanged,
+    writing,
+)
+from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged
+from mutabot.operators.value import ValueOperator, given, like, map_numbers
+
+_HOME = Operation("robot:Arm.home")
+_OPEN_TO = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
+_LAMP = writing("robot:Lamp.set", "lit", Kind.OUTPUT, values=(False, True))
+_FAN = writing("robot:Fan.set", "mode", Kind.OUTPUT, values=("off", "slow", "fast"))
+_LIFT = Pattern("lift/{height:g}", opposite="drop/{height:g}")
+_SEND = Operation("link:send", message="text", patterns=(_LIFT,))
+
+
+class Skip(CommandOperator):
+    """A command is not carried out; the program goes on as if it had been.
+
+    Where: commands whose answer to doing nothing is known.
+    """
+
+    name = "skip"
+    needs = frozenset({Need.IDLE})
+    does_nothing = True
+    rank = 30
+    published = (Published(7, "do command x", "do nothing"),)
+    fault = "do nothing"
+    examples = (
+        Example(Subject(GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
+        Example(Subject(_HOME), performed=()),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        return idle_of(call)
+
+
+class Repeat(CommandOperator):
+    """A command is carried out twice; the program sees the second answer.
+
+    Where: any command.
+    """
+
+    name = "repeat"
+    rank = 40
+    published = (Published(8, "do command x", "do command x twice"),)
+    fault = "do it twice"
+    examples = (
+        Example(
+            Subject(MOVE_BY),
+            {"dx": 0.1},
+            performed=({"dx": 0.1}, {"dx": 0.1}),
+            note="do command x: do command x twice",
+        ),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        await proceed(call)
+        return await proceed(call)
+
+
+class Opposite(CommandOperator):
+    """A two-state command does the opposite: open for close, off for on, release for grasp.
+
+    Where: written openings and outputs with two ends, and commands with an opposite.
+    """
+
+    name = "opposite"
+    rank = 50
+    published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
+    examples = (
+        changed(GRIP, 1, 0, note="grasp: release"),
+        changed(_LAMP, False, True),
+        changed(_OPEN_TO, 85.0, 0.0, note="an opening at one end of its range goes to the other end"),
+        Example(Subject(CLOSE), performed=({"reversed": True},), note="calls the opposite operation"),
+        Example(
+            Subject(_SEND, _LIFT),
+            {"height": 5},
+            performed=({"height": 5, "reversed": True},),
+            note="sends the opposite text command",
+        ),
+        unchanged(_OPEN_TO, 40.0, "half open has no opposite"),
+        unchanged(GRIP, 0.5, "neither of the two states"),
+        unchanged(_FAN, "slow", "three states have no opposite"),
+    )
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
+        whole = Subject(operation, pattern)
+        for quantity in whole.written:
+            if quantity.kind in (Kind.OPENING, Kind.OUTPUT) and _ends(quantity) is not None:
+                yield Subject(operation, pattern, quantity)
+        if whole.opposite is not None:
+            yield whole
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        quantity = context.subject.quantity
+        if quantity is None:
+            return await proceed(call.opposite())
+        return await proceed(call.with_value(quantity, other_end(quantity, call.values.get(quantity.name))))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        if subject.quantity is not None:
+            return f"{subject.quantity.name} {' → '.join(subject.quantity.texts(before, after))}"
+        pattern, opposite = subject.pattern, subject.opposite
+        if opposite is not None and pattern is not None and pattern.notation is not None:
+            return f"{Notation.compile(opposite).short} instead"
+        return f"{opposite} instead"
+
+
+def _ends(quantity: Quantity) -> tuple[Value, Value] | None:
+    if quantity.values is not None:
+        return (quantity.values[0], quantity.values[1]) if len(quantity.values) == 2 else None
+    return quantity.range or quantity.clip
+
+
+def other_end(quantity: Quantity, value: Value) -> Value:
+    """The other of a quantity's two states. Raises Unchanged if the value is neither."""
+    ends = _ends(quantity)
+    value = quantity.clipped(value)
+    if ends is None or value is None or value not in ends:
+        raise Unchanged("the value is neither of the two ends")
+    return ends[1] if value == ends[0] else ends[0]
+
+
+#: seconds: as long as a pneumatic gripper takes to open or close
+_LATE = 0.5
+_MOTIONS = WHOLE | {Kind.TRANSLATION, Kind.ROTATION}
+_GRIPPING = (
+    "commands with an opening, and commands without quantities that have an opposite, such as close and open"
+)
+_REFUSED = replace(MOVE_BY, refusals=("robot:Refused",))
+_WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 60.0))
+
+
+class _Timing(CommandOperator):
+    family = CATALOGUE
+    needs = frozenset({Need.PROGRAM})
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
+
+
+class SwapNext(_Timing):
+    """A command changes places with the program's next one, whichever that is; if none follows, it is never
+    carried out. Meanwhile the program goes on as if it had been.
+
+    Where: any command whose answer to doing nothing is known.
+    """
+
+    name = "swap-next"
+    rank = 330
+    needs = frozenset({Need.IDLE, Need.PROGRAM})
+    fault = "only after the next command"
+    examples = (Example(Subject(MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        reply = idle_of(call)
+        call.defer(call)
+        return reply
+
+
+class PreviousTarget(_Timing):
+    """A motion goes to the target of the one before it again, or as far: a waypoint that is out of date.
+
+    Where: commands that write a translation or rotation, from the second call of their operation on.
+    """
+
+    name = "previous-target"
+    rank = 331
+    fault = "the motion of the call before it again"
+    examples = (
+        Example(
+            Subject(MOVE_TO),
+            {"x": 0.4, "y": 0.1},
+            previous={"x": 0.2, "y": 0.0},
+            performed=({"x": 0.2, "y": 0.0},),
+        ),
+        Example(Subject(MOVE_TO), {"x": 0.4}, away="there is none before it"),
+        Example(Subject(MOVE_TO), {"x": 0.4}, previous={"x": 0.4}, away="it went there before"),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        return whole.is_command and any(one.kind in _MOTIONS for one in whole.written)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        before, written = call.previous(), context.subject.written
+        if before is None:
+            raise Unchanged("there is none before it")
+        names = {one.name for one in written if one.kind in _MOTIONS} & before.keys()
+        values = {name: before[name] if name in names else value for name, value in call.values.items()}
+        if are_same(written, values, call.values):
+            raise Unchanged("the one before it was the same")
+        return await proceed(replace(call, values=values))
+
+
+class HalfWait(ValueOperator):
+    """A wait is half as long: the next command comes before what was waited for is over.
+
+    Where: written quantities of kind duration.
+    """
+
+    name = "half-wait"
+    family = CATALOGUE
+    rank = 332
+    stands_for = _Timing.stands_for
+    kinds = frozenset({Kind.DURATION})
+    of_read = False
+    examples = (
+        changed(_WAIT, 0.8, 0.4),
+        unchanged(_WAIT, 0.0, "there is nothing to shorten"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return map_numbers(value, lambda number: like(number, number / 2.0))
+
+
+class NoWait(HalfWait):
+    """A wait is left out: the next command comes at once."""
+
+    name = "no-wait"
+    rank = 333
+    examples = (
+        changed(_WAIT, 0.8, 0.0),
+        unchanged(_WAIT, 0.0, "there is nothing to shorten"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return map_numbers(value, lambda number: like(number, 0.0))
+
+
+class LateGrip(_Timing):
+    """A gripper command is carried out 0.5 s late, and the program waits for it."""
+
+    name = "late-grip"
+    rank = 336
+    needs = frozenset({Need.WAIT, Need.PROGRAM})
+    where = f"{_GRIPPING}; the vocabulary says how time passes: wait"
+    fault = f"{_LATE:g} s late"
+    examples = (Example(Subject(GRIP), {"position": 1}, waited=_LATE, performed=({"position": 1},)),)
+
+    def fits(self, whole: Subject) -> bool:
+        return _is_gripping(whole)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        await call.wait(_LATE)
+        return await proceed(call)
+
+
+class EarlyRelease(_Timing):
+    """A gripper command is taken back right after the program's next command: what was gripped is let go too
+    early. If no command follows, nothing happens.
+    """
+
+    name = "early-release"
+    rank = 337
+    where = _GRIPPING
+    fault = "and back after the next command"
+    examples = (
+        Example(Subject(GRIP), {"position": 1}, performed=({"position": 1},), afterwards=({"position": 0},)),
+        Example(Subject(CLOSE), performed=({},), afterwards=({"reversed": True},)),
+        Example(Subject(GRIP), {"position": 0.5}, away="half open has no opposite"),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        return _is_gripping(whole)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        back = _undone(context.subject, call)
+        reply = await proceed(call)
+        call.defer(back)
+        return reply
+
+
+def _is_gripping(whole: Subject) -> bool:
+    """Whether it is a command to a gripper."""
+    has_opening = any(one.kind is Kind.OPENING for one in whole.written)
+    return whole.is_command and (has_opening or (whole.opposite is not None and not whole.written))
+
+
+def _undone(subject: Subject, call: Call) -> Call:
+    """The call that takes a gripper command back. Raises Unchanged if its opening has no other end."""
+    for quantity in subject.written:
+        if quantity.kind is Kind.OPENING:
+            value = given(call.values, quantity.name, replace(subject, quantity=quantity))
+            return call.with_value(quantity, other_end(quantity, value))
+    return call.opposite()
+
+
+class _Chance(CommandOperator):
+    """Acts on a command by chance; the variant says how likely that is."""
+
+    family = CATALOGUE
+    stands_for = f"A command that is lost, or comes twice: {COMMANDS}."
+    needs = frozenset({Need.MEMORY, Need.PROGRAM})
+    variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
+
+    def is_chance(self, subject: Subject) -> bool:
+        return True
+
+
+class LostCommand(_Chance):
+    """A command is not carried out, with a probability of 30 %; the program goes on as if it had been.
+
+    Where: any command whose answer to doing nothing is known.
+    """
+
+    name = "lost-command"
+    rank = 334
+    needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
+    fault = "do nothing, with a probability of {variant}"
+    examples = (
+        Example(Subject(GRIP, variant="30%"), {"position": 1}, performed=()),
+        Example(
+            Subject(GRIP, variant="30%"),
+            {"position": 1},
+            earlier=({"position": 0},) * 3,
+            away="most commands are carried out",
+        ),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        context.by_chance()
+        return idle_of(call)
+
+
+class DoubleCommand(_Chance):
+    """A command is carried out twice, with a probability of 30 %; the program sees the second answer.
+
+    Where: any command.
+    """
+
+    name = "double-command"
+    rank = 335
+    fault = "do it twice, with a probability of {variant}"
+    examples = (
+        Example(Subject(MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
+        Example(
+            Subject(MOVE_BY, variant="30%"),
+            {"dx": 0.1},
+            earlier=({"dx": 0.2},) * 3,
+            away="most commands are carried out once",
+        ),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        context.by_chance()
+        await proceed(call)
+        return await proceed(call)
+
+
+class UnreportedRefusal(CommandOperator):
+    """The robot refuses a command, or stops, and the program does not hear of it: it gets the answer to doing
+    nothing.
+
+    Where: commands whose answer to doing nothing is known, where the tests make the robot raise one of its
+    refusals.
+    """
+
+    name = "unreported-refusal"
+    family = CATALOGUE
+    rank = 338
+    needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
+    stands_for = f"Errors that are swallowed on their way: {COMMANDS}."
+    fault = "a refusal is not reported"
+    examples = (
+        Example(Subject(_REFUSED), {"dx": 9.0}, refused=True, performed=({"dx": 9.0},), received={}),
+        Example(Subject(_REFUSED), {"dx": 0.1}, away="the robot does not refuse it"),
+    )
+
+    def is_chance(self, subject: Subject) -> bool:
+        return True  # what the robot refuses only the run can tell
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        try:
+            reply = await proceed(call)
+        except Exception as error:
+            if not call.is_refusal(error):
+                raise
+            return idle_of(call)
+        return reply.as_is("the robot does not refuse it")

@@ -1,0 +1,404 @@
+"""Graded faults: how big each is, is part of it.
+
+Values are off by an amount, a share, noise, with time, in steps or within a band; waits end early, commands
+and readings come late.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from random import Random
+from typing import ClassVar
+
+from mutabot.families import GRADED
+from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, Reply
+from mutabot.model.quantity import Value
+from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
+from mutabot.operators.command import CommandOperator
+from mutabot.operators.examples import (
+    LOCATE,
+    MOVE_TO,
+    PARAMETERS,
+    SENSORS,
+    TIMING,
+    changed,
+    reading,
+    unchanged,
+    writing,
+)
+from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
+from mutabot.operators.operator import Context, Draws, Example, Need, Subject, quantity_of
+from mutabot.operators.value import ValueOperator, is_number, label
+
+#: components of a slice without an end that are tried: those of an arm with seven joints
+_JOINTS = 7
+
+
+class NumberOperator(ValueOperator):
+    """Changes one number, by a magnitude.
+
+    Class attributes:
+        fault: the fault in words, behind the name of the quantity, with ``{}`` for the magnitude; empty where
+            that is added.
+    """
+
+    family = GRADED
+    has_sizes = True
+    directions: ClassVar[tuple[str, ...]] = ("+", "-")
+    fault: ClassVar[str] = ""
+
+    @abstractmethod
+    def number(self, size: float, value: float, context: Context) -> float:
+        """The new number. ``size``: the magnitude in the quantity's unit, negative in the direction ``-``."""
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.is_measured and self.magnitudes(quantity) is not None
+
+    def directions_of(self, quantity: Quantity) -> Iterable[str]:
+        return [part + direction for part in _components_of(quantity) for direction in self.directions]
+
+    def size_of(self, subject: Subject) -> float:
+        """The magnitude in the quantity's unit."""
+        quantity, size = quantity_of(subject), subject.magnitude or 0.0
+        unit = self.unit_of(subject)
+        if unit is not None and unit != quantity.unit:
+            size = convert_difference(size, unit, quantity.unit or "rad")
+        return size
+
+    def unit_of(self, subject: Subject) -> str | None:
+        """The unit of what is added to the value."""
+        return subject.unit
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        size = self.size_of(context.subject)
+        size = -size if context.subject.direction.endswith("-") else size
+        return _in_component(context, value, lambda number: self.number(size, number, context))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        verb = "" if subject.is_written else "reads "
+        component = subject.direction.rstrip("+-")
+        about = f" about {component}" if component and not component.startswith("[") else component
+        return f"{verb}{label(quantity_of(subject))}{about} {self._fault(subject)}"
+
+    def _fault(self, subject: Subject) -> str:
+        size = f"{subject.magnitude:g}"
+        if self.fault:
+            return self.fault.format(f"{size}{f' {subject.unit}' if subject.unit else ''}")
+        way = {"+": "+ ", "-": "− "}.get(subject.direction[-1:], "")
+        unit = {"percent": " %", None: ""}.get(subject.unit, f" {subject.unit}")
+        return f"{way}{size}{unit}"
+
+
+def _components_of(quantity: Quantity) -> tuple[str, ...]:
+    """The components of which one is changed: indices of a vector, axes of an orientation; else ``""``."""
+    if quantity.is_whole:
+        return ("x", "y", "z")
+    bounds = quantity.path.steps[-1].bounds if quantity.path.steps else None
+    if bounds is None:
+        return ("",)
+    first, last, step = bounds
+    count = len(range(first or 0, last, step or 1)) if last is not None and last > 0 else _JOINTS
+    return tuple(f"[{index}]" for index in range(count))
+
+
+def _in_component(context: Context, value: Value, change: Callable[[float], float]) -> Value | None:
+    """A value with one number of it changed: of an orientation, the angle by which an axis turns it."""
+    quantity, component = context.quantity, context.subject.direction.rstrip("+-")
+    if quantity.is_whole:
+        return _turned(quantity, component, value, change)
+    if not component:
+        return _like(quantity, value, change(value)) if is_number(value) else None
+    index = int(component.strip("[]"))
+    try:
+        before = value[index]
+    except (TypeError, IndexError, KeyError):
+        return None
+    if not is_number(before):
+        return None
+    copy = value.copy() if hasattr(value, "copy") else list(value)
+    copy[index] = _like(quantity, before, change(float(before)))
+    return type(value)(copy) if isinstance(value, tuple) else copy
+
+
+def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float], float]) -> Value | None:
+    orientation = quantity.orientation(value)
+    if orientation is None:
+        return None
+    angle = change(0.0)
+    radians = convert_difference(angle, quantity.unit or "rad", "rad")
+    turn = from_rotation_vector([radians if one == axis else 0.0 for one in "xyz"])
+    return quantity.numbers(product(turn, orientation))
+
+
+def _like(quantity: Quantity, before: Value, after: float) -> float:
+    """A count stays a whole number; any other may have parts."""
+    return round(after) if quantity.kind is Kind.COUNT and isinstance(before, int) else after
+
+
+#: angles that say where something is: a share of them means nothing, as their zero is anywhere
+_ANY_ZERO = frozenset({Kind.ORIENTATION, Kind.ANGLE, Kind.TEMPERATURE})
+_Z = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
+_MOVE = writing("robot:Arm.move_by", "dy", Kind.TRANSLATION, axis="y", unit="m", frame="base", mode=Mode.BY)
+_GO = replace(MOVE_TO, arguments=MOVE_TO.arguments[:1])
+_LIFT = Operation("robot:Arm.lift_to", (_Z,))
+_ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="deg")
+_FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
+
+
+class Offset(NumberOperator):
+    """A commanded or read value is off by a fixed amount, at every call, in one direction.
+
+    Where: every number that is commanded or read, bar waits.
+    """
+
+    name = "offset"
+    stands_for = f"A tool, a fixture or a camera that stands off, or a wrong constant: {PARAMETERS}."
+    rank = 200
+    examples = (
+        changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm"), note="the box is put down 20 mm too far"),
+        changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm"), note="the camera was bumped into"),
+        changed(
+            _ORIENT,
+            [0.0, 0.0, 30.0],
+            [0.0, 0.0, 50.0],
+            size=("z+", 20.0, "deg"),
+            note="an orientation as a whole is turned further, about one axis of its frame",
+        ),
+        unchanged(_LIFT, 0.45, "0.55 m is outside the range [0, 0.5]", size=("+", 100.0, "mm")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        return None if quantity.kind is Kind.DURATION else own_ladder(quantity)
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        return value + size
+
+
+class Scale(NumberOperator):
+    """A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration.
+
+    Where: every number whose zero means nothing: amounts, positions, distances, no target angles.
+    """
+
+    name = "scale"
+    stands_for = f"A wrong gain or calibration factor: {PARAMETERS}."
+    rank = 210
+    examples = (
+        changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
+        changed(
+            _FEEL,
+            0.3,
+            0.27,
+            size=("-", 10.0, "percent"),
+            note="a sensor that was calibrated with another target",
+        ),
+        unchanged(_MOVE, 0.0, "nothing is no share of", size=("+", 5.0, "percent")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        is_target_angle = quantity.kind is Kind.ROTATION and quantity.mode is Mode.TO
+        if quantity.is_whole or quantity.kind in _ANY_ZERO or is_target_angle:
+            return None
+        return ladder_in(quantity, Dimension.RATIO)
+
+    def size_of(self, subject: Subject) -> float:
+        return convert(subject.magnitude or 0.0, subject.unit or "fraction", "fraction")
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        return value * (1.0 + size)
+
+
+class SensorNoise(NumberOperator):
+    """Each reading is off by Gaussian noise of standard deviation σ. The draws of a round are the same at
+    every σ: a larger one is the same noise, only larger.
+
+    Where: every number that is read.
+    """
+
+    name = "sensor-noise"
+    stands_for = f"A worse sensor than the program was written for: {SENSORS}."
+    rank = 220
+    draws = True
+    directions = ("",)
+    of_written = False
+    fault = "+ noise, σ = {}"
+    examples = (
+        changed(
+            LOCATE,
+            0.55,
+            # the draw for the first call of the generator that the examples are run with
+            0.55 + 0.01 * Draws(Random(1)).of(1).gauss(0.0, 1.0),
+            size=("", 10.0, "mm"),
+            note="σ = 10 mm",
+        ),
+        unchanged(LOCATE, None, "there is no number to disturb", size=("", 10.0, "mm")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        return own_ladder(quantity)
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        return value + size * context.draw().gauss(0.0, 1.0)
+
+
+class Drift(NumberOperator):
+    """A reading drifts: it is off by δ for every second of simulated time since the test began.
+
+    Where: every number that is read, with a clock in the vocabulary.
+    """
+
+    name = "drift"
+    stands_for = f"A sensor that warms up, or odometry that is summed: {SENSORS}."
+    rank = 230
+    needs = frozenset({Need.CLOCK})
+    of_written = False
+    examples = (
+        changed(
+            _FEEL,
+            0.3,
+            0.32,
+            size=("+", 2.0, "mm/s"),
+            time=10.0,
+            note="2 mm per second: after 10 s it reads 20 mm too much",
+        ),
+        unchanged(_FEEL, 0.3, "no time has passed yet", size=("-", 2.0, "mm/s")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        return per_second(quantity)
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        return value + size * context.call.time()
+
+    def unit_of(self, subject: Subject) -> str | None:
+        return (subject.unit or "").removesuffix("/s") or None
+
+
+class Quantise(NumberOperator):
+    """A commanded or read value is rounded to the nearest multiple of a step, as by a coarse encoder or
+    converter.
+
+    Where: every number that is commanded or read, bar orientations as a whole.
+    """
+
+    name = "quantise"
+    stands_for = f"A coarse encoder or converter: {SENSORS}."
+    rank = 240
+    directions = ("",)
+    fault = "in steps of {}"
+    examples = (
+        changed(_MOVE, 0.23, 0.25, size=("", 50.0, "mm")),
+        changed(LOCATE, 0.55, 0.56, size=("", 20.0, "mm")),
+        unchanged(_MOVE, 0.2, "it is a multiple of the step", size=("", 50.0, "mm")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        return None if quantity.is_whole or quantity.kind is Kind.COUNT else own_ladder(quantity)
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        return round(value / size) * size if size else value
+
+
+class Deadband(NumberOperator):
+    """A target or reading that differs from the last one by less than δ is taken for that one; a relative
+    move shorter than δ is none. As by a worn gear, or a filter against chatter.
+
+    Where: every number that is commanded or read, bar waits and orientations as a whole.
+    """
+
+    name = "deadband"
+    stands_for = f"Backlash of a worn gear, or a filter against chatter: {SENSORS}."
+    rank = 250
+    needs = frozenset({Need.MEMORY, Need.COPIES})
+    directions = ("",)
+    fault = "with a dead band of {}"
+    examples = (
+        changed(_GO, 0.41, 0.4, size=("", 20.0, "mm"), earlier=(0.4,)),
+        changed(_FEEL, 0.31, 0.3, size=("", 20.0, "mm"), earlier=(0.3,)),
+        unchanged(_GO, 0.45, "it is far enough from the last target", size=("", 20.0, "mm"), earlier=(0.4,)),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        return None if quantity.is_whole or quantity.kind is Kind.DURATION else own_ladder(quantity)
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        last: float = 0.0 if context.quantity.mode is Mode.BY else next(iter(context.memory), value)
+        after = last if abs(value - last) < size else value
+        context.memory[:] = [after]
+        return after
+
+
+_PAUSE = writing("cell:Cell.wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 3600.0))
+_HOME = Operation("robot:Arm.home")
+
+
+class Early(NumberOperator):
+    """A wait is so much shorter, so that what comes next comes too early.
+
+    Where: waits: arguments of kind `duration`.
+    """
+
+    name = "early"
+    stands_for = f"A wait that was measured on a faster machine: {TIMING}."
+    rank = 270
+    directions = ("-",)
+    of_read = False
+    examples = (
+        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms"), note="the gripper is given less time to close"),
+        unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        return ladder_in(quantity, Dimension.TIME) if quantity.kind is Kind.DURATION else None
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        after = value + size
+        return after if after >= -1e-9 else value
+
+
+class Lag(CommandOperator):
+    """Each command is carried out so much later, while the rest of the world goes on; a reading was taken so
+    much before the program gets it. Needs a `wait` in the vocabulary, or a middleware.
+
+    Where: every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware.
+    """
+
+    name = "lag"
+    family = GRADED
+    has_sizes = True
+    stands_for = f"A busy network or controller: {TIMING}."
+    rank = 260
+    needs = frozenset({Need.WAIT, Need.PROGRAM})
+    examples = (
+        Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({},), waited=0.2),
+        Example(
+            Subject(_FEEL, variant="50ms", magnitude=50.0, unit="ms"),
+            replied={"result": 0.3},
+            performed=({},),
+            waited=0.05,
+            note="what was seen then is told now",
+        ),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        waits = any(one.kind is Kind.DURATION for one in whole.written)
+        return (whole.is_command or bool(whole.read)) and not waits
+
+    def magnitudes(self, whole: Subject) -> Ladder | None:
+        named = next((one for one in (*whole.written, *whole.read) if one.ladder_unit is not None), None)
+        return ladder_in(named, Dimension.TIME)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        seconds = convert(context.subject.magnitude or 0.0, context.subject.unit or "s", "s")
+        if call.is_command:
+            await call.wait(seconds)
+            return await proceed(call)
+        reply = await proceed(call)
+        await call.wait(seconds)
+        return reply
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        what = "is carried out" if subject.is_command else "comes"
+        return f"{what} {subject.magnitude:g} {subject.unit} later"

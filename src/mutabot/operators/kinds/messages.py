@@ -1,0 +1,353 @@
+"""What befalls messages, requests and goals on their way, and nodes, services, actions and clocks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from mutabot.families import MIDDLEWARE
+from mutabot.model import Call, Mishap, Proceed, Reply
+from mutabot.model.operation import COMING, WRITTEN, Form
+from mutabot.model.quantity import Value
+from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
+from mutabot.operators.magnitudes import Ladder
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
+from mutabot.operators.value import CallOrReply
+
+from ._examples import CALL, CALL_TO, GOAL, PUBLISH, RECEIVE, TICK
+
+_THIRD, _CHANCE = "every-3rd", "30%"
+_PROBABILITY = 0.3
+_FIRST, _PREVIOUS = "first", "previous"
+_NONE_BEFORE = "there is none before it"
+_EARLIER = frozenset({Need.MEMORY, Need.COPIES})
+#: forms that write a message
+_SENT = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL})
+
+
+class MessageOperator(CommandOperator):
+    """Acts on whole calls of some forms.
+
+    Class attributes:
+        forms: the forms.
+    """
+
+    family = MIDDLEWARE
+    forms: ClassVar[frozenset[Form]]
+
+    def fits(self, whole: Subject) -> bool:
+        return form_of(whole.operation) in self.forms
+
+
+class Drop(MessageOperator):
+    """A message, request or goal is lost on its way, a result or the tick of a timer never comes: each, every
+    third, or with a probability of 30 %.
+    """
+
+    name = "drop"
+    rank = 110
+    needs = _EARLIER
+    forms = _SENT | COMING | {Form.RESULT}
+    variants: ClassVar[Mapping[str, str]] = {
+        "": "each",
+        _THIRD: "every third",
+        _CHANCE: "with a probability of 30 %, a",
+    }
+    fault = "{which} {what} is lost"
+    examples = (
+        Example(Subject(PUBLISH), {"x": 0.4}, performed=(), note="nobody hears of it"),
+        Example(
+            Subject(RECEIVE),
+            replied={"gap": 0.02},
+            performed=({},),
+            lost=True,
+            note="the callback is not called; who waits, waits for the next one",
+        ),
+        Example(Subject(CALL), lost=True, note="the service does nothing and never answers"),
+        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.4}, earlier=({"x": 0.2}, {"x": 0.3}), performed=()),
+        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.3}, earlier=({"x": 0.2},), away="only the second"),
+    )
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        return self.words(subject, which=self.variants[subject.variant])
+
+    def least_calls(self, subject: Subject) -> int:
+        return 3 if subject.variant else 1
+
+    def is_chance(self, subject: Subject) -> bool:
+        return subject.variant == _CHANCE
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        if not self._is_meant(context):
+            return await proceed(call)
+        form = form_of(call.operation)
+        if form not in _SENT:  # the middleware has the message already when it is lost
+            return (await proceed(call)).never()
+        return Reply() if form is Form.PUBLISH else Reply().never()
+
+    def _is_meant(self, context: Context) -> bool:
+        if context.subject.variant == _CHANCE:
+            return context.random.random() < _PROBABILITY
+        return context.subject.variant != _THIRD or context.number % 3 == 0
+
+
+class Duplicate(MessageOperator):
+    """A message, request or goal arrives twice, a callback is called twice."""
+
+    name = "duplicate"
+    rank = 120
+    forms = _SENT | COMING
+    fault = "each {what} arrives twice"
+    examples = (
+        Example(Subject(PUBLISH), {"x": 0.4}, performed=({"x": 0.4}, {"x": 0.4})),
+        Example(
+            Subject(RECEIVE),
+            replied={"gap": 0.02},
+            performed=({},),
+            received={"gap": 0.02},
+            then=({"gap": 0.02},),
+        ),
+        Example(Subject(CALL), performed=({}, {}), note="the program sees the second answer"),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        reply = await proceed(call)
+        return reply.followed_by(reply) if comes_by_itself(call.operation) else await proceed(call)
+
+
+class Stale(MessageOperator):
+    """An old message is sent, or received, in the place of the new one: always the first, or always the
+    previous.
+    """
+
+    name = "stale"
+    rank = 130
+    needs = _EARLIER
+    forms = _SENT | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
+    variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
+    fault = "the {variant} {what} again instead of the new one"
+    examples = (
+        Example(
+            Subject(RECEIVE, variant=_FIRST),
+            replied={"gap": 0.02},
+            earlier=({"gap": 0.5}, {"gap": 0.3}),
+            performed=({},),
+            received={"gap": 0.5},
+            note="a sensor that is stuck",
+        ),
+        Example(
+            Subject(PUBLISH, variant=_PREVIOUS),
+            {"x": 0.4},
+            earlier=({"x": 0.2}, {"x": 0.3}),
+            performed=({"x": 0.3},),
+            note="always one behind",
+        ),
+        Example(
+            Subject(CALL_TO, variant=_FIRST),
+            {"x": 0.4},
+            earlier=({"x": 0.2}, {"x": 0.3}),
+            performed=({"x": 0.2},),
+            note="the service is asked for the same over and over",
+        ),
+        Example(Subject(PUBLISH, variant=_FIRST), {"x": 0.4}, away=_NONE_BEFORE),
+        Example(Subject(RECEIVE, variant=_PREVIOUS), replied={"gap": 0.02}, earlier=(), away=_NONE_BEFORE),
+    )
+
+    def least_calls(self, subject: Subject) -> int:
+        return 2
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        if form_of(call.operation) in _SENT:
+            return await proceed(self._old(call, context))
+        return self._old(await proceed(call), context)
+
+    def _old(self, one: CallOrReply, context: Context) -> CallOrReply:
+        """The earlier one to be taken instead, or the same with the reason why there is none."""
+        old = context.memory[0] if context.memory else one.as_is(_NONE_BEFORE)
+        if not context.memory or context.subject.variant != _FIRST:
+            context.memory[:] = [one]
+        return old
+
+
+class Delay(MessageOperator):
+    """A message, request, goal, result or transform comes 0.1 s or 1 s late, by the clock of the node. What
+    is published goes out late by itself; who waits for an answer waits longer.
+    """
+
+    name = "delay"
+    rank = 140
+    forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
+    fault = "each {what} comes {variant} s late"
+    examples = (
+        Example(
+            Subject(PUBLISH, variant="0.1", magnitude=0.1), {"x": 0.4}, performed=({"x": 0.4, "late": 0.1},)
+        ),
+        Example(Subject(CALL, variant="1", magnitude=1.0), performed=({"late": 1.0},)),
+        Example(
+            Subject(RECEIVE, variant="1", magnitude=1.0),
+            replied={"gap": 0.02},
+            performed=({},),
+            received={"gap": 0.02},
+            late=1.0,
+            note="the callback is called later; messages that come meanwhile overtake it",
+        ),
+    )
+
+    def magnitudes(self, whole: Subject) -> Ladder | None:
+        return Ladder(None, (0.1, 1.0))  # seconds: a network that is busy, and one that has trouble
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        seconds = context.subject.magnitude or 0.0
+        why = call.cannot(Mishap.LATE)
+        if why:
+            raise Unchanged(why)
+        if form_of(call.operation) in WRITTEN:
+            return await proceed(call.with_mishap(Mishap.LATE, seconds))
+        return (await proceed(call)).later(seconds)
+
+
+class Reorder(MessageOperator):
+    """Messages change places, two by two: the second comes before the first. A last one alone is lost."""
+
+    name = "reorder"
+    rank = 150
+    needs = _EARLIER
+    forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
+    fault = "every other {what} comes after the next one"
+    examples = (
+        Example(Subject(PUBLISH), {"x": 0.4}, earlier=({"x": 0.2},), performed=({"x": 0.4}, {"x": 0.2})),
+        Example(Subject(PUBLISH), {"x": 0.2}, performed=(), note="is held back for the next one"),
+        Example(
+            Subject(RECEIVE),
+            replied={"gap": 0.02},
+            earlier=({"gap": 0.5},),
+            performed=({},),
+            received={"gap": 0.02},
+            then=({"gap": 0.5},),
+        ),
+        Example(Subject(RECEIVE), replied={"gap": 0.5}, performed=({},), lost=True),
+    )
+
+    def least_calls(self, subject: Subject) -> int:
+        return 2
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        held = context.memory
+        if form_of(call.operation) is not Form.PUBLISH:
+            reply = await proceed(call)
+            if held:
+                return reply.followed_by(held.pop())
+            held.append(reply)
+            return reply.never()
+        if not held:
+            held.append(call)
+            return Reply()
+        old = held.pop()
+        reply = await proceed(call)
+        await proceed(old)
+        return reply
+
+
+class _Mishap(MessageOperator):
+    """Lets a mishap befall a call, wherever it can.
+
+    Class attributes:
+        mishap: what befalls it.
+        variants: a mutant each, with the seconds that the mishap takes.
+        once: whether it befalls only the first call of a test.
+    """
+
+    needs = frozenset({Need.PROGRAM})
+    variants: ClassVar[Mapping[str, Any]] = {"": 0.0}
+    mishap: ClassVar[Mishap]
+
+    once: ClassVar[bool] = False
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        why = call.cannot(self.mishap) or ("it has happened already" if context.memory else "")
+        if why:
+            raise Unchanged(why)
+        if self.once:
+            context.memory.append(True)
+        return await proceed(call.with_mishap(self.mishap, context.option))
+
+
+class KillNode(_Mishap):
+    """The node's process is killed in the place of the call, and nobody tells the others. Only where the node
+    is a process of its own: never that of the tests.
+    """
+
+    name = "kill-node"
+    rank = 410
+    is_raced = True
+    mishap = Mishap.KILLED
+    forms = frozenset({*WRITTEN, *COMING})
+    fault = "the node is killed"
+    examples = (
+        Example(Subject(GOAL), performed=({"killed": 0.0},)),
+        Example(Subject(TICK), performed=({"killed": 0.0},)),
+    )
+
+
+class RestartNode(_Mishap):
+    """The node's process is killed in the place of the call and begins anew with the same command line, as
+    under a supervisor, once. Only where the node is a process of its own.
+    """
+
+    name = "restart-node"
+    rank = 420
+    is_raced = True
+    mishap = Mishap.RESTARTED
+    forms = frozenset({*WRITTEN, *COMING})
+    fault = "the node is killed and begins anew"
+    examples = (
+        Example(Subject(GOAL), performed=({"restarted": 0.0},)),
+        Example(Subject(TICK), performed=({"restarted": 0.0},)),
+    )
+
+
+class CancelGoal(_Mishap):
+    """Somebody cancels the action as soon as its goal is sent."""
+
+    name = "cancel-goal"
+    rank = 430
+    mishap = Mishap.CANCELLED
+    forms = frozenset({Form.GOAL})
+    fault = "each {what} is cancelled as soon as it is sent"
+    examples = (Example(Subject(GOAL), performed=({"cancelled": 0.0},)),)
+
+
+class JumpClock(_Mishap):
+    """The node's clock jumps 10 s ahead, or 10 s back, before a tick of its timer or a turn of its rate."""
+
+    name = "jump-clock"
+    rank = 450
+    needs = frozenset({Need.MEMORY, Need.COPIES, Need.PROGRAM})
+    mishap = Mishap.JUMPED
+    forms = frozenset({Form.TICK, Form.SLEEP})
+    once = True
+    variants: ClassVar[Mapping[str, float]] = {"10": 10.0, "-10": -10.0}
+    fault = "the clock jumps 10 s {way} before the first {what}"
+    examples = (
+        Example(Subject(TICK, variant="10"), performed=({"jumped": 10.0},)),
+        Example(Subject(TICK, variant="10"), earlier=({},), away="it has happened already"),
+    )
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        way = "back" if subject.variant.startswith("-") else "ahead"
+        return self.words(subject, way=way)
+
+
+class LoseAnswer(MessageOperator):
+    """A service does what it is asked for, but the program hears of a failure, or never of anything, as its
+    middleware has it when an answer is lost.
+    """
+
+    name = "lose-answer"
+    rank = 440
+    forms = frozenset({Form.CALL, Form.GOAL})
+    fault = "the answer to each {what} is lost"
+    examples = (Example(Subject(CALL), performed=({},), lost=True),)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        return (await proceed(call)).never()

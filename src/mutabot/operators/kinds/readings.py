@@ -1,0 +1,476 @@
+"""Readings that are wrong, noisy, old, stuck, limited, lost, late or of something else."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from itertools import pairwise
+from random import Random
+from typing import ClassVar
+
+from mutabot.families import CATALOGUE
+from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
+from mutabot.model.quantity import MEASURED, PLAIN, WHOLE, Value
+from mutabot.operators.command import CommandOperator, comes_by_itself
+from mutabot.operators.examples import LOCATE, SENSORS, TIMING, X, changed, reading, unchanged
+from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of
+from mutabot.operators.value import (
+    NOT_RETURNED,
+    Exchange,
+    ValueOperator,
+    disturbed,
+    is_alike,
+    is_number,
+    label,
+    like,
+    map_numbers,
+    middle_of,
+    next_of,
+    the_other_way,
+    within,
+)
+
+_STANDS_FOR = f"A sensor that drops out or is misread: {SENSORS}."
+_NONE, _NAN = "none", "nan"
+_MEASURE = reading("laser:distance", Kind.DISTANCE, unit="m")
+_NEAR = reading("laser:near", Kind.DISTANCE, unit="m", range=(0.0, 2.0))
+_SEE = reading("camera:colour", Kind.LABEL, values=("red", "blue"))
+_OR_NAN = reading("laser:distance", Kind.DISTANCE, unit="m", missing=_NAN)
+_OR_NONE = reading("camera:colour", Kind.LABEL, values=("red", "blue"), missing=_NONE)
+_X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", missing="camera:NoImageError")
+_OR_ERROR = Operation("camera:locate", result=(_X,), command=False)
+_WHICH = Quantity("which", Path("which"), Kind.OUTPUT, values=("nut", "bolt", "washer"))
+_FIND = replace(_MEASURE, target="camera:distance_of", arguments=(_WHICH,))
+_CHANNELS = tuple(
+    Quantity(f".{name}", Path.parse(f".{name}", rooted=False), Kind.POSITION, name, "m", "world")
+    for name in "xy"
+)
+_LOCATE = Operation("camera:locate", result=_CHANNELS, command=False)
+#: seconds: a camera whose picture has to be worked out
+_LATE = 0.5
+
+
+class Dropout(CommandOperator):
+    """A reading drops out: the program gets None, not a number or an exception, as the robot's API does
+    it.
+
+    Where: read quantities whose vocabulary says what a reading gives that is not there: missing.
+    """
+
+    name = "dropout"
+    family = CATALOGUE
+    rank = 340
+    stands_for = _STANDS_FOR
+    examples = (
+        changed(_OR_NAN, 0.2, math.nan),
+        changed(_OR_NONE, "red", None),
+        Example(
+            Subject(_OR_ERROR, quantity=_X), replied={".x": 0.2}, performed=({},), fails="camera:NoImageError"
+        ),
+        unchanged(_OR_NAN, {}, "there is no reading anyway"),
+    )
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
+        whole = Subject(operation, pattern)
+        raised: set[str] = set()
+        for quantity in whole.read:
+            if quantity.missing in (_NONE, _NAN):
+                yield replace(whole, quantity=quantity)
+            elif quantity.missing and quantity.missing not in raised and not comes_by_itself(operation):
+                raised.add(quantity.missing)  # the whole call raises; what comes by itself raises nothing
+                yield replace(whole, quantity=quantity)
+
+    def only_reads(self, subject: Subject) -> bool:
+        return quantity_of(subject).missing in (_NONE, _NAN)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        quantity, reply = context.quantity, await proceed(call)
+        if quantity.name not in reply.values:
+            return reply.as_is(NOT_RETURNED)
+        if quantity.missing == _NONE:
+            return reply.with_value(quantity, None)
+        if quantity.missing != _NAN:
+            return reply.failing(quantity.missing or "")
+        nothing = map_numbers(reply.values[quantity.name], lambda _: math.nan)
+        if nothing is None:
+            return reply.as_is("its value is no number")
+        return reply.with_value(quantity, nothing)
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        gets = {_NONE: "reads None", _NAN: "reads not a number"}
+        what = gets.get(quantity.missing or "", f"raises {quantity.missing}")
+        return f"{what} instead of {label(quantity)} {quantity.text(before)}"
+
+
+class _Reading(ValueOperator):
+    """Changes a reading by those before it at its place, or by chance."""
+
+    family = CATALOGUE
+    stands_for = _STANDS_FOR
+    needs = frozenset({Need.MEMORY})
+    of_written = False
+
+
+class OldReading(_Reading):
+    """A reading is old: the value of the call before, or of five calls before, at the same place.
+
+    Where: read quantities, at places that a test calls more than once.
+    """
+
+    name = "old-reading"
+    rank = 341
+    kinds = frozenset(Kind)
+    variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
+    examples = (
+        changed(_MEASURE, 0.2, 0.3, "1", earlier=(0.5, 0.3)),
+        unchanged(_MEASURE, 0.2, "there is none so old yet", "5", earlier=(0.5,)),
+    )
+
+    def least_calls(self, subject: Subject) -> int:
+        return self.variants[subject.variant] + 1
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        context.memory.append(_kept(value))
+        old = context.memory.pop(0) if len(context.memory) > context.option else None
+        if old is None:
+            raise Unchanged("there is none so old yet")
+        return old
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        calls = "1 call" if subject.variant == "1" else f"{subject.variant} calls"
+        return f"reads the {label(quantity_of(subject))} of {calls} ago"
+
+
+class StuckReading(_Reading):
+    """A sensor is stuck: from the second call on a place reads what it read first in the test.
+
+    Where: read quantities, at places that a test calls more than once.
+    """
+
+    name = "stuck-reading"
+    rank = 342
+    kinds = frozenset(Kind)
+    examples = (
+        changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
+        unchanged(_MEASURE, 0.2, "it is the first reading"),
+    )
+
+    def least_calls(self, subject: Subject) -> int:
+        return 2
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not context.memory:
+            context.memory.append(_kept(value))
+            raise Unchanged("it is the first reading")
+        return _kept(context.memory[0])
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        return f"reads the first {label(quantity_of(subject))} again and again"
+
+
+def _kept(value: Value) -> Value:
+    """A value to be remembered: a copy, which nobody changes afterwards."""
+    return copy.copy(value) if hasattr(value, "__len__") and not isinstance(value, str | bytes) else value
+
+
+class Spike(_Reading):
+    """One reading in ten, by chance, jumps: to the end of its range that is farther off, or to ten times its
+    value where it has none.
+
+    Where: read numbers on a scale, but for orientations as a whole.
+    """
+
+    name = "spike"
+    rank = 343
+    kinds = MEASURED - WHOLE
+    variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
+    examples = (
+        changed(_MEASURE, 0.2, 2.0, "10%", earlier=(0.2,)),
+        changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,), note="the far end of its range"),
+        unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
+    )
+
+    def is_chance(self, subject: Subject) -> bool:
+        return True
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        context.by_chance()
+        limits = context.quantity.range
+        if limits is None:
+            return map_numbers(value, lambda number: like(number, 10.0 * number))
+        return map_numbers(value, lambda number: like(number, max(limits, key=lambda end: abs(end - number))))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        jump = "the far end of its range" if quantity.range is not None else "10 times as much"
+        return f"reads {label(quantity)} {quantity.text(before)}, now and then {jump}"
+
+
+class SaturatedReading(_Reading):
+    """A sensor saturates: its reading is limited to the middle 80 % of its range, or without a range to 80 %
+    of the size of the first one at its place in the test.
+
+    Where: read numbers on a scale, but for orientations as a whole.
+    """
+
+    name = "saturated-reading"
+    rank = 344
+    kinds = MEASURED - WHOLE
+    examples = (
+        changed(_NEAR, 1.9, 1.8),
+        changed(_MEASURE, -0.5, -0.4, earlier=(0.5,)),
+        unchanged(_NEAR, 1.0, "it is in the middle"),
+        unchanged(_MEASURE, 0.1, "it is less than 80 % of the first", earlier=(0.5,)),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        quantity, memory = context.quantity, context.memory
+        if quantity.range is not None:
+            limits = middle_of(quantity, 0.8)
+        elif is_number(value):
+            if not memory:
+                memory.append(0.8 * abs(value))
+            limits = (-memory[0], memory[0])
+        else:
+            return None
+        return map_numbers(value, lambda number: within(number, limits))
+
+
+class SwappedChannels(Exchange):
+    """Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads.
+
+    Where: calls that read two quantities of one kind and unit.
+    """
+
+    name = "swapped-channels"
+    rank = 345
+    stands_for = _STANDS_FOR
+    examples = (
+        changed(_LOCATE, {".x": 0.4, ".y": 0.1}, {".x": 0.1, ".y": 0.4}, "y"),
+        unchanged(_LOCATE, 0.4, "it reads no y this time", "y"),
+    )
+
+    def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
+        groups: list[list[Quantity]] = []
+        for quantity in whole.read:
+            group = next((one for one in groups if is_alike(one[0], quantity)), None)
+            groups.append([quantity]) if group is None else group.append(quantity)
+        for group in groups:
+            yield from pairwise(group)
+
+
+class WrongObject(ValueOperator):
+    """A reading is that of another object, camera or channel than the one that is asked for.
+
+    Where: outputs with values that say what a call reads: written beside a result.
+    """
+
+    name = "wrong-object"
+    family = CATALOGUE
+    rank = 346
+    stands_for = _STANDS_FOR
+    of_read = False
+    examples = (
+        changed(_FIND, "washer", "nut", replied={"result": 0.3}),
+        unchanged(_FIND, "screw", "it is not one of the known values"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return bool(whole.read) and quantity.kind is Kind.OUTPUT and len(quantity.values or ()) > 1
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return next_of(value, context.quantity)
+
+
+class ConfusedLabel(_Reading):
+    """A label or flag is read as the next of its values, with a probability of 30 %.
+
+    Where: read quantities of kind label or flag with two values or more.
+    """
+
+    name = "confused-label"
+    rank = 347
+    variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
+    examples = (
+        changed(_SEE, "red", "blue", "30%"),
+        unchanged(_SEE, "red", "most are read rightly", "30%", earlier=("red",) * 3),
+    )
+
+    def is_chance(self, subject: Subject) -> bool:
+        return True
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        context.by_chance()
+        return next_of(value, context.quantity)
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        return f"reads another {label(quantity_of(subject))}, with a probability of {subject.variant}"
+
+
+class LateReading(CommandOperator):
+    """The program gets a reading 0.5 s after it was taken; the world goes on meanwhile.
+
+    Where: calls that read and command nothing; the vocabulary says how time passes: wait.
+    """
+
+    name = "late-reading"
+    family = CATALOGUE
+    rank = 348
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
+    needs = frozenset({Need.WAIT})
+    fault = f"read {_LATE:g} s before the program gets it"
+    examples = (
+        Example(
+            Subject(_MEASURE),
+            replied={"result": 0.2},
+            performed=({},),
+            received={"result": 0.2},
+            waited=_LATE,
+        ),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        return bool(whole.read) and not whole.is_command and not comes_by_itself(whole.operation)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        reply = await proceed(call)
+        await call.wait(_LATE)
+        return reply
+
+
+#: standard deviation where the vocabulary gives none: a clearly bad sensor, not a broken one (m, rad)
+DEFAULT_DEVIATION = {
+    Kind.POSITION: (0.02, "m"),
+    Kind.DISTANCE: (0.02, "m"),
+    Kind.ORIENTATION: (0.05, "rad"),
+    Kind.ANGLE: (0.05, "rad"),
+    Kind.ROTATION_VECTOR: (0.05, "rad"),
+    Kind.QUATERNION: (0.05, "rad"),
+    Kind.EULER: (0.05, "rad"),
+}
+#: up to this many labels, each other label is a mutant of its own; with more, only the next one is
+ALL_UP_TO = 4
+
+_IN_MM = reading("laser:distance", Kind.DISTANCE, unit="mm")
+_LOOK = reading("camera:orientation", Kind.QUATERNION, order="wxyz")
+_NOISY = replace(LOCATE, result=(replace(X, noise=1.0),))
+_SORT = reading("camera:part", Kind.LABEL, values=("nut", "bolt", "washer"))
+_FEEL = reading("gripper:holding", Kind.FLAG, values=(False, True))
+
+
+class Negate(ValueOperator):
+    """A position, distance or angle is read with the wrong sign.
+
+    Where: read positions, distances, angles and orientations.
+    """
+
+    name = "negate"
+    rank = 60
+    kinds = MEASURED - PLAIN
+    published = (Published(9, "distance value is x", "distance value is −x"),)
+    of_written = False
+    examples = (
+        changed(LOCATE, 0.55, -0.55, note="distance value is x: distance value is −x"),
+        changed(_IN_MM, 12, -12),
+        changed(
+            _LOOK,
+            [0.8, 0.6, 0.0, 0.0],
+            [0.8, -0.6, 0.0, 0.0],
+            note="an orientation as a whole: the inverse rotation",
+        ),
+        unchanged(LOCATE, 0.0, "a zero has no sign"),
+        unchanged(LOCATE, {}, "the reading has no such part this time"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if context.quantity.is_whole:
+            return the_other_way(context.quantity, value)
+        return map_numbers(value, lambda number: -number)
+
+
+class Noise(ValueOperator):
+    """A position, distance or angle is read with Gaussian noise added.
+
+    Where: read positions, distances, angles and orientations.
+    """
+
+    name = "noise"
+    rank = 70
+    kinds = frozenset(DEFAULT_DEVIATION)
+    draws = True
+    published = (
+        Published(10, "distance value is x", "distance value is x + noise"),
+        Published(13, "a position or angle is read", "the reading has Gaussian noise"),
+    )
+    of_written = False
+    examples = (
+        changed(
+            _NOISY,
+            0.55,
+            # the first draw of Random(1).gauss(0, 1), the generator the examples are run with
+            0.55 + Random(1).gauss(0.0, 1.0),
+            note="distance value is x: distance value is x + noise",
+        ),
+        unchanged(_NOISY, None, "there is no number to disturb"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        quantity, random = context.quantity, context.random
+        deviation = deviation_of(quantity)
+        if quantity.is_whole:
+            return disturbed(quantity, value, random, deviation)
+
+        def noisy_number(number: float) -> float:
+            noisy = within(number + random.gauss(0.0, deviation), quantity.range)
+            return round(noisy) if isinstance(number, int) else noisy
+
+        return map_numbers(value, noisy_number)
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        deviation = quantity.text(deviation_of(quantity))
+        if quantity.is_whole:
+            deviation = f"{deviation if quantity.unit else f'{deviation} rad'} about each axis"
+        return f"reads {label(quantity)} {quantity.text(before)} + noise, σ = {deviation}"
+
+
+class Misread(ValueOperator):
+    """A label, such as a colour, or a flag is read as another one.
+
+    Where: read labels and flags.
+    """
+
+    name = "misread"
+    rank = 80
+    published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
+    of_written = False
+    examples = (
+        changed(_SEE, "red", "blue", note="an incorrect colour classification"),
+        changed(_SORT, "bolt", "nut", "+2"),
+        changed(_FEEL, True, False),
+        unchanged(_SEE, "grey", "not one of the labels"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1
+
+    def variants_of(self, quantity: Quantity) -> Iterable[str]:
+        labels = len(quantity.values or ())
+        return [f"+{shift}" for shift in range(1, labels)] if 2 < labels <= ALL_UP_TO else [""]
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return next_of(value, context.quantity, int(context.subject.variant or "1"))
+
+
+def deviation_of(quantity: Quantity) -> float:
+    """Standard deviation of the noise, in the quantity's unit."""
+    if quantity.noise is not None:
+        return quantity.noise
+    amount, unit = DEFAULT_DEVIATION[quantity.kind]
+    return quantity.from_unit(amount, unit)

@@ -1,1 +1,0 @@
-"""The operators of the family ``robot``: those that are published."""

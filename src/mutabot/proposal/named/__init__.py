@@ -1,1 +1,0 @@
-"""Proposing operations that have a name on a middleware, from what was seen to pass under it."""

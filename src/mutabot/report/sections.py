@@ -1,0 +1,296 @@
+"""The sections of a campaign's report, as plain rows and lines: the terminal and Markdown print the same."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from mutabot.frozen import frozen
+from mutabot.journal.records import REMARKS, Repeated
+from mutabot.model import LeftOut, Span, Verdict
+from mutabot.results.divergence import first_line
+from mutabot.results.results import Results, unlooked
+from mutabot.results.score import Group
+from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
+from mutabot.results.thresholds import line_of, thresholds_of
+
+from .texts import OUTSIDE, effect_text, escaped, rounds_text
+
+Place = Callable[[Span], str]
+#: numbers of mutants that a line gives
+_NUMBERS = 10
+_INTERVALS = "In parentheses: 95 % confidence intervals over further rounds and mutants (docs/statistics.md)."
+_DAMAGED = "The journal holds rows that are damaged or not of mutabot; they count as not run"
+_ALTERED = "Another program changed the journal during the campaign; mutabot restored its own rows"
+
+
+@frozen
+class Section:
+    """A section.
+
+    Attributes:
+        title: what it says in a line.
+        columns: of its table; ``>name`` holds numbers, ``*name`` longer texts.
+        rows: of its table.
+        lines: what stands below the table.
+        is_alarm: whether results cannot be relied on without knowing it.
+        is_detail: whether the summary of a run shows the title of its table alone, and nothing without one.
+    """
+
+    title: str
+    columns: tuple[str, ...] = ()
+    rows: Sequence[tuple[str, ...]] = ()
+    lines: Sequence[str] = ()
+    is_alarm: bool = False
+    is_detail: bool = False
+
+
+def sections(results: Results, place: Place) -> Iterator[Section]:
+    """Yield the sections that have something to say. ``place`` names a span as the reader knows it."""
+    yield from _errors(results)
+    if results.done:
+        yield from _scores(results)
+    yield from _narrowed(results)
+    yield from _survivors(results, place)
+    found = [one.text for one in unlooked(results.mutants)]
+    if found:
+        yield Section("Readings that no test checks", lines=found)
+    better = [
+        f"{one.mutant.number} {place(one.mutant.site.span)} {one.mutant.operator}: {one.improvement}"
+        for one in results.mutants
+        if one.improvement
+    ]
+    if better:
+        yield Section(f"{plural(len(better), 'mutant')} did better than the original", lines=better)
+    yield from _outside(results, place)
+    if results.left_out:
+        yield skipped(results.left_out)
+    yield from _thresholds(results, place)
+    yield from _reliability(results)
+
+
+def _errors(results: Results) -> Iterator[Section]:
+    """How many outcomes are errors, and one line per message with the mutants that it is about."""
+    found: dict[str, list[int]] = {}
+    for result in results.everything:
+        for outcome in result.outcomes:
+            if outcome.verdict is Verdict.ERROR:
+                found.setdefault(first_line(outcome.message), []).append(result.mutant.number)
+    count, run = sum(map(len, found.values())), sum(len(result.outcomes) for result in results.everything)
+    if count:
+        ranked = sorted(found.items(), key=lambda item: -len(item[1]))
+        lines = [f"{len(those)} × {message} ({numbered(those)})" for message, those in ranked]
+        title = f"{count} of {plural(run, 'outcome')} ended in error, so nothing is known of them"
+        yield Section(title, lines=lines, is_alarm=True)
+
+
+def _scores(results: Results) -> Iterator[Section]:
+    """A row for each family and role. There is no combined score."""
+    columns = ("family · role", ">mutants", ">score", ">check score", ">killed")
+    rows = [_score_row(group) for group in results.groups]
+    if rows:
+        yield Section("Scores", columns, rows, [_INTERVALS] if results.rounds > 1 else [])
+    if results.drawing is not None:
+        drawn = sum(group.mutants for group in results.drawn)
+        title = f"Sample of {results.drawing.sample}: {drawn} of {plural(results.drawing.selected, 'mutant')}"
+        lines = [_sample_line(group) for group in results.drawn if group.population is not None]
+        yield Section(title, lines=lines)
+
+
+def _score_row(group: Group) -> tuple[str, ...]:
+    scores, total = group.scores, group.scores.total
+    interval = f" ({between(scores.interval)})" if scores.interval is not None else ""
+    score, check = f"{percent(scores.mean)}{interval}", percent(scores.mean_check)
+    return (
+        f"{group.family} · {group.role}",
+        str(group.mutants),
+        score,
+        check,
+        f"{total.killed} of {total.valid}",
+    )
+
+
+def _sample_line(group: Group) -> str:
+    drawn = f"{group.family} · {group.role}: {group.mutants} of {group.population}"
+    whole, check = group.scores.sample_interval, group.scores.sample_check_interval
+    if whole is None or check is None:
+        return f"{drawn}; too few to say anything about all of them"
+    return f"{drawn}; score of all of them in these rounds {between(whole)}, check score {between(check)}"
+
+
+def _narrowed(results: Results) -> Iterator[Section]:
+    """What ``--since`` and ``--budget`` left out."""
+    since, budget = results.since, results.budget
+    if since is not None:
+        run, unjudged = sum(since.run.values()), sum(since.not_judged.values())
+        lines = [f"{count} run: {why}" for why, count in since.run.items()]
+        lines += [f"{count} not judged: {why}" for why, count in since.not_judged.items()]
+        lines += ["Scores are of the mutants that were run or reused, not of all."] if unjudged else []
+        reused = f"{run} run, {since.taken_over} reused{f', {unjudged} not judged' if unjudged else ''}"
+        yield Section(f"Since {since.ref} ({since.commit[:7]}): {reused}", lines=lines)
+    if budget is not None and not budget.is_whole:
+        done = f"{budget.run + budget.cut_off} of {budget.planned} runs done, most informative first"
+        cut = f"{budget.cut_off} are from a batch that was cut off, in which kills end before survivors."
+        lines = ["Scores are of the mutants that were run.", *([cut] if budget.cut_off else [])]
+        yield Section(f"Time limit reached: {done}", lines=lines)
+
+
+def _survivors(results: Results, place: Place) -> Iterator[Section]:
+    """Survivors with an effect, the largest first; the numbers of those without one in a line."""
+    survivors = results.survivors
+    if not survivors:
+        if results.all.total.valid:
+            yield Section("No survivors" if results.is_complete else "No survivors so far")
+        return
+    same = [result.mutant.number for result in survivors if result.indistinguishable]
+    shown = [result for result in survivors if not result.indistinguishable]
+    order = ", largest deviation from the original first" if len(shown) > 1 else ""
+    rows = [
+        (
+            str(result.mutant.number),
+            place(result.mutant.site.span),
+            result.mutant.operator,
+            result.mutant.description,
+            effect_text(result),
+            f"{result.kill_rate.valid - result.kill_rate.killed} of {result.kill_rate.valid}",
+        )
+        for result in shown
+    ]
+    columns = (">no.", "place", "operator", "*fault", "*effect", ">survived") if rows else ()
+    lines = [f"{plural(len(same), 'survivor')} without a measured effect: {numbered(same)}"] if same else []
+    yield Section(f"{plural(len(survivors), 'survivor')}{order}", columns, rows, lines)
+
+
+def _outside(results: Results, place: Place) -> Iterator[Section]:
+    """Mutants with rounds that do not count, with the reason of the first such round."""
+    found = [(verdict, results.with_verdict(verdict)) for verdict in OUTSIDE]
+    told = ", ".join(f"{len(those)} {verdict}" for verdict, those in found if those)
+    rows = [
+        (
+            str(one.mutant.number),
+            place(one.mutant.site.span),
+            one.mutant.operator,
+            one.mutant.description,
+            f"{rounds_text(one)}: {first_line(outcome.message)}",
+        )
+        for _, those in found
+        for one, outcome in those
+    ]
+    if rows:
+        columns = (">no.", "place", "operator", "*fault", "*result")
+        yield Section(f"Not counted in the score: {told}", columns, rows, is_detail=True)
+    waiting = sum(not result.outcomes for result in results.mutants)
+    if waiting:
+        yield Section(f"{plural(waiting, 'mutant')} not run yet")
+
+
+def skipped(left_out: Sequence[LeftOut]) -> Section:
+    """What the plan leaves out, by reason."""
+    reasons = Counter(item.reason for item in left_out).most_common()
+    title = f"{plural(len(left_out), 'mutant')} skipped because they would not change anything"
+    return Section(title, lines=[f"{count} × {reason}" for reason, count in reasons], is_detail=True)
+
+
+def _thresholds(results: Results, place: Place) -> Iterator[Section]:
+    """The ladders of graded mutants, which are in no score."""
+    if results.ladders:
+        runs = sum(len(result.outcomes) for result in results.graded)
+        graded = f"{plural(results.ladders, 'ladder')} of graded mutants ({plural(runs, 'run')})"
+        rows = [
+            (place(one.mutant.site.span), one.name, line_of(one)) for one in thresholds_of(results).ladders
+        ]
+        title = f"{graded}, in no score: `mutabot thresholds` shows them"
+        columns = ("place", "*fault", "*noticed")
+        yield Section(title, columns, rows, is_detail=True)
+
+
+def _reliability(results: Results) -> Iterator[Section]:
+    """Tests that were excluded, damage to the journal, outcomes that were re-run, and the self-check."""
+    flaky, confirmed, checked = results.flaky.tests, results.confirmation, results.verification
+    if flaky:
+        yield Section(f"{plural(len(flaky), 'unreliable test')} excluded", lines=flaky)
+    for text, rows in ((_DAMAGED, results.set_aside), (_ALTERED, results.altered)):
+        if rows:
+            yield Section(text, lines=rows, is_alarm=True)
+    yield from (Section(str(remark)) for remark in results.meta.get(REMARKS) or ())
+    if confirmed is not None:
+        yield Section(f"{confirmed.text}.", is_alarm=bool(confirmed.wrong))
+    if checked is not None:
+        lines = [
+            f"mutant {one.number}, round {one.round + 1}: {one.first}; re-run: {one.second}"
+            for one in checked.disagreements
+        ]
+        text = f"Verified: {checked.agreed} of {checked.checked} outcomes end the same in fresh processes."
+        yield Section(text, lines=lines, is_alarm=bool(lines))
+    repeats = results.repeats
+    kinds = (("kill that might be a coincidence", repeats.doubted), ("other kill", repeats.others))
+    yield from _re_runs("kills", false_kills(repeats), kinds)
+    yield from _re_runs("survivors", false_survivors(repeats), (("survivor", repeats.survivors),))
+    wrong = [f"{one.control} in {one.test_file}: {one.detail}" for one in results.controls if not one.ok]
+    if wrong:
+        yield Section("Self-check failed", lines=wrong, is_alarm=True)
+    elif results.controls:
+        files = plural(len({one.test_file.partition("::")[0] for one in results.controls}), "test file")
+        text = f"Self-check passed in {files} (a no-op mutant survived, a crashing one was killed)"
+        yield Section(text, is_detail=True)
+
+
+def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repeated]]) -> Iterator[Section]:
+    """How many outcomes were re-run, and how many of the others may be wrong; nothing if none was."""
+    parts = []
+    for name, one in kinds:
+        of_kind = plural(one.outcomes, name, name.replace("kill", "kills").replace("survivor", "survivors"))
+        if one.repeated:
+            dropped = (
+                f"{one.changed} gave a different result and {'was' if one.changed == 1 else 'were'} dropped"
+            )
+            parts.append(f"{one.repeated} of {of_kind} re-run, {dropped}")
+        elif parts and one.outcomes:
+            parts.append(f"{of_kind} not re-run (--verify N re-runs some)")
+    if parts and found is not None:
+        interval = f"(95 % interval {found.low}–{found.high})"
+        parts.append(f"estimated wrong {what} among {found.known}: {found.expected:.1f} {interval}")
+    if parts:
+        text = f"{what.capitalize()}: {'; '.join(parts)}"
+        yield Section(text, is_alarm=any(one.changed for _, one in kinds))
+
+
+def section_lines(section: Section, at_most: int, *, level: int = 3) -> Iterator[str]:
+    """Yield the Markdown of a section, of many rows the first."""
+    yield from (f"{'#' * level} {escaped(section.title)}", "")
+    if section.columns:
+        yield _row(name.lstrip(">*") for name in section.columns)
+        yield _row("---:" if name.startswith(">") else "---" for name in section.columns)
+        yield from (_row(map(escaped, row)) for row in section.rows[:at_most])
+        yield ""
+        if len(section.rows) > at_most:
+            yield from (f"and {len(section.rows) - at_most} more, which the command line prints.", "")
+    if section.lines:
+        yield from (*(f"- {escaped(line)}" for line in section.lines), "")
+
+
+def _row(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def numbered(numbers: Sequence[int]) -> str:
+    """Return ``mutants 1, 2 and 9 more``."""
+    different = list(dict.fromkeys(numbers))
+    shown = ", ".join(map(str, different[:_NUMBERS]))
+    more = f" and {len(different) - _NUMBERS} more" if len(different) > _NUMBERS else ""
+    return f"mutant{'s' if len(different) > 1 else ''} {shown}{more}"
+
+
+def plural(count: int, singular: str, several: str | None = None) -> str:
+    """Return ``1 mutant``, ``2 mutants``."""
+    return f"{count} {singular if count == 1 else several or singular + 's'}"
+
+
+def percent(share: float | None) -> str:
+    """Return a score as text: ``92.3 %``, or ``–`` where nothing was valid."""
+    return "–" if share is None else f"{100 * share:.1f} %"
+
+
+def between(interval: Interval | None) -> str:
+    """Return an interval as text: ``34–90 %``, or ``–`` where there is none."""
+    return "–" if interval is None else f"{100 * interval.low:.0f}–{100 * interval.high:.0f} %"

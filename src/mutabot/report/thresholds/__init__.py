@@ -1,1 +1,0 @@
-"""Thresholds on the terminal, as JSON and as a picture."""

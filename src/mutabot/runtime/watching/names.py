@@ -1,0 +1,111 @@
+"""What one process sees of the names of a middleware: what is done under which, with which messages.
+
+The hooks are those of a campaign (``runtime.targets.messages``). Nothing is changed.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from contextvars import ContextVar
+from types import FrameType
+from typing import Any
+
+from mutabot.model.job import Use, Values
+from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Handler, Where
+
+from .values import look
+
+#: uses of one name whose messages are looked at; more are only counted
+_MOST = 300
+_LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
+#: whether something is done under a name here: only the outermost counts, as in a campaign
+_under_way: ContextVar[bool] = ContextVar("mutabot_watched_name", default=False)
+
+
+class NamesSeen(Messages):
+    """All that the program and the tests do under names.
+
+    Args:
+        place_of: file for people, line, and whether it is on the tests' side, of a frame or the nearest one
+            around it; None if it is nobody's.
+        passed: told of each use: calls that are under way lead to it.
+        pulse: called now and then, while nothing is held.
+    """
+
+    def __init__(
+        self,
+        place_of: Callable[[FrameType | None, Where | None], tuple[str, int, bool] | None],
+        passed: Callable[[], None],
+        pulse: Callable[[], None],
+    ) -> None:
+        self._place_of, self._passed, self._pulse = place_of, passed, pulse
+        self.uses: dict[tuple[Form, str, bool, bool], Use] = {}
+        self._lock = threading.RLock()
+        super().__init__(lambda target, finding: None)
+
+    def find(self, form: Form, name: str, node: str | None) -> Handler | None:
+        """What looks at a use; None where something is set up, which is noted at once."""
+        self._passed()
+        if form in SETTING_UP and not _under_way.get():
+            self._use(form, name, self._place_of(sys._getframe(1), None), False)
+        if form not in _LOOKED_AT:
+            return None
+
+        def handle(
+            wrapped: Callable[..., Any],
+            instance: Any,
+            args: tuple[Any, ...],
+            kwargs: dict[str, Any],
+            where: Where | None = None,
+        ) -> Any:
+            if _under_way.get():
+                return wrapped(*args, **kwargs)
+            is_called_back = where is not None and where.code is not None
+            use = self._use(form, name, self._place_of(sys._getframe(1), where), is_called_back)
+            if use is not None and args:
+                self._look(use.written, args[0])
+            if inspect.iscoroutinefunction(wrapped):
+                return self._awaited(use, wrapped(*args, **kwargs))
+            token = _under_way.set(True)
+            try:
+                result = wrapped(*args, **kwargs)
+            finally:
+                _under_way.reset(token)
+            self._answer(use, result)
+            return result
+
+        return handle
+
+    def _use(
+        self, form: Form, name: str, place: tuple[str, int, bool] | None, is_called_back: bool
+    ) -> Use | None:
+        """The use that a place is one of, if its message is to be looked at."""
+        if place is None:
+            return None
+        self._pulse()
+        file, line, of_tests = place
+        with self._lock:
+            key = (form, name, of_tests, is_called_back)
+            use = self.uses.setdefault(key, Use(*key))
+            where = f"{file}:{line}"
+            use.sites[where] = use.sites.get(where, 0) + 1
+            return use if sum(use.sites.values()) <= _MOST else None
+
+    async def _awaited(self, use: Use | None, waiting: Any) -> Any:
+        result = await waiting
+        self._answer(use, result)
+        return result
+
+    def _answer(self, use: Use | None, result: Any) -> None:
+        if use is not None and (use.form not in WRITTEN or use.form is Form.CALL):
+            self._look(use.read, result)
+
+    def _look(self, values: Values, value: Any) -> None:
+        with self._lock, suppress(Exception):  # looking at values must not disturb the program
+            look(values, value, message=True)

@@ -1,0 +1,153 @@
+"""Where a check can stand, and how the tests there say it.
+
+Three styles: test functions of pytest, methods of ``TestCase``, and tests that another tool makes of
+something else, as pytest-bdd does of scenarios. No diff changes the last ones, but checks are tried in them.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+
+from mutabot.frozen import frozen
+
+from .project import Project
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+PYTEST, UNITTEST, OTHER = "pytest", "unittest", "other"
+
+
+@frozen
+class Place:
+    """A test at whose end something can be looked at; all parameters of it are one place.
+
+    Attributes:
+        style: name of its style.
+        file: its module, relative to the project.
+        node: its node id without parameters.
+        names: what it is given: fixtures and parameters.
+    """
+
+    style: str
+    file: str
+    node: str
+    names: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Its name in its module, below that of its class."""
+        return tuple(self.node.split("::")[1:])
+
+
+@frozen
+class Addition:
+    """What is added to the end of a test.
+
+    Attributes:
+        place: the test.
+        lines: statements.
+        uses: names of the place that the statements use.
+        imports: what they need.
+    """
+
+    place: Place
+    lines: tuple[str, ...]
+    uses: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
+
+
+def place_of(project: Project, test: str) -> Place | None:
+    """The place of a test by its node id; None if nothing can be added to it."""
+    node = test.partition("[")[0]
+    file, *path = node.split("::")
+    module = project.module(file)
+    if module is None or len(path) not in (1, 2):
+        return None
+    function = functions_of(module, path)
+    if len(path) == 1 and (function is None or _is_scenario(function)):
+        return Place(OTHER, file, node, _given_around(project, file))
+    if function is None or not _has_end(function):
+        return None
+    is_case = len(path) == 2 and _is_test_case(module, path[0])
+    return Place(UNITTEST if is_case else PYTEST, file, node, _names(function))
+
+
+def _is_scenario(function: Function) -> bool:
+    """Whether it only stands for a scenario of pytest-bdd."""
+    called = (ast.unparse(one).partition("(")[0] for one in function.decorator_list)
+    return any(one.rpartition(".")[2] == "scenario" for one in called)
+
+
+def _given_around(project: Project, file: str) -> tuple[str, ...]:
+    """What fixtures and steps of a test file are given: fixtures, as far as a test has asked for them."""
+    modules = (project.module(where) for where in (file, *project.beside(file)))
+    functions = [
+        node
+        for module in modules
+        for node in (module.body if module is not None else ())
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.decorator_list
+    ]
+    return tuple(dict.fromkeys(name for one in functions for name in arguments_of(one)))
+
+
+def _has_end(function: Function) -> bool:
+    """Whether statements can follow: not in a body on the line of its ``def``, nor if it ends by raising."""
+    return function.body[0].lineno != function.lineno and not isinstance(function.body[-1], ast.Raise)
+
+
+def _names(function: Function) -> tuple[str, ...]:
+    """Arguments, and what is assigned on the way."""
+    assigned = [
+        one.id
+        for statement in function.body
+        for one in ast.walk(statement)
+        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    ]
+    return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
+
+
+def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
+    owner = next((one for one in module.body if isinstance(one, ast.ClassDef) and one.name == name), None)
+    bases = [ast.unparse(one) for one in owner.bases] if owner is not None else []
+    return any(
+        base.endswith("TestCase") or (depth > 0 and _is_test_case(module, base, depth - 1)) for base in bases
+    )
+
+
+def functions_of(module: ast.Module, path: Sequence[str]) -> Function | None:
+    """The function with this qualified name, split at its dots."""
+    body: Sequence[ast.stmt] = module.body
+    for name in path[:-1]:
+        owner = next((one for one in body if isinstance(one, ast.ClassDef) and one.name == name), None)
+        if owner is None:
+            return None
+        body = owner.body
+    functions = [one for one in body if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)]
+    return next((one for one in reversed(functions) if one.name == path[-1]), None)
+
+
+def arguments_of(function: Function) -> tuple[str, ...]:
+    """The names of its arguments."""
+    given = function.args
+    return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
+
+
+def within(style: str, text: str, value: str, tolerance: str) -> str:
+    """The statement that ``text`` reads ``value`` within ``tolerance``."""
+    if style == UNITTEST:
+        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
+    return f"assert {text} == pytest.approx({value}, abs={tolerance})"
+
+
+def equal(style: str, text: str, value: str) -> str:
+    """The statement that ``text`` reads ``value`` exactly."""
+    if style == UNITTEST:
+        plain = {
+            "True": "self.assertTrue({})",
+            "False": "self.assertFalse({})",
+            "None": "self.assertIsNone({})",
+        }
+        return plain.get(value, f"self.assertEqual({{}}, {value})").format(text)
+    plain = {"True": f"assert {text}", "False": f"assert not {text}", "None": f"assert {text} is None"}
+    return plain.get(value, f"assert {text} == {value}")

@@ -1,0 +1,85 @@
+"""Bands hold all runs of the original, and checks read as a person writes them."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from mutabot.suggest.bands import band_of, digits_of, readable, unseen
+from mutabot.suggest.suggest import chosen_of
+
+
+def test_hardly_any_further_run_of_the_original_lies_outside() -> None:
+    """Of a normal distribution, a uniform one and a skewed one, after 20 runs."""
+    draw = random.Random(1)
+    for next_value in (lambda: draw.gauss(0.0, 1.0), draw.random, lambda: draw.expovariate(1.0)):
+        outside = 0
+        for _ in range(200):
+            band = band_of([next_value() for _ in range(20)], 0.0)
+            outside += sum(abs(next_value() - band.middle) > band.tolerance for _ in range(50))
+        assert outside / 10_000 < 0.005
+
+
+@pytest.mark.parametrize("values", [[1.0] * 9, [1.0, 1.1, 1.2], [0.1, 0.1, 0.1, 9.0]])
+def test_no_band_is_narrower_than_the_tolerance_or_leaves_out_a_run(values: list[float]) -> None:
+    band = band_of(values, 0.25)
+    assert band.tolerance >= 0.25
+    assert all(abs(value - band.middle) <= band.tolerance for value in values)
+
+
+@pytest.mark.parametrize(
+    ("values", "nearest", "expected"),
+    [
+        ([89.94758, 89.94759], 30.0, (90.0, 10.0)),
+        ([0.301, 0.3, 0.299], 0.1, (0.3, 0.05)),
+        ([0.0, 0.0], 0.5, (0.0, 0.2)),
+        ([10.71, 10.71], 0.02, (10.71, 0.01)),
+    ],
+)
+def test_a_check_has_no_more_digits_than_it_needs(
+    values: list[float], nearest: float, expected: tuple[float, float]
+) -> None:
+    assert readable(band_of(values, 0.001), nearest) == pytest.approx(expected)
+
+
+def test_the_value_is_as_exact_as_a_stated_tolerance_needs() -> None:
+    assert readable(band_of([0.347, 0.347], 0.001), 0.6, 0.03) == pytest.approx((0.35, 0.03))
+    assert readable(band_of([0.347, 0.347], 0.001), 0.02, 0.03)[1] < 0.02
+
+
+@pytest.mark.parametrize("floor", [0.00123, 0.5, 1.0, 37.0])
+@pytest.mark.parametrize("middle", [-0.000012345, 0.0, 1.23456789, 12345.6789])
+def test_what_is_written_holds_all_that_the_band_holds(middle: float, floor: float) -> None:
+    value, tolerance = readable(band_of([middle], floor), 0.0)
+    assert abs(value - middle) + floor <= tolerance * 1.02
+
+
+def test_digits_are_those_that_a_person_reads() -> None:
+    assert [digits_of(value) for value in (0.0, 0.3, -0.05, 10.71, 90.0, 1200.0)] == [1, 1, 1, 4, 1, 2]
+
+
+def test_more_runs_show_more() -> None:
+    assert unseen(200) < unseen(20) < unseen(1) < 1.0
+
+
+def test_all_that_any_check_kills_is_killed_and_no_check_is_needless() -> None:
+    draw = random.Random(3)
+    for _ in range(30):
+        trials = [frozenset(draw.sample(range(8), draw.randint(1, 4))) for _ in range(9)]
+        checks: list[Any] = [_Check(one, (draw.random(),)) for one in trials]
+        whole = frozenset().union(*(one.trials for one in checks))
+        chosen: list[Any] = list(chosen_of(checks, {}))
+        assert frozenset().union(*(one.trials for one in chosen)) == whole
+        for one in chosen:
+            assert frozenset().union(*(other.trials for other in chosen if other is not one)) != whole
+
+
+@dataclass(frozen=True, eq=False)
+class _Check:
+    """What a choice asks of a check."""
+
+    trials: frozenset[int]
+    worth: tuple[float, ...]
