@@ -35,8 +35,7 @@ from mutabot.model.events import (
 )
 from mutabot.model.job import Job
 from mutabot.model.mutant import Sighting
-from mutabot.model.source_units import File, is_test_file
-from mutabot.model.units import Executed
+from mutabot.model.source_units import Executed, File, is_test_file
 from mutabot.operators.command import Fatal
 
 #: what a robot answers that is asked for a number

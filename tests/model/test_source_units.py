@@ -6,8 +6,7 @@ from textwrap import dedent
 
 import pytest
 
-from mutabot.model.source_units import MODULE, File, together
-from mutabot.model.units import WHOLE
+from mutabot.model.source_units import MODULE, WHOLE, File, together
 
 TEXT = """
     import functools

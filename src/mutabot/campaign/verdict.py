@@ -15,8 +15,7 @@ from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.event_file import OWN_FAULT
 from mutabot.model.events import TestEnd
 from mutabot.model.outcome import Figure, added
-from mutabot.model.source_units import together
-from mutabot.model.units import Executed
+from mutabot.model.source_units import Executed, together
 
 #: tests of a survivor whose checks are kept
 _MOST_LOOKED = 20

@@ -15,7 +15,7 @@ from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.mutant import Sighting, Span
 from mutabot.model.outcome import By, Check
-from mutabot.model.units import Executed
+from mutabot.model.source_units import Executed
 
 #: hits per test that are reported with their values; a test is compared and planned from these
 TRACE_LIMIT = 5000

@@ -16,8 +16,15 @@ from collections.abc import Collection, Iterable, Iterator
 from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.model.source_units import ALL_FILES, MODULE, functions_of, is_test_file, last_name
-from mutabot.model.units import WHOLE, Executed
+from mutabot.model.source_units import (
+    ALL_FILES,
+    MODULE,
+    WHOLE,
+    Executed,
+    functions_of,
+    is_test_file,
+    last_name,
+)
 from mutabot.runtime.program_text import loading
 
 #: the built-in name of the bytes, one for each function

@@ -17,7 +17,7 @@ import pytest
 
 from mutabot.model.events import TestEnd, TestStart
 from mutabot.model.process_time import TimeUsed
-from mutabot.model.units import Executed
+from mutabot.model.source_units import Executed
 from mutabot.runtime import seeds
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.executed import ExecutedUnits

@@ -31,8 +31,7 @@ from mutabot.frozen import frozen
 from mutabot.model import Mutant, Outcome, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
-from mutabot.model.source_units import ALL_FILES, File, is_test_file, together
-from mutabot.model.units import WHOLE, Executed
+from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, is_test_file, together
 
 from .snapshot import _HASH, State, _digest_of, counts_by_name, digest_of, read
 
