@@ -11,8 +11,8 @@ from mutabot.config.vocabulary import load
 from mutabot.init.messages import Place, entries, meaning
 from mutabot.init.observe import merged
 from mutabot.init.text import entry_text, vocabulary_text
-from mutabot.model.job import Part, Seen, Use, Values
 from mutabot.model.operation import Form
+from mutabot.model.watched import Part, Seen, Use, Values
 from mutabot.runtime.watching.values import look, type_of
 
 HEADER = "std_msgs/Header"

@@ -12,7 +12,7 @@ from mutabot.campaign.check import check
 from mutabot.config.vocabulary import load
 from mutabot.init import propose
 from mutabot.model import Kind
-from mutabot.model.job import Call
+from mutabot.model.watched import Call
 from mutabot.runtime.watching.callee import any_method
 from mutabot.runtime.watching.watch import _command, _Seen
 from tests.campaign.project import Quiet, request_for

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from mutabot.model.job import Call, Command, Part
+from mutabot.model.watched import Call, Command, Part
 
 from .guess import Guess, Setting, guess_argument, guess_reading
 from .layout import with_compared

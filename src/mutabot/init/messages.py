@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.model.job import Part, Use, Values
 from mutabot.model.operation import Form
+from mutabot.model.watched import Part, Use, Values
 
 from .guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
 from .words import GRIPPER, READERS, VERBS, words_of

@@ -17,7 +17,7 @@ from typing import Any
 from mutabot.execution.processes import command, kill_group
 from mutabot.extensions import libraries, told_to_processes
 from mutabot.model.codec import from_data
-from mutabot.model.job import WATCH_VARIABLE, Call, Seen, Use, Values
+from mutabot.model.watched import WATCH_VARIABLE, Call, Seen, Use, Values
 
 from .layout import Layout
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model.job import Call, Part
+from mutabot.model.watched import Call, Part
 
 from .commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
 from .guess import Guess, Setting, guess_argument, guess_elements, guess_reading

@@ -12,7 +12,7 @@ from mutabot.config.vocabulary import load
 from mutabot.config.vocabulary.load import shipped
 from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY, Vocabulary
-from mutabot.model.job import Call
+from mutabot.model.watched import Call
 
 from .commands import commands_of, tells_commands
 from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached

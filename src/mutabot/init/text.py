@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mutabot.model import ANY
-from mutabot.model.job import Part
+from mutabot.model.watched import Part
 
 from .guess import Guess
 from .layout import Unreached

@@ -2,8 +2,6 @@
 
 The controller writes one ``Job`` as JSON; the process that runs the robot program answers with lines of
 JSON, each one of the classes in ``model.events``.
-
-What ``mutabot init`` learns from one plain run of the tests: the processes that run write it.
 """
 
 from __future__ import annotations
@@ -11,14 +9,14 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.mutant import Choice, Instrumentation, Mutant, Span
-from mutabot.model.operation import Form, Vocabulary
+from mutabot.model.operation import Vocabulary
 
 #: environment variable that names the job file; the plugin sleeps without it
 JOB_VARIABLE = "MUTABOT_JOB"
@@ -252,167 +250,3 @@ class Idle:
         """Whether answers differed in a test; in an unknown one, whether they did anywhere."""
         key = self.key(round, test)
         return key in self.varying if key in self.of_test else bool(self.varying)
-
-
-#: names the file that says what to watch: program, tests, output
-WATCH_VARIABLE = "MUTABOT_WATCH"
-
-
-@dataclass(slots=True)
-class Part:
-    """A part of an argument, a result or a message.
-
-    Attributes:
-        path: where it lies, as vocabularies write it.
-        name: the last name of the path; empty for an index or the whole.
-        doc: docstring of the class that holds it.
-        type: name of its type, for a field of a message as the definition says.
-        within: the message types that hold it, each with the name of its field, the outermost first.
-        values: the first different values; sequences of numbers as lists, moments in seconds.
-        length: least number of elements of a sequence; None for anything else.
-        limits: least and greatest value of each element, where the object tells them.
-        count: in how many values it was there.
-    """
-
-    path: str
-    name: str = ""
-    doc: str = ""
-    type: str = ""
-    within: tuple[tuple[str, str], ...] = ()
-    values: list[Any] = field(default_factory=list)
-    length: int | None = None
-    limits: list[list[float]] | None = None
-    count: int = 0
-
-
-@dataclass(slots=True)
-class Values:
-    """One argument, result or message over all calls.
-
-    Attributes:
-        times: how many values were looked at.
-        type: type of the whole, ``package/Name`` for a message.
-        parts: its parts by path.
-    """
-
-    times: int = 0
-    type: str = ""
-    parts: dict[str, Part] = field(default_factory=dict)
-
-    def always(self, part: Part) -> bool:
-        """Whether every value had this part."""
-        return part.count >= self.times
-
-
-@dataclass(slots=True)
-class Command:
-    """What was seen of one of the commands of a callable, such as the writes to one node."""
-
-    arguments: dict[str, Values] = field(default_factory=dict)
-    result: Values = field(default_factory=Values)
-
-
-@dataclass(slots=True)
-class Call:
-    """A callable that the program or the tests use.
-
-    Attributes:
-        target: as vocabularies name it.
-        of_tests: whether the tests call it.
-        own: whether the program itself defines it.
-        doc, owner, owner_doc: its docstring, its class, and that class's docstring.
-        is_property: whether it is read like an attribute.
-        signature: its arguments as a vocabulary writes them; empty if nothing tells them.
-        is_documented: whether only a docstring tells the signature.
-        annotations: types of the arguments as written, in their order.
-        returns: type of the result as written.
-        problem: why its calls cannot be intercepted; empty if they can.
-        raised: exceptions that it raised, or that its text raises.
-        stands_in: whether it was seen on a mock or a fake.
-        leads_to_names: whether it uses a name of a middleware.
-        sites: ``file:line`` to the number of calls there.
-        arguments: values by argument.
-        positional: values of arguments whose names nothing tells.
-        result: what it answered.
-        told_by: path of what tells its commands apart; empty if nothing does.
-        commands: these commands by their texts.
-    """
-
-    target: str
-    of_tests: bool = False
-    own: bool = False
-    doc: str = ""
-    owner: str = ""
-    owner_doc: str = ""
-    is_property: bool = False
-    signature: str = ""
-    is_documented: bool = False
-    annotations: dict[str, str] = field(default_factory=dict)
-    returns: str = ""
-    problem: str = ""
-    raised: list[str] = field(default_factory=list)
-    stands_in: bool = False
-    leads_to_names: bool = False
-    sites: dict[str, int] = field(default_factory=dict)
-    arguments: dict[str, Values] = field(default_factory=dict)
-    positional: Values = field(default_factory=Values)
-    result: Values = field(default_factory=Values)
-    told_by: str = ""
-    commands: dict[str, Command] = field(default_factory=dict)
-
-    @property
-    def name(self) -> str:
-        """Its own name."""
-        return self.target.rpartition(":")[2].rpartition(".")[2]
-
-    @property
-    def package(self) -> str:
-        """The top-level package it comes from."""
-        return self.target.partition(":")[0].partition(".")[0]
-
-    @property
-    def count(self) -> int:
-        """How many calls were seen."""
-        return sum(self.sites.values())
-
-
-@dataclass(slots=True)
-class Use:
-    """What was done under a name of a middleware, on one side.
-
-    Attributes:
-        form, name: what, and under which resolved name.
-        of_tests: whether the tests did it.
-        is_called_back: whether it came to a callback, rather than to who waited for it.
-        sites: ``file:line`` to the number of times.
-        written, read: what was sent, and what came.
-    """
-
-    form: Form
-    name: str
-    of_tests: bool
-    is_called_back: bool
-    sites: dict[str, int] = field(default_factory=dict)
-    written: Values = field(default_factory=Values)
-    read: Values = field(default_factory=Values)
-
-
-@dataclass(slots=True)
-class Seen:
-    """What one process saw, or all of them together.
-
-    Attributes:
-        calls: callables in the order in which they were first used.
-        uses: what was done under names.
-        reached: file, line and name of everything that was called; the name is empty for a plain one.
-        outcomes: number of tests by outcome.
-        problems: what failed, in pytest's words.
-        trouble: why the run tells less than it could; empty if it went well.
-    """
-
-    calls: list[Call] = field(default_factory=list)
-    uses: list[Use] = field(default_factory=list)
-    reached: list[tuple[str, int, str]] = field(default_factory=list)
-    outcomes: dict[str, int] = field(default_factory=dict)
-    problems: list[str] = field(default_factory=list)
-    trouble: str = ""

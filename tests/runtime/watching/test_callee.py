@@ -9,7 +9,7 @@ from unittest import mock
 
 import pytest
 
-from mutabot.model.job import Call
+from mutabot.model.watched import Call
 from mutabot.runtime.watching.callee import Callee, meant_by
 from mutabot.runtime.watching.watch import Watch
 

@@ -13,7 +13,7 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from mutabot.model.job import Values
+from mutabot.model.watched import Values
 from mutabot.runtime.watching.values import look
 from mutabot.runtime.watching.watch import METHOD, NAME, READ, Watch
 from mutabot.runtime.watching.watch import watch as watch_tree

@@ -15,9 +15,9 @@ from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.model import ANY
-from mutabot.model.job import Call
 from mutabot.model.path import class_name
 from mutabot.model.signature import described_in, spell_signature, takes_anything
+from mutabot.model.watched import Call
 from mutabot.runtime.targets.target import NotFoundError, resolve
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments

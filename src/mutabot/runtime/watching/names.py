@@ -14,8 +14,8 @@ from contextvars import ContextVar
 from types import FrameType
 from typing import Any
 
-from mutabot.model.job import Use, Values
 from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
+from mutabot.model.watched import Use, Values
 from mutabot.runtime.targets.messages import Messages
 from mutabot.runtime.targets.target import Handler, Where
 

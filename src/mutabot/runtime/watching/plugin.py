@@ -16,7 +16,7 @@ import pytest
 from mutabot import extensions
 from mutabot.errors import MutabotError
 from mutabot.model.codec import to_data
-from mutabot.model.job import WATCH_VARIABLE
+from mutabot.model.watched import WATCH_VARIABLE
 from mutabot.runtime.targets.target import prepare
 from mutabot.runtime.watching.elsewhere import seen_elsewhere, watch_elsewhere, write_seen
 from mutabot.runtime.watching.watch import Watch

@@ -22,8 +22,8 @@ from fnmatch import fnmatchcase
 from types import FrameType, ModuleType
 from typing import Any
 
-from mutabot.model.job import Call, Command, Seen, Values
 from mutabot.model.path import class_name
+from mutabot.model.watched import Call, Command, Seen, Values
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text import loading as scripts
 from mutabot.runtime.program_text.standing import is_mock
