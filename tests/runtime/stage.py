@@ -18,7 +18,7 @@ from typing import Any
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.events import Event, SiteSeen
 from mutabot.model.job import Budget, Job
-from mutabot.runtime.interception.active_mutant import Activation
+from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 from mutabot.vocabulary import load
@@ -121,7 +121,7 @@ class Stage:
         index: int = 0,
         idle: Any = None,
         variant: str = "",
-    ) -> tuple[Any, Activation]:
+    ) -> tuple[Any, ActiveMutant]:
         """Run the program once as the original to find sites, then as a mutant at the site ``index``.
 
         Returns the program's result and the activation with its evidence.

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.runtime.interception.adapter import Callers
+from mutabot.runtime.interception.dispatcher import Callers
 
 Place = tuple[int | None, int | None, int | None, int | None]
 

@@ -25,7 +25,7 @@ from typing import Any
 import wrapt
 
 from mutabot.model import Role, Span
-from mutabot.runtime.interception.adapter import Door
+from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
 from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, is_mock
@@ -74,7 +74,7 @@ class Handing:
         given: takes where functions of the robot were handed on; None if nobody knows any more.
     """
 
-    def __init__(self, standing: Standing, given: dict[Door, tuple[Span, Role] | None]) -> None:
+    def __init__(self, standing: Standing, given: dict[Adapter, tuple[Span, Role] | None]) -> None:
         self._standing = standing
         self._given = given
         self._undo: Callable[[], None] | None = None
@@ -98,9 +98,9 @@ class Handing:
                 return found
             self._standing.stood[place[0]] = own.operation.target
             if type(found) is wrapt.FunctionWrapper:  # all names of a function mean this very object
-                known = self._given.setdefault(own.door, place)
+                known = self._given.setdefault(own.adapter, place)
                 if known == place or not site.is_given:
-                    self._given[own.door] = place if known == place else None
+                    self._given[own.adapter] = place if known == place else None
                     return found
             return self._wrapped(own, place, receiver, found, found.__wrapped__)
         one = self._standing.candidate(site, found, receiver, frame)

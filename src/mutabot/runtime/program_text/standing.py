@@ -30,7 +30,7 @@ from mutabot.languages.python import function_of
 from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
-from mutabot.runtime.interception.adapter import Door
+from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
 from mutabot.runtime.targets.callables import Callables
@@ -138,12 +138,12 @@ class Candidate:
     Attributes:
         operation: the operation.
         handler: what its calls go through.
-        door: reads its calls.
+        adapter: reads its calls.
     """
 
     operation: Operation
     handler: Handler
-    door: Door
+    adapter: Adapter
     is_told: bool = False
 
 
@@ -391,7 +391,7 @@ class Standing:
         if signature is not None and owner is not None and not isinstance(original, staticmethod):
             signature = signature.replace(parameters=list(signature.parameters.values())[1:])
         if signature is not None:
-            one.door.use_signature(signature)
+            one.adapter.use_signature(signature)
 
 
 def _is_of_objects(owner: type | None, one: Candidate) -> bool:

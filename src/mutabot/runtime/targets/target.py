@@ -119,8 +119,11 @@ class Where:
     frame: FrameType | None = None
 
 
-#: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if
-#: the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
+#: the frames above tell all
+NOWHERE = Where()
+
+#: ``handler(wrapped, instance, args, kwargs, where=NOWHERE)``, as wrapt calls it, with a ``Where`` behind it
+#: if the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
 #: coroutine function. Of what comes by itself it may return a ``delivery.Delivery`` in its place
 Handler = Callable[..., Any]
 
