@@ -129,6 +129,7 @@ class Stage:
         recording = self.session()
         self.run(recording)
         recording.remove()
+        sys.modules.pop(self.program_name)  # its text asks the session that was there when it was loaded
         seen = self.sites()[index]
         mutant = Mutant(
             1, "robot", operator, _site(seen.span), seen.operation, seen.pattern, quantity, variant, "", idle

@@ -123,9 +123,8 @@ class Session:
         vocabulary = self.job.vocabulary
         candidates: list[Candidate] = []
         for operation in vocabulary.operations:
-            overrides = partial(self._handler_of_override, operation) if operation.overrides else None
             handler = self._handler(operation)
-            self.interception.wrap(operation, handler, overrides)
+            self.interception.wrap(operation, handler)
             if operation.kind in (None, "methods"):
                 candidates.append(Candidate(operation, handler, self._adapters[-1]))
         self._see_calls(candidates)
@@ -199,10 +198,6 @@ class Session:
         handler = self.passing.handler(adapter)
         self._sees_itself.add(handler)
         return handler
-
-    def _handler_of_override(self, operation: Operation, kind: type) -> Handler:
-        """An overriding method may have a signature of its own, so it has an adapter of its own."""
-        return self._handler(operation)
 
     def _watch_imports(self) -> None:
         """What the program does while it is imported counts for every test that comes after."""
@@ -332,7 +327,6 @@ class Session:
 
     def _look_again(self) -> None:
         """What the program has made since the last test."""
-        self.interception.look_again()
         if self.call_sites.loaded:
             self.standing.note_modules(frozenset(self.call_sites.loaded))
             self.call_sites.loaded.clear()
@@ -418,7 +412,6 @@ class Session:
             self._tell_known_later()
         if self.job.inspect:
             self.inspect_targets()
-            self.inspection.tell_uncovered(self.interception)
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)

@@ -203,7 +203,7 @@ class Adapter:
         """Return the call as operators see it."""
         if self._signature is None:
             self._signature = signature_of(invocation.wrapped) or ANYTHING
-        invocation.bind(self._signature)
+        invocation.bind(invocation.where.signature or self._signature)
         pattern, values = None, dict[str, Value]()
         if invocation.values is not None:
             if self._message is not None:

@@ -16,7 +16,6 @@ from __future__ import annotations
 import copy
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pkgutil import resolve_name
 from types import FrameType, FunctionType, MethodType, ModuleType
@@ -29,18 +28,10 @@ from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
 from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, is_mock
-from mutabot.runtime.targets.target import Where
 
+#: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
+#: which is None if nobody knows any more
 _MARK = "_mutabot_handed"
-
-
-@dataclass(slots=True)
-class _Mark:
-    """What a mock stands for, as noted on it, and where it was handed on; None if nobody knows any more."""
-
-    one: Candidate
-    receiver: Any
-    place: tuple[Span, Role] | None
 
 
 class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
@@ -110,9 +101,9 @@ class Handing:
             self._standing.noted.note(site, one.operation, found, receiver)
         mock = _mock_of(found)
         if mock is not None:
-            mark = vars(mock).setdefault(_MARK, _Mark(one, receiver, place))
-            if mark.place == place or not site.is_given:
-                mark.place = place if mark.place == place else None
+            known = vars(mock).get(_MARK, (one, receiver, place))
+            if known[2] == place or not site.is_given:
+                vars(mock)[_MARK] = (*known[:2], place if known[2] == place else None)
                 return found
         return self._wrapped(one, place, receiver, found, found)
 
@@ -137,7 +128,7 @@ class Handing:
         __tracebackhide__ = True
         if receiver is NOTHING and instance is not None:  # it was made a method, or is one
             receiver, found = instance, wrapped
-        where = Where(handed=place, receiver=_given(receiver), frame=sys._getframe(1))
+        where = {"handed": place, "frame": sys._getframe(1)}
         return self._standing.call(one, where, found, receiver, *args, **kwargs)
 
     def _watch(self, mock: ModuleType) -> None:
@@ -167,7 +158,7 @@ class Handing:
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if mark is not None:
-            one, receiver, place = mark.one, mark.receiver, mark.place
+            one, receiver, place = mark
         else:
             parent = own.get("_mock_new_parent")
             one, receiver, place = None, NOTHING if parent is None else parent, None
@@ -177,14 +168,8 @@ class Handing:
             return original(mock, *args, **kwargs)
         if place is None and mark is not None and self._standing.noted is not None:
             self._standing.noted.note_elsewhere(one.operation, self._standing.locator.locate(caller))
-        found = partial(original, mock)
-        is_awaited = is_coroutine_function(mock)
-        where = Where(handed=place, receiver=_given(receiver), frame=caller, is_awaited=is_awaited)
-        return self._standing.call(one, where, found, receiver, *args, **kwargs)
-
-
-def _given(receiver: Any) -> Any:
-    return None if receiver is NOTHING else receiver
+        where = {"handed": place, "frame": caller, "is_awaited": is_coroutine_function(mock)}
+        return self._standing.call(one, where, partial(original, mock), receiver, *args, **kwargs)
 
 
 def _mock_of(found: Any) -> Any:

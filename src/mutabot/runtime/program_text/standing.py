@@ -32,7 +32,7 @@ from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
 from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Where, named_class
 
@@ -125,8 +125,6 @@ def _calls(count: int) -> str:
     return "1 call" if count == 1 else f"{count} calls"
 
 
-#: names in modules, and what they meant
-_Guards = tuple[tuple[dict[str, Any], str, Any], ...]
 #: what stands around callables that see their calls themselves
 WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
@@ -173,7 +171,6 @@ class Standing:
     stood: dict[Span, str] = field(default_factory=dict)
     alone: set[Span] = field(default_factory=set)
     _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
-    _left_alone: dict[tuple[CallSite, type, Any], _Guards] = field(default_factory=dict)
     _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
     _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
 
@@ -183,31 +180,20 @@ class Standing:
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is called at a site: ``found``, or what makes the same call as one of an operation."""
-        kind = type(found)
-        own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
-        key = (site, type(receiver), own)
-        guards = self._left_alone.get(key)
-        if guards is not None:
-            for names, name, value in guards:
-                if names.get(name) is not value:
-                    break
-            else:
-                return found
         one = self.candidate(site, found, receiver, frame)
         if self.noted is not None:
             operation = one.operation if one is not None else None
             self.noted.note(site, operation, found, receiver)
         if one is None:
             if _is_told_by_type(found, receiver):
-                self._left_alone[key] = self._guards(site, frame)
+                kind = type(found)
+                own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
+                site.left_alone[type(receiver), own] = self._guards(site, frame)
             return found
-        where = Where(
-            site=self.place(site, frame), receiver=None if receiver is NOTHING else receiver,
-            is_awaited=site.is_awaited, frame=frame,
-        )  # fmt: skip
+        where = {"site": self.place(site, frame), "is_awaited": site.is_awaited, "frame": frame}
         return partial(self.call, one, where, found, receiver)
 
-    def _guards(self, site: CallSite, frame: FrameType) -> _Guards:
+    def _guards(self, site: CallSite, frame: FrameType) -> Guards:
         """What must be as it is for the same to be left alone: all that names an operation, or its class."""
         here = frame.f_globals
         named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
@@ -224,19 +210,21 @@ class Standing:
                 self._names_of(vars(module))
 
     def call(
-        self, one: Candidate, where: Where, found: Any, receiver: Any, /, *args: Any, **kwargs: Any
+        self, one: Candidate, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
-        """Make a call as one of an operation."""
+        """Make a call as one of an operation, of what was read from ``receiver``, at a part of a ``Where``."""
         __tracebackhide__ = True
         if not one.is_told:
             one.is_told = True
             self._tell_signature(one)
         owner = self._owner(one)
         is_method = owner is not None or one.operation.target.startswith(ANY)
-        instance = receiver if is_method and receiver is not NOTHING else None
+        given = None if receiver is NOTHING else receiver
+        instance = given if is_method else None
+        signature = signature_of(found) if one.operation.overrides and type(found) is MethodType else None
         if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
             instance, found, args = args[0], partial(found, args[0]), args[1:]
-        return one.handler(found, instance, args, kwargs, where)
+        return one.handler(found, instance, args, kwargs, Where(receiver=given, signature=signature, **where))
 
     def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
         """Where a site stands."""
@@ -295,11 +283,12 @@ class Standing:
     ) -> Candidate | None:
         if receiver is NOTHING and isinstance(found, MethodType):
             receiver = found.__self__
-        if receiver is NOTHING or self._is_of_program(found):
+        if receiver is NOTHING:
             return None
+        is_of_program = self._is_of_program(found)
         fitting = []
         for one in ones:
-            owner = self._owner(one)
+            owner = self._owner(one) if one.operation.overrides or not is_of_program else None
             if owner is not None and any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame)):
                 fitting.append((len(owner.__mro__), one))
         return max(fitting, key=lambda pair: pair[0])[1] if fitting else None
@@ -417,15 +406,14 @@ def _layers(found: Any) -> Iterator[Any]:
 
 def _is_told_by_type(found: Any, receiver: Any) -> bool:
     """Whether all that is called like this on objects of this type is left alone if this is."""
-    kind = type(found)
-    if kind is FunctionType:  # one that is always the same
+    if type(found) is FunctionType:  # one that is always the same
         return receiver is NOTHING and "<locals>" not in found.__qualname__
     if receiver is NOTHING or isinstance(receiver, type | ModuleType):
         return False
     if receiver.__class__ is not type(receiver):  # it stands for something else
         return False
-    of_python = kind is MethodType and type(found.__func__) is FunctionType
-    return (of_python or kind is BuiltinMethodType) and found.__self__ is receiver
+    of_python = type(found) is MethodType and type(found.__func__) is FunctionType
+    return (of_python or type(found) is BuiltinMethodType) and found.__self__ is receiver
 
 
 def _is_a(value: Any, kind: Any) -> bool:

@@ -73,7 +73,7 @@ class Messages(Targets):
     """
 
     def __init__(self, tell: Tell) -> None:
-        self._tell = tell
+        super().__init__(tell)
         self._handlers: list[tuple[Named, Handler]] = []
         self._found: dict[tuple[Form, str, str | None], Handler | None] = {}
         self._undo: list[Callable[[], None]] = []
@@ -83,7 +83,7 @@ class Messages(Targets):
         for part in brought("middlewares").values():
             wrapt.register_post_import_hook(partial(self._hook, part), part.name)
 
-    def wrap(self, target: str, handler: Handler, overrides: object = None) -> None:
+    def wrap(self, target: str, handler: Handler) -> None:
         """Let a handler stand around what is done under a name; nothing is ever put in its place."""
         self._handlers.append((Named.of(target), handler))
         self._found.clear()
