@@ -98,7 +98,6 @@ class Session:
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
         self.recording = TestRecording()
-        self.recorder.clock = self.recording.clock
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
         self.placed = ProcessFaults(self._acted)
@@ -299,6 +298,7 @@ class Session:
         is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()
+        self.recorder.clock = self.recording.clock if self.job.evidence else None
         self.instances.start(fixtures)
         self.passing.calls.clear()
         self.refused_calls.clear()

@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from mutabot.model import Call, Operation, Reply, Vocabulary
-from mutabot.runtime.interception.adapter import Invocation, handles_of
-from mutabot.runtime.interception.live import snapshot
+from mutabot.runtime.interception.adapter import Invocation, handles_of, snapshot
 from mutabot.runtime.interception.trace import Answers
 
 

@@ -17,11 +17,11 @@ from mutabot.model.operation import Refused
 from mutabot.operators import Need, Operator, Subject, operator
 from mutabot.operators.command import FatalFault
 from mutabot.operators.operator import subject_of
-from mutabot.operators.passage import Carried, Passage, passed
+from mutabot.operators.passage import CallRecord, Carried, run_middleware
 from mutabot.runtime.evidence import REFUSALS, Evidence, leaves
 from mutabot.runtime.interception import call_faults
-from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context
-from mutabot.runtime.interception.live import HandedCopies, copied, is_live, snapshot
+from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot
+from mutabot.runtime.interception.live import HandedCopies, copied, is_live
 from mutabot.runtime.interception.refusals import answered, heard, is_told_on, refused_of
 from mutabot.runtime.interception.trace import LOST
 from mutabot.runtime.targets.target import is_named
@@ -65,7 +65,7 @@ class ActiveMutant:
     _moment: Moment | None = None
     _test: tuple[int, str] = (0, "")
     _early: Evidence = field(default_factory=Evidence)
-    _handed: HandedCopies = field(default_factory=HandedCopies)
+    _handed: HandedCopies | None = None
     _due: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
     _next: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
 
@@ -98,7 +98,7 @@ class ActiveMutant:
         self._test = (round, test)
         self._moment = moment
         self.watched = ()
-        self._handed = HandedCopies()
+        self._handed = None
         self._due, self._next = [], []
 
     def is_here(self, site: tuple[Span, Role], call: Call) -> bool:
@@ -119,14 +119,14 @@ class ActiveMutant:
         self.evidence.hits += 1
         call = replace(made.call, payload=made.call.payload.copied()) if self.copies else made.call
         is_due = self._moment is None or self._moment.holds(made.number, self.time())
-        passage = Passage(replace(call, is_refusal=partial(is_refusal, names=self.refusals)))
+        passage = CallRecord(replace(call, is_refusal=partial(is_refusal, names=self.refusals)))
         mutated = _MutatedCall(self, adapter, made, passage, does_nothing=is_due and self.rule.does_nothing)
         self._commands, self._told, self._is_passed = 0, 0, False
         middleware = _one_is_due if self._due else self._middleware if is_due else _not_yet
         try:
             if self._idle is not None:
                 passage.call = replace(passage.call, idle=self._idle_answer(self._idle, adapter, made.call))
-            reply = await passed(passage, middleware, mutated.proceed)
+            reply = await run_middleware(passage, middleware, mutated.proceed)
             if reply.more:
                 reply = passage.received = call_faults.heard_of(passage.call, reply)
             self.note(passage)
@@ -157,7 +157,7 @@ class ActiveMutant:
         self._due = [one for one in self._due if one not in due] + self._next
         self._next = []
         for mutated, call in due:
-            late = replace(mutated, passage=Passage(mutated.passage.call, [call], is_late=True))
+            late = replace(mutated, passage=CallRecord(mutated.passage.call, [call], is_late=True))
             late.does_nothing = False
             try:
                 await late.proceed(call)
@@ -167,7 +167,9 @@ class ActiveMutant:
 
     def look_back(self, *, at_all: bool = False) -> None:
         """Look whether the program has written to what it got in the place of the robot's own memory."""
-        if self._handed.look(at_all=at_all) and self.evidence.failure is None:
+        if self._handed is None or self.evidence.failure is not None:
+            return
+        if self._handed.look(at_all=at_all):
             self.evidence.failure = (
                 f"the program writes to what {self.operation.name} returns, which is the robot's own memory; "
                 "with the mutant it wrote to a copy, so the robot did not get it"
@@ -175,6 +177,7 @@ class ActiveMutant:
 
     def hands(self, call: Call, answer: Any, result: Any) -> None:
         """Note that the program gets ``result`` in the place of a live answer."""
+        self._handed = self._handed or HandedCopies()
         self._handed.note(answer, result, (call.pattern or call.operation).result)
 
     def heard(self, name: str, message: Any) -> None:
@@ -235,20 +238,20 @@ class ActiveMutant:
         first = idle.first(*self._test)
         return Reply().never() if first == LOST else Reply({}, restore(first, call_context(call)))
 
-    def note(self, passage: Passage) -> None:
+    def note(self, passage: CallRecord) -> None:
         """Note what became of a call that is over, or of whose mutant this process dies."""
         if passage.acted_at_once:
             self._acts(passage)
         elif passage.away:
             self.evidence.away[passage.away] = self.evidence.away.get(passage.away, 0) + 1
 
-    def _acts(self, passage: Passage) -> None:
+    def _acts(self, passage: CallRecord) -> None:
         if not self.evidence.acted:
             self.evidence.example = self._example(passage)
             self.on_act()
         self.evidence.acted += 1
 
-    def _example(self, passage: Passage) -> tuple[Any, ...]:
+    def _example(self, passage: CallRecord) -> tuple[Any, ...]:
         name = self.mutant.quantity
         if name is None:
             return (dict(passage.call.values), [dict(call.values) for call in passage.performed])
@@ -297,7 +300,7 @@ class _MutatedCall:
     mutant: ActiveMutant
     adapter: Adapter
     made: SiteCall
-    passage: Passage
+    passage: CallRecord
     does_nothing: bool
     raised: BaseException | None = None
     answer: Any = None

@@ -9,6 +9,7 @@ program left out stays left out, so that a native callable sees only what it was
 
 from __future__ import annotations
 
+import copy
 import inspect
 import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -19,17 +20,19 @@ from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Role, Span, Vocabulary
-from mutabot.model.answer import NotKeptError, is_member, keep, name_of, restore
+from mutabot.model.answer import NotKeptError, is_member, is_of_numpy, keep, name_of, restore
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
 from mutabot.model.path import Path
 from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
-from mutabot.runtime.interception.live import copied, snapshot
+from mutabot.runtime.interception.live import copied
 from mutabot.runtime.observation.clock import ProgramTime
 from mutabot.runtime.targets.target import NOWHERE, Where, resolve
 
+#: containers that a program may change after it got them
+_CHANGEABLE = frozenset({list, dict, set, bytearray})
 _POSITIONAL = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
 #: makes a call of a callable as the program does
 Caller = Callable[[Callable[..., Any], tuple[Any, ...], dict[str, Any]], Any]
@@ -432,6 +435,13 @@ class Adapter:
             return Reply({}, restore(keep(last, known, self.handles), known))
         except NotKeptError:
             return Reply({}, last)
+
+
+def snapshot(value: Any) -> Any:
+    """Return an answer as it is now: a program may change the list or array it got."""
+    if type(value) in _CHANGEABLE or is_of_numpy(value):
+        return copy.copy(value)
+    return tuple(map(snapshot, value)) if type(value) is tuple else value
 
 
 def call_context(call: Call) -> dict[str, Any]:

@@ -148,7 +148,9 @@ class Dispatcher:
             if _under_way.get():
                 return wrapped(*args, **kwargs)
             if is_counted and not where.is_again:
-                self.meter.count()
+                self.meter.operations += 1
+                if self.meter.operations > self.meter.most:
+                    self.meter.exceed_operations()
             frame = sys._getframe(1)
             site = where.site or self._site(frame, where, adapter)
             if site is None:
@@ -203,7 +205,8 @@ class Dispatcher:
         __tracebackhide__ = True
         token = _under_way.set(True)
         reply: Reply | None = None
-        began = self._recorder.began = self._recorder.clock()
+        clock = self._recorder.clock
+        began = self._recorder.began = clock() if clock is not None else None
         try:
             # 1. The adapter reads which command it is, and the values it writes.
             call = adapter.to_call(invocation)
@@ -279,7 +282,7 @@ class Dispatcher:
     def _note(self, made: SiteCall, reply: Reply | None, began: float | None) -> None:
         """Trace a call that is over; ``reply`` is the robot's last one, None if the call raised."""
         self._recorder.record(made, reply, began)
-        if made.call.is_command:
+        if made.call.is_command and self._along.step:
             self._along.after(len(self._recorder.trace))
         if self.on_end is not None:
             self.on_end(made.call, reply.values if reply is not None else {})

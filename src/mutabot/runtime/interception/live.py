@@ -14,11 +14,8 @@ from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Quantity
-from mutabot.model.answer import is_of_numpy
 from mutabot.model.path import Path, Step
 
-#: containers that a program may change after it got them
-_CHANGEABLE = frozenset({list, dict, set, bytearray})
 #: copies that are looked at after each call
 _LAST = 8
 _MISSING = object()
@@ -32,13 +29,6 @@ def copied(value: Any) -> Any:
         return copy.deepcopy(value)
     except Exception:  # objects of the user's may refuse to be copied in any way
         return value
-
-
-def snapshot(value: Any) -> Any:
-    """Return an answer as it is now: a program may change the list or array it got."""
-    if type(value) in _CHANGEABLE or is_of_numpy(value):
-        return copy.copy(value)
-    return tuple(map(snapshot, value)) if type(value) is tuple else value
 
 
 def is_live(answer: Any, quantities: Iterable[Quantity]) -> bool:

@@ -27,10 +27,6 @@ LOST = {"pending": ""}
 _TOLD = 2000
 
 
-def _no_clock() -> float | None:
-    return None
-
-
 @dataclass(slots=True)
 class Recorder:
     """Sites of the session, and the trace of the running test.
@@ -53,7 +49,7 @@ class Recorder:
     truncated: bool = False
     sites: list[SiteSeen] = field(default_factory=list)
     on_hit: Callable[[int, Any, Any, Any], None] | None = None
-    clock: Callable[[], float | None] = _no_clock
+    clock: Callable[[], float | None] | None = None
     when: list[tuple[float | None, float | None]] = field(default_factory=list)
     began: float | None = None
     _indexes: dict[SiteSeen, int] = field(default_factory=dict)
@@ -75,7 +71,7 @@ class Recorder:
         answer = self.answers.note(index, call, reply) if self.answers is not None else None
         read = reply.values if reply is not None else {}
         self.trace.append((index, _frozen(call.values), _frozen(read), answer))
-        self.when.append((began, self.clock()))
+        self.when.append((began, self.clock() if self.clock is not None else None))
         if self.on_hit is not None:
             self.on_hit(*self.trace[-1])
 
