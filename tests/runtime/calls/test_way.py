@@ -18,8 +18,8 @@ VOCABULARY = """
 call = "robot:Arm.move_by"
 arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
 """
-#: the call as it is written, dispatcher, adapter, active mutant, refusals, trace, the session that is told when
-#: a mutated call begins, and what drives an operator. The operator itself and plain data do not count
+#: the call as it is written, dispatcher, adapter, active mutant, refusals, trace, the session that is told
+#: of a mutated call, and what drives an operator. The operator itself and plain data do not count
 MOST = 8
 
 

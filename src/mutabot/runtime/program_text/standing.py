@@ -212,7 +212,7 @@ class Standing:
     def call(
         self, one: Candidate, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
-        """Make a call of what was read from ``receiver`` as an operation's; ``where`` is part of ``Where``."""
+        """Make a call of what was read from ``receiver`` as an operation's; ``where`` is of ``Where``."""
         __tracebackhide__ = True
         if not one.is_told:
             one.is_told = True
