@@ -103,13 +103,7 @@ class Session:
         self.placed = ProcessFaults(self._acted)
         self.interception = Interception(self.inspection.target_is_wrong)
         self.passing = Dispatcher(
-            self.locator.locate,
-            self.recorder,
-            self.instances,
-            self.along,
-            self._raised,
-            self._on_end,
-            self.locator.locate_definition,
+            self.locator, self.recorder, self.instances, self.along, self._raised, self._on_end
         )
         self.passing.oracle_nodes = self.job.oracle_nodes
         self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
@@ -189,10 +183,8 @@ class Session:
         """What stands around an operation: an adapter of its own, and the way that all calls go."""
         vocabulary = self.job.vocabulary
         readings = {name: vocabulary.operation(name) for name in operation.currents}
-        adapter = Adapter(operation, readings, partial(self.inspection.path_is_wrong, operation))
-        adapter.handles = handles_of(self.job.vocabulary)
-        adapter.lately = self._lately
-        adapter.time = self._time
+        told = partial(self.inspection.path_is_wrong, operation)
+        adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), self._time)
         self._adapters.append(adapter)
         handler = self.passing.handler(adapter)
         self._sees_itself.add(handler)

@@ -155,45 +155,39 @@ class SiteCall:
     is_direct: bool = False
 
 
+@dataclass(slots=True, eq=False)
 class Adapter:
     """Translates the calls of one operation.
 
-    Args:
+    Attributes:
         operation: the operation.
         readings: the operations that tell where the robot is, by name.
         on_problem: told about each path or argument that does not fit: (key, error).
-
-    Attributes:
-        commands: how often the robot was made to do this, if it does anything.
         lately: values that last came by under the names of a middleware, by target; adapters share it.
         handles: classes that are part of the robot API: their objects are never copied.
-        time: the program's time; None where nothing tells.
+        time: the program's time.
+        commands: how often the robot was made to do this, if it does anything.
     """
 
-    def __init__(
-        self,
-        operation: Operation,
-        readings: Mapping[str, Operation | None],
-        on_problem: Callable[[str, PathError], None] = lambda key, error: None,
-    ) -> None:
-        self.operation = operation
-        self._readings = readings
-        self._on_problem = on_problem
-        declared = operation.signature
-        self._signature = parse_signature(declared) if declared is not None else None
-        self._message = Path.parse(operation.message, rooted=True) if operation.message is not None else None
-        self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
-        self._last_results: dict[str | None, Any] = {}
-        self._last_written: dict[str | None, dict[str, Value]] = {}
-        self.commands = 0
-        self.lately: dict[str, Mapping[str, Value]] = {}
-        self.handles: Collection[str] = ()
-        self.time: ProgramTime | None = None
+    operation: Operation
+    readings: Mapping[str, Operation | None]
+    on_problem: Callable[[str, PathError], None]
+    lately: dict[str, Mapping[str, Value]]
+    handles: Collection[str]
+    time: ProgramTime
+    commands: int = 0
+    _message: Path | None = None
+    _declared: Signature | None = None
+    _own: Signature | None = None
+    _parts: dict[str, tuple[tuple[str, ...], tuple[Quantity, ...]]] = field(default_factory=dict)
+    _last_results: dict[str | None, Any] = field(default_factory=dict)
+    _last_written: dict[str | None, dict[str, Value]] = field(default_factory=dict)
 
-    def use_signature(self, signature: Signature) -> None:
-        """Read calls by this signature, unless the vocabulary or an earlier call has told another."""
-        if self._signature is None:
-            self._signature = signature
+    def __post_init__(self) -> None:
+        operation = self.operation
+        self._message = Path.parse(operation.message, rooted=True) if operation.message is not None else None
+        self._declared = parse_signature(operation.signature) if operation.signature is not None else None
+        self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
@@ -204,9 +198,10 @@ class Adapter:
 
     def to_call(self, invocation: Invocation) -> Call:
         """Return the call as operators see it."""
-        if self._signature is None:
-            self._signature = signature_of(invocation.wrapped) or ANYTHING
-        invocation.bind(invocation.where.signature or self._signature)
+        signature = self._declared or invocation.where.signature or self._own
+        if signature is None:
+            signature = self._own = signature_of(invocation.wrapped) or ANYTHING
+        invocation.bind(signature)
         pattern, values = None, dict[str, Value]()
         if invocation.values is not None:
             if self._message is not None:
@@ -216,12 +211,10 @@ class Adapter:
         before = self._last_written.get(key)
         self._last_written[key] = {name: snapshot(value) for name, value in values.items()}
         means = invocation.where.means
-        times: dict[str, Any] = {}
-        if self.time is not None:
-            times = {"time": self.time.now, "wait": self.time.wait if means is None else means.sleep}
         return Call(
             self.operation, pattern, values, current=partial(self._where_is, invocation, pattern),
-            payload=invocation, cannot=partial(why_not, means), previous=lambda: before, **times,
+            payload=invocation, cannot=partial(why_not, means), previous=lambda: before,
+            time=self.time.now, wait=self.time.wait if means is None else means.sleep,
         )  # fmt: skip
 
     def _read_message(self, invocation: Invocation, path: Path) -> None:
@@ -232,7 +225,7 @@ class Adapter:
         try:
             invocation.message = path.get(start) if start is not None else None
         except PathError as error:
-            self._on_problem("message", error)
+            self.on_problem("message", error)
             return
         if invocation.message is not None:
             invocation.text = _text(invocation.message)
@@ -287,7 +280,7 @@ class Adapter:
             try:
                 value = quantity.get(start)
             except PathError as error:
-                self._on_problem(f"{key}.{quantity.name}", error)
+                self.on_problem(f"{key}.{quantity.name}", error)
                 continue
             if value is not None:
                 values[quantity.name] = value
@@ -307,7 +300,7 @@ class Adapter:
                 self._tell("mode", text)
 
     def _tell(self, key: str, text: str, step: str = "") -> None:
-        self._on_problem(key, PathError(text, path="", step=step, found=""))
+        self.on_problem(key, PathError(text, path="", step=step, found=""))
 
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
@@ -402,7 +395,7 @@ class Adapter:
     async def _where_is(self, invocation: Invocation, pattern: Pattern | None, quantity: Quantity) -> float:
         """Tell where a quantity is: ask the robot; of a name on a middleware, what came last tells."""
         own = pattern.current if pattern is not None else None
-        reading = self._readings.get(own or self.operation.current or "")
+        reading = self.readings.get(own or self.operation.current or "")
         if reading is None:
             raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
         is_named = reading.named is not None

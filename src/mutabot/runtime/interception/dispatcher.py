@@ -13,6 +13,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -29,7 +30,7 @@ from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall
 from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.refusals import RefusedCalls
-from mutabot.runtime.interception.trace import Recorder
+from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.observation.instances import Instances
 from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, Handler, Where
@@ -73,18 +74,16 @@ class Aside:
             self._returns.is_on = self._was
 
 
+@dataclass(slots=True, eq=False)
 class Dispatcher:
     """Lets each call of an operation go its way.
 
-    Args:
-        locate: finds the site of a frame; None for calls that are neither the program's nor the oracle's.
+    Attributes:
+        locator: finds the site of a frame; None for calls that are neither the program's nor the oracle's.
         recorder: traces the calls.
         instances: notes which objects are used.
         along: reads probes along the way.
         on_error: told of each unmutated call that raised, after what it raised.
-        locate_definition: finds the site of a function that is called back; None likewise.
-
-    Attributes:
         on_end: told of each call that is over, with what it read; None if nobody asks.
         turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
@@ -97,33 +96,21 @@ class Dispatcher:
         calls: how often each site has been called in the running test, by operation and pattern.
     """
 
-    def __init__(
-        self,
-        locate: Callable[[FrameType | None], tuple[Span, Role] | None],
-        recorder: Recorder,
-        instances: Instances,
-        along: Along,
-        on_error: Callable[[BaseException, SiteCall], None],
-        on_end: Callable[[Call, Mapping[str, Value]], None] | None = None,
-        locate_definition: Callable[[CodeType], tuple[Span, Role] | None] = lambda code: None,
-    ) -> None:
-        self._locate = locate
-        self._locate_definition = locate_definition
-        self._recorder = recorder
-        self._instances = instances
-        self._along = along
-        self._on_error = on_error
-        self.on_end = on_end
-        self.turn: Callable[[], None] | None = None
-        self.meter: Meter | None = None
-        self.trunk: Trunk | None = None
-        self.mutants: list[ActiveMutant] = []
-        self.oracle_nodes: tuple[str, ...] = ()
-        self.on_live: Callable[[SiteCall], None] | None = None
-        self.refused = RefusedCalls()
-        self.given: dict[Adapter, tuple[Span, Role] | None] = {}
-        self._callers = Callers()
-        self.calls: Counter[tuple[Span, str, str | None]] = Counter()
+    locator: Locator
+    recorder: Recorder
+    instances: Instances
+    along: Along
+    on_error: Callable[[BaseException, SiteCall], None]
+    on_end: Callable[[Call, Mapping[str, Value]], None] | None = None
+    turn: Callable[[], None] | None = None
+    meter: Meter | None = None
+    trunk: Trunk | None = None
+    mutants: list[ActiveMutant] = field(default_factory=list)
+    oracle_nodes: tuple[str, ...] = ()
+    on_live: Callable[[SiteCall], None] | None = None
+    refused: RefusedCalls = field(default_factory=RefusedCalls)
+    given: dict[Adapter, tuple[Span, Role] | None] = field(default_factory=dict)
+    calls: Counter[tuple[Span, str, str | None]] = field(default_factory=Counter)
 
     def handler(self, adapter: Adapter) -> Handler:
         """Return what stands around an operation."""
@@ -143,8 +130,8 @@ class Dispatcher:
                 self.turn()
             if self.meter is None:
                 return wrapped(*args, **kwargs)
-            if instance is not None and self._instances.is_watching:
-                self._instances.used(instance)
+            if instance is not None and self.instances.is_watching:
+                self.instances.used(instance)
             if _under_way.get():
                 return wrapped(*args, **kwargs)
             if is_counted and not where.is_again:
@@ -155,10 +142,10 @@ class Dispatcher:
             site = where.site or self._site(frame, where, adapter)
             if site is None:
                 return wrapped(*args, **kwargs)
-            is_direct = self._recorder.answers is not None and self._is_direct(frame, where)
+            is_direct = self.recorder.answers is not None and self._is_direct(frame, where)
             wrapped = _bound(wrapped, instance)
             is_async = is_coroutine_function(wrapped) or where.is_awaited
-            caller = self._callers.of(where.frame or frame, is_async)
+            caller = caller_of(where.frame or frame, is_async)
             invocation = Invocation(wrapped, instance, args, kwargs, where, caller)
             on_its_way = self.dispatch(adapter, site, invocation, is_async, is_direct)
             if is_async:
@@ -168,11 +155,13 @@ class Dispatcher:
         return handle
 
     def _site(self, frame: FrameType, where: Where, adapter: Adapter) -> tuple[Span, Role] | None:
-        site = self._locate(frame) if where.code is None else self._locate_definition(where.code)
+        site = (
+            self.locator.locate(frame) if where.code is None else self.locator.locate_definition(where.code)
+        )
         node = where.node
         if site is not None and node is not None and any(fnmatchcase(node, one) for one in self.oracle_nodes):
             return site[0], Role.ORACLE
-        if site is None and where.code is None:  # in a thread, where no frame tells it
+        if site is None and code is None:  # in a thread, where no frame tells it
             site = where.handed or self.given.get(adapter)
         return site
 
@@ -183,7 +172,7 @@ class Dispatcher:
         ours = packages()
         while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] in ours:
             frame = frame.f_back
-        return frame is not None and self._locate_definition(frame.f_code) is not None
+        return frame is not None and self.locator.locate_definition(frame.f_code) is not None
 
     async def dispatch(
         self,
@@ -205,8 +194,8 @@ class Dispatcher:
         __tracebackhide__ = True
         token = _under_way.set(True)
         reply: Reply | None = None
-        clock = self._recorder.clock
-        began = self._recorder.began = clock() if clock is not None else None
+        clock = self.recorder.clock
+        began = self.recorder.began = clock() if clock is not None else None
         try:
             # 1. The adapter reads which command it is, and the values it writes.
             call = adapter.to_call(invocation)
@@ -268,7 +257,7 @@ class Dispatcher:
             if made.is_async:
                 result = await result
         except BaseException as error:
-            self._on_error(error, made)
+            self.on_error(error, made)
             if isinstance(error, StopIteration):
                 raise Carried(error) from None
             raise
@@ -281,9 +270,9 @@ class Dispatcher:
 
     def _note(self, made: SiteCall, reply: Reply | None, began: float | None) -> None:
         """Trace a call that is over; ``reply`` is the robot's last one, None if the call raised."""
-        self._recorder.record(made, reply, began)
-        if made.call.is_command and self._along.step:
-            self._along.after(len(self._recorder.trace))
+        self.recorder.record(made, reply, began)
+        if made.call.is_command and self.along.step:
+            self.along.after(len(self.recorder.trace))
         if self.on_end is not None:
             self.on_end(made.call, reply.values if reply is not None else {})
 
@@ -320,27 +309,24 @@ async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: b
 _MOST_UNITS, _LONG = 8, 14
 
 
-class Callers:
-    """Makes calls in the name of frames: what looks at its caller finds the program's line.
+#: callers by code, instruction and whether they await; the code is kept, so that no other can get its address
+_callers: dict[tuple[int, int, bool], tuple[Caller, CodeType, dict[str, Any]]] = {}
+
+
+def caller_of(frame: FrameType, is_async: bool) -> Caller:
+    """Return what makes a call as if this frame did, where it stands now.
 
     Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function
     was called. Between the program and an operation there are frames of ours; the last of them has the
     program's file, line, function and global names.
     """
-
-    def __init__(self) -> None:
-        # the code is kept, so that no other can get its address
-        self._made: dict[tuple[int, int, bool], tuple[Caller, CodeType, dict[str, Any]]] = {}
-
-    def of(self, frame: FrameType, is_async: bool) -> Caller:
-        """What makes a call as if this frame did, where it stands now."""
-        code = frame.f_code
-        key = (id(code), frame.f_lasti, is_async)
-        known = self._made.get(key)
-        if known is None or known[2] is not frame.f_globals:
-            made = _made(code, frame.f_lasti, frame.f_globals, is_async)
-            known = self._made[key] = (made, code, frame.f_globals)
-        return known[0]
+    code = frame.f_code
+    key = (id(code), frame.f_lasti, is_async)
+    known = _callers.get(key)
+    if known is None or known[2] is not frame.f_globals:
+        made = _made(code, frame.f_lasti, frame.f_globals, is_async)
+        known = _callers[key] = (made, code, frame.f_globals)
+    return known[0]
 
 
 def _made(code: CodeType, instruction: int, names: dict[str, Any], is_async: bool) -> Caller:

@@ -18,7 +18,7 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pkgutil import resolve_name
-from types import FrameType, FunctionType, MethodType, ModuleType
+from types import FrameType, MethodType, ModuleType
 from typing import Any
 
 import wrapt
@@ -27,7 +27,7 @@ from mutabot.model import Role, Span
 from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
-from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, is_mock
+from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, mock_of
 
 #: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
 #: which is None if nobody knows any more
@@ -99,7 +99,7 @@ class Handing:
             return found
         if self._standing.noted is not None:
             self._standing.noted.note(site, one.operation, found, receiver)
-        mock = _mock_of(found)
+        mock = mock_of(found)
         if mock is not None:
             known = vars(mock).get(_MARK, (one, receiver, place))
             if known[2] == place or not site.is_given:
@@ -170,13 +170,6 @@ class Handing:
             self._standing.noted.note_elsewhere(one.operation, self._standing.locator.locate(caller))
         where = {"handed": place, "frame": caller, "is_awaited": is_coroutine_function(mock)}
         return self._standing.call(one, where, partial(original, mock), receiver, *args, **kwargs)
-
-
-def _mock_of(found: Any) -> Any:
-    """The mock that a callable is, or stands before; None if it is none."""
-    module = sys.modules.get("unittest.mock")
-    made = vars(found).get("mock") if type(found) is FunctionType else found
-    return made if module is not None and made is not None and is_mock(module, made) else None
 
 
 def _caller(frame: FrameType | None) -> FrameType | None:
