@@ -155,10 +155,8 @@ class Dispatcher:
         return handle
 
     def _site(self, frame: FrameType, where: Where, adapter: Adapter) -> tuple[Span, Role] | None:
-        site = (
-            self.locator.locate(frame) if where.code is None else self.locator.locate_definition(where.code)
-        )
-        node = where.node
+        node, code, locator = where.node, where.code, self.locator
+        site = locator.locate(frame) if code is None else locator.locate_definition(code)
         if site is not None and node is not None and any(fnmatchcase(node, one) for one in self.oracle_nodes):
             return site[0], Role.ORACLE
         if site is None and code is None:  # in a thread, where no frame tells it
