@@ -374,20 +374,9 @@ class _MutatedCall:
         self.mutant.on_act()
 
     def _judge(self, error: BaseException) -> None:
-        evidence = self.mutant.evidence
-        if is_refusal(error, self.mutant.refusals):
-            if not self._is_usual:
-                evidence.refusals = with_refusal(evidence.refusals, error)
-        elif isinstance(error, TypeError) and self._is_raised_at_the_call(error):
-            evidence.invalid = True
-
-    def _is_raised_at_the_call(self, error: BaseException) -> bool:
-        """Whether no code of the callable itself ran: its arguments did not fit."""
-        traceback = error.__traceback__
-        while traceback is not None and traceback.tb_next is not None:
-            traceback = traceback.tb_next
-        caller: Any = self.made.call.payload.caller
-        return traceback is not None and traceback.tb_frame.f_code is caller.__code__
+        """Note what the robot raised, if it refuses the mutated call."""
+        if is_refusal(error, self.mutant.refusals) and not self._is_usual:
+            self.mutant.evidence.refusals = with_refusal(self.mutant.evidence.refusals, error)
 
 
 def is_refusal(error: BaseException, names: Iterable[str]) -> bool:

@@ -40,7 +40,7 @@ class RefusedCalls:
         self._watched.clear()
 
     def at(self, span: Span, operation: str, pattern: str | None) -> frozenset[int]:
-        """The numbers of those of a site."""
+        """Return the numbers of the refused calls of a site."""
         return self._known.get((span, operation, pattern), frozenset())
 
     def has(self, made: SiteCall) -> bool:
@@ -49,7 +49,7 @@ class RefusedCalls:
         return made.number in self.at(made.site[0], made.call.operation.target, pattern)
 
     def begins(self, made: SiteCall) -> None:
-        """A call of the original's is made: as with mutated ones, what is refused from now on is this."""
+        """Note that the original makes a call: as with mutated ones, what is refused from now on is this."""
         if self.on_refused is None:
             return
         self._watched.pop(made.call.operation.target, None)
@@ -58,12 +58,12 @@ class RefusedCalls:
             self._watched[made.call.operation.target] = (made, refused)
 
     def returned(self, made: SiteCall, result: Any) -> None:
-        """A call of the original's has returned: its answer may say that the robot refuses it."""
+        """Look whether the answer to a call of the original's says that the robot refuses it."""
         if self.on_refused is not None and answered(made.call, result) is not None:
             self.on_refused(made)
 
     def heard(self, name: str, message: Any) -> None:
-        """A message came by."""
+        """Look whether a message says that the robot refuses a call of the original's."""
         for target, (made, refused) in list(self._watched.items()):
             if self.on_refused is not None and heard(refused, name, message) is not None:
                 del self._watched[target]
@@ -71,13 +71,13 @@ class RefusedCalls:
 
 
 def refused_of(call: Call) -> tuple[Refused, ...]:
-    """How the robot says that it refuses this command."""
+    """Return how the robot says that it refuses this command."""
     own = call.pattern.refused if call.pattern is not None else ()
     return own or call.operation.refused
 
 
 def answered(call: Call, result: Any) -> str | None:
-    """How the answer to a command says that it is refused, in words; None if it does not."""
+    """Return how the answer to a command says that it is refused, in words; None if it does not."""
     for refused in refused_of(call):
         if refused.topic is None:
             found = _found(refused, result)
@@ -89,7 +89,7 @@ def answered(call: Call, result: Any) -> str | None:
 
 
 def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
-    """How a message under this name says that a command before it is refused, in words; None if it does not.
+    """Return how a message under this name refuses a command before it, in words; None if it does not.
 
     Of an action, messages are its results, and the words by which its goals end.
     """

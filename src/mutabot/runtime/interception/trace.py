@@ -76,7 +76,7 @@ class Recorder:
             self.on_hit(*self.trace[-1])
 
     def index_of(self, seen: SiteSeen) -> int:
-        """The index of a site that was reached here or, under another index, in another process."""
+        """Return the index of a site that was reached here or, under another index, in another process."""
         key = replace(seen, index=-1)
         index = self._indexes.get(key)
         if index is None:
@@ -86,7 +86,7 @@ class Recorder:
         return index
 
     def told(self) -> list[Told]:
-        """The calls of the running test with their times, as far as they are recorded."""
+        """Return the calls of the running test with their times, as far as they are recorded."""
         return [
             self.told_of(index, written, read, began, ended)
             for (index, written, read, _), (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False)
@@ -95,7 +95,7 @@ class Recorder:
     def told_of(
         self, index: int, written: Any, read: Any, began: float | None, ended: float | None = None
     ) -> Told:
-        """One call at the site of this index; ``ended`` is ``began`` where that is not known."""
+        """Return one call at the site of this index; ``ended`` is ``began`` where that is not known."""
         site = self.sites[index]
         place = f"{site.span.file}:{site.span.line}"
         role = Role.ORACLE if site.oracle else Role.PROGRAM
@@ -103,7 +103,7 @@ class Recorder:
         return Told(began, ended, site.operation, place, site.pattern, written, read, role)
 
     def sites_of(self, trace: Iterable[Any]) -> tuple[SiteSeen, ...]:
-        """The sites that a trace refers to; those of processes below the tests are in it as well."""
+        """Return the sites that a trace refers to, those of processes below the tests as well."""
         return tuple(self.sites[index] for index in sorted({hit[0] for hit in trace}))
 
 
