@@ -56,12 +56,12 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
 
 
 def _advice(operation: Operation, is_native: bool) -> str:
-    what = "is native and" if is_native else "is wrapped in (*args, **kwargs), which"
-    return (
-        f"{operation.target} {what} does not tell its arguments: only those that a call gives by keyword "
-        f'can be told apart; write signature = "({", ".join(operation.described)}, …)", with all names in '
-        "their order"
-    )
+    if is_native:
+        why = f"{operation.target} is native and does not tell its arguments"
+    else:
+        why = f"{operation.target} is wrapped in (*args, **kwargs), which does not tell its arguments"
+    proposal = f'write signature = "({", ".join(operation.described)}, …)", with all names in their order'
+    return f"{why}: only those that a call gives by keyword can be told apart; {proposal}"
 
 
 Undo = Callable[[], None]

@@ -1,6 +1,6 @@
 """Targets that have a name on a middleware: topics, services, actions, parameters.
 
-What stands around each use are hooks that packages bring (``middleware``). They are put in place as soon as
+What stands around each use are hooks that packages bring (``target.Middleware``). They are put in place as soon as
 the program imports the client library of a middleware, and not imported before.
 
 Giving the program what comes by itself, as a mutant would have it: late, several times, or not at all.
@@ -103,7 +103,7 @@ class Messages(Targets):
             return found
 
     def heard(self, name: str, message: Any) -> None:
-        """A message passed under a resolved name, as it is in truth; see ``middleware.Names``."""
+        """A message passed under a resolved name, as it is in truth; see ``target.Names``."""
         if self.on_heard is not None:
             self.on_heard(name, message)
 

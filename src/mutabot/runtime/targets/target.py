@@ -23,7 +23,7 @@ What hooks keep to, so that all operators mean the same in every middleware:
 - Each use gives the handler a ``Where`` with ``means`` (``target.Means``): how the node sleeps, does
   something later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of
   it by the clock of the node, so that simulated time counts.
-- What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``delivery``:
+- What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``messages``:
   ``deliver`` calls the program's callback, ``wait_for`` stands around a wait. A handler's own result
   may be a ``Delivery`` there and nowhere else.
 - An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
@@ -126,7 +126,7 @@ NOWHERE = Where()
 
 #: ``handler(wrapped, instance, args, kwargs, where=NOWHERE)``, as wrapt calls it, with a ``Where`` behind it
 #: if the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
-#: coroutine function. Of what comes by itself it may return a ``delivery.Delivery`` in its place
+#: coroutine function. Of what comes by itself it may return a ``messages.Delivery`` in its place
 Handler = Callable[..., Any]
 
 
