@@ -1,6 +1,6 @@
 """A stage with a small client library in the place of a middleware: its hooks are written as all hooks are.
 
-Everything is real (handlers, doors, operators, deliveries) but the client library, whose clock is a number
+Everything is real (handlers, adapters, operators, deliveries) but the client library, whose clock is a number
 that sleeping moves on.
 """
 

@@ -1,6 +1,6 @@
 """A small stage for tests of the inside: a robot module, a program, a vocabulary, and a session.
 
-Everything is real (interception, doors, operators) but the pipe, whose lines are kept in a list.
+Everything is real (interception, adapters, operators) but the pipe, whose lines are kept in a list.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Targets that have a name on a middleware: topics, services, actions, parameters.
 
-What stands around each use are hooks that packages bring (``target.Middleware``). They are put in place as soon as
-the program imports the client library of a middleware, and not imported before.
+What stands around each use are hooks that packages bring (``target.Middleware``). They are put in place as
+soon as the program imports the client library of a middleware, and not imported before.
 
 Giving the program what comes by itself, as a mutant would have it: late, several times, or not at all.
 
