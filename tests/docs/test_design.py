@@ -82,7 +82,7 @@ CONFIGURED = """
 REPORT, PLAN = "runtime.isolation.fork.BranchOfSession._report", "journal.journal.Journal.set_plan"
 #: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
-    "A call through a mutant": ("replay", ["runtime.interception.active_mutant.Activation.perform"]),
+    "A call through a mutant": ("replay", ["runtime.interception.active_mutant.ActiveMutant.apply"]),
     "A branch": ("branch", [REPORT, "runtime.isolation.fork_parent.Trunk._take_token"]),
     "An outcome on its way to the screen": ("branch", [REPORT, PLAN]),
     "From a vocabulary's line to a mutant": ("branch", [PLAN]),

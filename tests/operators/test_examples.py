@@ -14,7 +14,7 @@ from mutabot.model import Call, Reply
 from mutabot.model.quantity import changes
 from mutabot.operators import Example, names, operator
 from mutabot.operators.command import CONTROLS
-from mutabot.operators.passage import Passage, rehearse
+from mutabot.operators.passage import CallRecord, rehearse
 
 CASES = [(name, index) for name in [*names(), *CONTROLS] for index in range(len(operator(name).examples))]
 SEED = 1
@@ -28,7 +28,7 @@ def example_of(name: str, index: int) -> Example:
     return operator(name).examples[index]
 
 
-def play(name: str, example: Example) -> Passage:
+def play(name: str, example: Example) -> CallRecord:
     """The passage of the example's call, after those that went before it."""
     subject = example.subject
     middleware = operator(name).middleware(subject, Random(SEED))
@@ -36,7 +36,7 @@ def play(name: str, example: Example) -> Passage:
     async def waited(seconds: float) -> None:
         """There is no time to pass here."""
 
-    def go(values: Mapping[str, Any], replied: Mapping[str, Any]) -> Passage:
+    def go(values: Mapping[str, Any], replied: Mapping[str, Any]) -> CallRecord:
         call = Call(
             subject.operation, subject.pattern, values, idle=Reply(), payload=object(), wait=waited,
             time=lambda: example.time,

@@ -1,6 +1,6 @@
 """A stage with a small client library in the place of a middleware: its hooks are written as all hooks are.
 
-Everything is real (handlers, doors, operators, deliveries) but the client library, whose clock is a number
+Everything is real (handlers, adapters, operators, deliveries) but the client library, whose clock is a number
 that sleeping moves on.
 """
 
@@ -20,7 +20,7 @@ from mutabot.model import Mutant, Operation, Role, Site, Vocabulary
 from mutabot.model.events import SiteSeen
 from mutabot.model.job import Budget, Job
 from mutabot.model.operation import Form
-from mutabot.runtime.interception.active_mutant import Activation
+from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.messages import Messages, deliver, wait_for
@@ -227,7 +227,7 @@ class ClientStage:
         *,
         coming: Any = (),
         oracle_nodes: tuple[str, ...] = (),
-    ) -> tuple[Any, Client, Activation]:
+    ) -> tuple[Any, Client, ActiveMutant]:
         """Run a program as the original to find its only site, then as a mutant there.
 
         Returns what it returns or raises, the client library, and the mutant at work.
@@ -248,7 +248,7 @@ class ClientStage:
         *,
         coming: Any = (),
         oracle_nodes: tuple[str, ...] = (),
-    ) -> tuple[Any, Client, Activation]:
+    ) -> tuple[Any, Client, ActiveMutant]:
         """The same for a program that has run as the original."""
         seen = [line for line in self.pipe.lines if isinstance(line, SiteSeen)][-1]
         site = Site(seen.span, "text", 1, Role.PROGRAM)

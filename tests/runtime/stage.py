@@ -1,6 +1,6 @@
 """A small stage for tests of the inside: a robot module, a program, a vocabulary, and a session.
 
-Everything is real (interception, doors, operators) but the pipe, whose lines are kept in a list.
+Everything is real (interception, adapters, operators) but the pipe, whose lines are kept in a list.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mutabot.config.vocabulary import load
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.events import Event, SiteSeen
 from mutabot.model.job import Budget, Job
-from mutabot.runtime.interception.active_mutant import Activation
+from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 
@@ -121,7 +121,7 @@ class Stage:
         index: int = 0,
         idle: Any = None,
         variant: str = "",
-    ) -> tuple[Any, Activation]:
+    ) -> tuple[Any, ActiveMutant]:
         """Run the program once as the original to find sites, then as a mutant at the site ``index``.
 
         Returns the program's result and the activation with its evidence.
@@ -129,6 +129,7 @@ class Stage:
         recording = self.session()
         self.run(recording)
         recording.remove()
+        sys.modules.pop(self.program_name)  # its text asks the session that was there when it was loaded
         seen = self.sites()[index]
         mutant = Mutant(
             1, "robot", operator, _site(seen.span), seen.operation, seen.pattern, quantity, variant, "", idle

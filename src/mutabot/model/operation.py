@@ -245,7 +245,7 @@ class Operation:
             does not say.
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
         signature: what its arguments are, for a callable that does not tell; see ``model.signature``.
-        overrides: whether the methods of subclasses that override it belong to it.
+        overrides: whether methods of the program's own subclasses that override it belong to it.
         kind: what kind of target it has, which says how it is found at run time: the name of a file in
             ``runtime.targets``; None for a Python callable.
         named: what it is on a middleware; None for a Python callable.

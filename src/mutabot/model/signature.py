@@ -44,48 +44,10 @@ def parse_signature(text: str) -> Signature:
     return Signature(parameters)
 
 
-def spell_signature(signature: Signature) -> str:
-    """The text that is read as this signature, bar annotations. Defaults that are no literals are ``…``."""
-    parameters = [
-        parameter.replace(annotation=Parameter.empty, default=_spelt(parameter.default))
-        for parameter in signature.parameters.values()
-        if parameter.name not in ("self", "cls")
-    ]
-    return str(Signature(parameters))
-
-
-def described_in(documentation: str | None, name: str) -> Signature | None:
-    """The signature that the first line of a native callable's documentation gives, or None."""
-    first = (documentation or "").strip().partition("\n")[0].strip()
-    if not first.startswith(f"{name}("):
-        return None
-    try:
-        return parse_signature(first.removeprefix(name).rstrip(":."))
-    except ValueError:
-        return None
-
-
 def takes_anything(signature: Signature) -> bool:
     """Whether arguments of any number and name fit, so that the signature does not tell what they mean."""
     kinds = {parameter.kind for parameter in signature.parameters.values()}
     return {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD} <= kinds
-
-
-class _Unknown:
-    """Prints itself as an ellipsis."""
-
-    def __repr__(self) -> str:
-        return "…"
-
-
-def _spelt(default: Any) -> Any:
-    if default is Parameter.empty:
-        return default
-    try:
-        ast.literal_eval(repr(default))
-    except Exception:  # a default may be any object
-        return _Unknown()
-    return _Unknown() if default is ... else default
 
 
 def _arguments(text: str) -> ast.arguments:

@@ -48,7 +48,7 @@ def run(coroutine: Coroutine[Any, Any, T], *, operator: str) -> T:
 
 
 @dataclass(slots=True)
-class Passage:
+class CallRecord:
     """What happened while one call went through a mutant.
 
     Attributes:
@@ -119,7 +119,7 @@ class Passage:
         )
 
 
-def recording(passage: Passage, proceed: Proceed) -> Proceed:
+def recording(passage: CallRecord, proceed: Proceed) -> Proceed:
     """``proceed`` that notes in ``passage`` what goes through it."""
 
     async def noted(call: Call) -> Reply:
@@ -131,7 +131,7 @@ def recording(passage: Passage, proceed: Proceed) -> Proceed:
     return noted
 
 
-async def passed(passage: Passage, middleware: Middleware, proceed: Proceed) -> Reply:
+async def run_middleware(passage: CallRecord, middleware: Middleware, proceed: Proceed) -> Reply:
     """Send the passage's call through the mutant."""
     wait = passage.call.wait
 
@@ -153,7 +153,7 @@ def rehearse(
     payload: object = None,
     refusal: Exception | None = None,
     operator: str,
-) -> Passage:
+) -> CallRecord:
     """Send a recorded call through a mutant, with a robot that always answers ``replied``.
 
     ``payload`` stands for what is in the reply beside the values: it is unlike any other object.
@@ -171,6 +171,6 @@ def rehearse(
             raise refusal
         return Reply(dict(replied), payload)
 
-    passage = Passage(replace(call, current=where))
-    run(passed(passage, middleware, answer), operator=operator)
+    passage = CallRecord(replace(call, current=where))
+    run(run_middleware(passage, middleware, answer), operator=operator)
     return passage

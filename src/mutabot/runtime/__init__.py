@@ -1,11 +1,10 @@
 """What lives beside the robot program, in its process.
 
-It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``languages``, ``border`` and
-``operators``.
-Its rooms: ``suite`` makes pytest run a job, ``targets`` finds what the vocabulary names, ``calls`` and
-``text`` are the two ways of a mutant into it, ``readings`` looks at the world,
-``fork`` makes branches and copies, and ``watching`` is for ``mutabot init``. To follow one call, begin
-at ``calls/passing.py``.
+It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``languages``, ``evidence``,
+``extensions`` and ``operators``. ``targets`` finds what the vocabulary names; ``interception`` and
+``program_text`` are the two ways of a mutant into the program; ``observation`` looks at the world;
+``isolation`` forks, ``processes`` follows what the tests start, and ``watching`` is for ``mutabot init``. To
+follow one call, begin at ``interception/dispatcher.py``.
 """
 
 import os

@@ -8,7 +8,8 @@ from __future__ import annotations
 import resource
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from math import inf
+from typing import Any, NoReturn
 
 from mutabot.errors import MutabotError
 from mutabot.model.job import Budget
@@ -165,6 +166,7 @@ class Meter:
     Attributes:
         budget: its limits.
         operations: intercepted calls so far.
+        most: how many there may be.
         started, now: simulated time at the test's first tick and at its last one, s; None before.
         used: simulated time that earlier clocks of the same test counted, s.
         exceeded: the first limit that was exceeded, in words.
@@ -176,13 +178,14 @@ class Meter:
     now: float | None = None
     used: float = 0.0
     exceeded: str | None = None
+    most: float = field(init=False)
 
-    def count(self) -> None:
-        """One more operation. Raises BudgetExceeded beyond the limit."""
-        self.operations += 1
-        limit = self.budget.operations
-        if limit is not None and self.operations > limit:
-            self._exceed(f"more than {limit} operations")
+    def __post_init__(self) -> None:
+        self.most = inf if self.budget.operations is None else self.budget.operations
+
+    def exceed_operations(self) -> NoReturn:
+        """End a test whose intercepted calls are more than ``most``. Raises BudgetExceeded."""
+        self._exceed(f"more than {self.budget.operations} operations")
 
     def tick(self, time: float) -> None:
         """The simulation has advanced to ``time`` (s). Raises BudgetExceeded beyond the limit."""
@@ -212,7 +215,7 @@ class Meter:
             return None
         return self.used + self.now - self.started
 
-    def _exceed(self, text: str) -> None:
+    def _exceed(self, text: str) -> NoReturn:
         self.exceeded = self.exceeded or text
         raise BudgetExceeded(text)
 

@@ -99,13 +99,6 @@ class Inspection:
         self._check_exceptions()
         self._check_probes()
 
-    def tell_uncovered(self, interception: Interception) -> None:
-        """Say which overriding methods cannot be wrapped."""
-        for operation in self._vocabulary.operations:
-            uncovered = interception.of(operation.kind).uncovered(operation.target)
-            if operation.overrides and uncovered:
-                self.tell(operation.source, Finding("overrides", "; ".join(uncovered), is_remark=True))
-
     def _check_current(self, operation: Operation) -> None:
         if operation.target not in self._askers:
             return

@@ -6,23 +6,22 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from mutabot.model import Moment, Mutant, Operation, Probe, Role
+from mutabot.model import Moment, Mutant, Operation, Probe
 from mutabot.model.events import Acted, Called, Event, KnownLater, SiteSeen, TextsSeen
 from mutabot.model.job import Budget, Job
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import Sink
 from mutabot.runtime.evidence import Evidence, Meter, together
 from mutabot.runtime.inspection import Inspection
-from mutabot.runtime.interception.active_mutant import Activation, is_refusal
-from mutabot.runtime.interception.adapter import Answers, Door, handles_of
-from mutabot.runtime.interception.dispatcher import Aside, Passing
-from mutabot.runtime.interception.refusals import Made
-from mutabot.runtime.interception.trace import Locator, Recorder
+from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
+from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
+from mutabot.runtime.interception.dispatcher import Aside, Dispatcher
+from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
 from mutabot.runtime.observation.clock import ClockReader, ProgramTime
 from mutabot.runtime.observation.instances import Instances
 from mutabot.runtime.observation.probes import Along, Reading, Rehearsal, TestRecording, rehearse, take
@@ -71,7 +70,7 @@ class Session:
     locator: Locator
     recorder: Recorder = field(init=False)
     interception: Interception = field(init=False)
-    passing: Passing = field(init=False)
+    passing: Dispatcher = field(init=False)
     inspection: Inspection = field(init=False)
     placed: ProcessFaults = field(init=False)
     recording: TestRecording = field(init=False)
@@ -89,9 +88,9 @@ class Session:
     live: set[int] = field(default_factory=set)
     on_refused: Callable[[int, int], None] | None = None
     on_live: Callable[[int], None] | None = None
-    _doors: list[Door] = field(default_factory=list)
+    _adapters: list[Adapter] = field(default_factory=list)
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
-    _telling: list[Door] = field(default_factory=list)
+    _telling: list[Adapter] = field(default_factory=list)
     _time: ProgramTime = field(init=False)
     _main_thread: int | None = field(default_factory=lambda: threading.main_thread().ident)
     _sees_itself: set[Handler] = field(default_factory=set)
@@ -99,19 +98,12 @@ class Session:
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
         self.recording = TestRecording()
-        self.recorder.clock = self.recording.clock
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
         self.placed = ProcessFaults(self._acted)
         self.interception = Interception(self.inspection.target_is_wrong)
-        self.passing = Passing(
-            self.locator.locate,
-            self.recorder,
-            self.instances,
-            self.along,
-            self._raised,
-            self._on_end,
-            self.locator.locate_definition,
+        self.passing = Dispatcher(
+            self.locator, self.recorder, self.instances, self.along, self._raised, self._on_end
         )
         self.passing.oracle_nodes = self.job.oracle_nodes
         self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
@@ -124,11 +116,10 @@ class Session:
         vocabulary = self.job.vocabulary
         candidates: list[Candidate] = []
         for operation in vocabulary.operations:
-            overrides = partial(self._handler_of_override, operation) if operation.overrides else None
             handler = self._handler(operation)
-            self.interception.wrap(operation, handler, overrides)
+            self.interception.wrap(operation, handler)
             if operation.kind in (None, "methods"):
-                candidates.append(Candidate(operation, handler, self._doors[-1]))
+                candidates.append(Candidate(operation, handler, self._adapters[-1]))
         self._see_calls(candidates)
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.wait is not None:
@@ -175,9 +166,9 @@ class Session:
         operations = self.job.vocabulary.operations
         asked = {name for operation in operations for name in operation.currents}
         told = (one for operation in operations for one in operation.told_as_refused)
-        self._telling = [door for door in self._doors if door.operation.target in asked]
+        self._telling = [adapter for adapter in self._adapters if adapter.operation.target in asked]
         if any(refused.topic is not None for refused in told) or any(
-            door.operation.named is not None for door in self._telling
+            adapter.operation.named is not None for adapter in self._telling
         ):
             self.interception.of("messages").on_heard = self._heard
 
@@ -185,30 +176,24 @@ class Session:
         for activation in self.activations:
             activation.heard(name, message)
         self.passing.refused.heard(name, message)
-        for door in self._telling:
-            door.hear(name, message)
+        for adapter in self._telling:
+            adapter.observe_message(name, message)
 
     def _handler(self, operation: Operation) -> Handler:
-        """What stands around an operation: a door of its own, and the way that all calls go."""
+        """What stands around an operation: an adapter of its own, and the way that all calls go."""
         vocabulary = self.job.vocabulary
         readings = {name: vocabulary.operation(name) for name in operation.currents}
-        door = Door(operation, readings, partial(self.inspection.path_is_wrong, operation))
-        door.handles = handles_of(self.job.vocabulary)
-        door.lately = self._lately
-        door.time = self._time
-        self._doors.append(door)
-        handler = self.passing.handler(door)
+        told = partial(self.inspection.path_is_wrong, operation)
+        adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), self._time)
+        self._adapters.append(adapter)
+        handler = self.passing.handler(adapter)
         self._sees_itself.add(handler)
         return handler
-
-    def _handler_of_override(self, operation: Operation, kind: type) -> Handler:
-        """An overriding method may have a signature of its own, so it has a door of its own."""
-        return self._handler(operation)
 
     def _watch_imports(self) -> None:
         """What the program does while it is imported counts for every test that comes after."""
         self.passing.meter = Meter(Budget())
-        self.recorder.answers = Answers.of(self.job.vocabulary) if self.job.mutant is None else None
+        self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if self.job.mutant is None else None
         self._start_activations()
 
     def _end_imports(self) -> None:
@@ -218,7 +203,7 @@ class Session:
         for call in self.recorder.trace:
             self.pipe.send(Called(*call))
         for activation in self.activations:
-            activation.keep_early()
+            activation.keep_import_evidence()
 
     @property
     def sites(self) -> tuple[SiteSeen, ...]:
@@ -226,9 +211,9 @@ class Session:
         return tuple(self.recorder.sites)
 
     @property
-    def activations(self) -> list[Activation]:
+    def activations(self) -> list[ActiveMutant]:
         """The mutants of calls that are at work: none for the original."""
-        return self.passing.activations
+        return self.passing.mutants
 
     @property
     def meter(self) -> Meter | None:
@@ -257,7 +242,7 @@ class Session:
     @property
     def commands(self) -> int:
         """Operations of the running test that made the robot do something."""
-        return sum(door.commands for door in self._doors)
+        return sum(adapter.commands for adapter in self._adapters)
 
     def activate(self, mutant: Mutant) -> None:
         """Take on a mutant. What of it is an alternative in the program text stands there already."""
@@ -267,9 +252,8 @@ class Session:
         elif operation is not None:
             refusals = self._refusals(operation)
             on_act = partial(self._acted, mutant.id)
-            made = Activation(mutant, operation, refusals, on_act, self._in_mutated_call)
-            made.time = self._time.now_if_known
-            self.passing.activate(made)
+            told = (on_act, self._in_mutated_call, self._time.now_if_known)
+            self.passing.mutants.append(ActiveMutant(mutant, operation, refusals, *told))
 
     def grow(self, trunk: Trunk) -> None:
         """Run the original from now on, and fork a branch for every mutant of the trunk's."""
@@ -304,8 +288,9 @@ class Session:
         self._look_again()
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
         is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
-        self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
+        self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()
+        self.recorder.clock = self.recording.clock if self.job.evidence else None
         self.instances.start(fixtures)
         self.passing.calls.clear()
         self.refused_calls.clear()
@@ -316,8 +301,8 @@ class Session:
         self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
             self.returns.start()
-        for door in self._doors:
-            door.reset()
+        for adapter in self._adapters:
+            adapter.reset()
         trunk = self.trunk
         if self.text is not None:
             branch = trunk.fork_at_place if trunk is not None else None
@@ -334,7 +319,6 @@ class Session:
 
     def _look_again(self) -> None:
         """What the program has made since the last test."""
-        self.interception.look_again()
         if self.call_sites.loaded:
             self.standing.note_modules(frozenset(self.call_sites.loaded))
             self.call_sites.loaded.clear()
@@ -420,7 +404,6 @@ class Session:
             self._tell_known_later()
         if self.job.inspect:
             self.inspect_targets()
-            self.inspection.tell_uncovered(self.interception)
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
@@ -435,7 +418,7 @@ class Session:
         """Look at every target of the vocabulary, also of what no test has led to."""
         self.inspection.inspect(self.interception)
 
-    def _raised(self, error: BaseException, made: Made) -> None:
+    def _raised(self, error: BaseException, made: SiteCall) -> None:
         names = self._refusals(made.call.operation)
         refused = self.passing.refused
         if refused.on_refused is not None and is_refusal(error, names):
@@ -443,24 +426,21 @@ class Session:
         if self.text is not None and not refused.has(made):
             self.text.raised(error, made.call, names)
 
-    def _refused(self, made: Made) -> None:
+    def _refused(self, made: SiteCall) -> None:
         """The robot refused a call of the original."""
         self.refused_calls.append((self._index_of(made), made.number))
         if self.on_refused is not None:
             self.on_refused(*self.refused_calls[-1])
 
-    def _is_live(self, made: Made) -> None:
+    def _is_live(self, made: SiteCall) -> None:
         """A call of the original returned the robot's own memory."""
         site = self._index_of(made)
         if site not in self.live and self.on_live is not None:
             self.on_live(site)
         self.live.add(site)
 
-    def _index_of(self, made: Made) -> int:
-        (span, role), call = made.site, made.call
-        pattern = call.pattern.text if call.pattern is not None else None
-        seen = SiteSeen(-1, span, call.operation.target, pattern, role is Role.ORACLE)
-        return self.recorder.index_of(seen)
+    def _index_of(self, made: SiteCall) -> int:
+        return self.recorder.index_of(replace(seen_by(made), direct=False))
 
     @property
     def _on_end(self) -> Callable[..., None] | None:

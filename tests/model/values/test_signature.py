@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import inspect
-from typing import Any
-
 import pytest
 
-from mutabot.model.signature import described_in, parse_signature, spell_signature, takes_anything
+from mutabot.model.signature import parse_signature, takes_anything
 
 
 @pytest.mark.parametrize(
@@ -55,33 +52,6 @@ def test_what_is_no_signature_is_refused_with_the_reason(text: str, words: str) 
     with pytest.raises(ValueError, match=r".") as caught:
         parse_signature(text)
     assert words in str(caught.value)
-
-
-def test_a_signature_is_spelt_as_it_would_be_read() -> None:
-    def move(self: object, x: float, speed: float = 0.5, *, frame: object = object, more: Any = ...) -> None:
-        pass
-
-    text = spell_signature(inspect.signature(move))
-    assert text == "(x, speed=0.5, *, frame=…, more=…)"
-    assert str(parse_signature(text)) == "(x, speed=0.5, *, frame=Ellipsis, more=Ellipsis)"
-
-
-@pytest.mark.parametrize(
-    ("documentation", "expected"),
-    [
-        ("move(x, y=0) -> None\n\nMoves.", "(x, y=0)"),
-        ("move(self: robot.Arm, dx: float, frame: str = 'base') -> bool", "(dx, frame='base')"),
-        ("move(mode: robot.Mode = <Mode.FAST: 1>)", None),
-        ("Moves the arm by (x, y).", None),
-        ("moves(x)", None),
-        (None, None),
-    ],
-)
-def test_the_documentation_of_a_native_callable_may_tell_its_signature(
-    documentation: str | None, expected: str | None
-) -> None:
-    found = described_in(documentation, "move")
-    assert (str(found) if found is not None else None) == expected
 
 
 def test_a_signature_of_nothing_but_the_rest_takes_anything() -> None:

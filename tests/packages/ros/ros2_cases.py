@@ -11,7 +11,7 @@ import pytest
 from mutabot.model.answer import keep, restore
 from mutabot.model.events import Problem
 from mutabot.model.job import Idle
-from mutabot.runtime.interception.adapter import LOST
+from mutabot.runtime.interception.trace import LOST
 from tests.runtime.stage import Make, Stage
 
 rclpy = pytest.importorskip("rclpy")

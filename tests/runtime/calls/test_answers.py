@@ -6,8 +6,9 @@ from typing import Any
 
 import pytest
 
-from mutabot.model import Operation, Vocabulary
-from mutabot.runtime.interception.adapter import Answers, Returned, snapshot
+from mutabot.model import Call, Operation, Reply, Vocabulary
+from mutabot.runtime.interception.adapter import Invocation, handles_of, snapshot
+from mutabot.runtime.interception.trace import Answers
 
 
 class Gripper:
@@ -32,9 +33,12 @@ class Broken:
 VOCABULARY = Vocabulary((Operation(f"{__name__}:Gripper.close"), Operation(f"{__name__}:move")))
 
 
+CALL = Call(Operation("robot:move"), payload=Invocation(print, None, (), {}))
+
+
 def notes(*values: Any) -> list[Any]:
-    answers = Answers.of(VOCABULARY)
-    return [answers.note(0, Returned(value, {})) for value in values]
+    answers = Answers(handles_of(VOCABULARY))
+    return [answers.note(0, CALL, Reply(payload=value)) for value in values]
 
 
 @pytest.mark.parametrize(
@@ -56,13 +60,13 @@ def test_the_first_answer_is_kept_and_later_ones_are_compared_with_it(
 
 def test_each_site_and_each_test_has_a_first_answer() -> None:
     answers = Answers()
-    assert [answers.note(site, Returned([site], {})) for site in (0, 1)] == [
+    assert [answers.note(site, CALL, Reply(payload=[site])) for site in (0, 1)] == [
         {"kept": {"list": [0]}},
         {"kept": {"list": [1]}},
     ]
     answers.start()
-    assert answers.note(0, Returned([5], {})) == {"kept": {"list": [5]}}
-    assert answers.note(0, None) == {"raised": True}
+    assert answers.note(0, CALL, Reply(payload=[5])) == {"kept": {"list": [5]}}
+    assert answers.note(0, CALL, None) == {"raised": True}
 
 
 def test_an_object_that_fails_when_it_is_looked_at_is_named() -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.runtime.interception.adapter import Callers
+from mutabot.runtime.interception.dispatcher import caller_of
 
 Place = tuple[int | None, int | None, int | None, int | None]
 
@@ -22,7 +22,7 @@ def caller_at(text: str, line: int, *, is_async: bool = False) -> tuple[Callable
     def here(**_: int) -> None:
         frame = sys._getframe(1)
         place = list(frame.f_code.co_positions())[frame.f_lasti // 2]
-        found.append((Callers().of(frame, is_async), place))
+        found.append((caller_of(frame, is_async), place))
 
     code = compile("\n" * (line - 1) + text, "mission.py", "exec")
     exec(code, {"here": here, "__name__": "mission"})

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.runtime.interception.active_mutant import Activation
+from mutabot.runtime.interception.active_mutant import ActiveMutant
 from tests.runtime.stage import Make
 
 ROBOT = """
@@ -76,7 +76,7 @@ def done(make_stage: Make, lines: str, operator: str, quantity: str | None = Non
     )
     stage = make_stage(ROBOT, f"{text}\n    return list(robot.LOG)\n", VOCABULARY)
     found, activation = stage.mutated(operator, quantity, **more)
-    assert isinstance(activation, Activation)
+    assert isinstance(activation, ActiveMutant)
     return found, activation.evidence
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mutabot.model import Kind, Path, Quantity
-from mutabot.runtime.interception.active_mutant import HandedCopies, is_live
+from mutabot.runtime.interception.live import HandedCopies, is_live
 
 WHOLE = (Quantity("result", Path(), Kind.POSITION, "x", "m"),)
 FIRST = (Quantity("[0]", Path.parse("[0]", rooted=False), Kind.POSITION, "x", "m"),)

@@ -12,7 +12,8 @@ import pytest
 from mutabot.model import Call, Operation, Pattern, Role, Span
 from mutabot.model.job import RefusedAt
 from mutabot.model.operation import Form, Named, Refused
-from mutabot.runtime.interception.refusals import Made, RefusedCalls, answered, heard, refused_of
+from mutabot.runtime.interception.adapter import SiteCall
+from mutabot.runtime.interception.refusals import RefusedCalls, answered, heard, refused_of
 
 STATUS = Refused(".status", (5, 6))
 
@@ -81,7 +82,7 @@ SILENT, TOLD = SimpleNamespace(code=0), SimpleNamespace(code=7)
 def test_calls_of_the_original_that_are_refused_by_a_message_are_noted_by_their_number() -> None:
     noted: list[int] = []
     refused = RefusedCalls(lambda made: noted.append(made.number))
-    first, second, third = (Made(SITE, call(TOPIC), number) for number in (1, 2, 3))
+    first, second, third = (SiteCall(SITE, call(TOPIC), number) for number in (1, 2, 3))
     refused.begins(first)
     refused.heard("/arm/note", SILENT)
     refused.begins(second)
@@ -98,7 +99,7 @@ def test_a_call_of_the_original_that_answers_so_is_noted() -> None:
     noted: list[int] = []
     refused = RefusedCalls(lambda made: noted.append(made.number))
     for number, status in ((1, 0), (2, 5)):
-        made = Made(SITE, call(STATUS), number)
+        made = SiteCall(SITE, call(STATUS), number)
         refused.begins(made)
         refused.returned(made, SimpleNamespace(status=status))
     assert noted == [2]
@@ -107,8 +108,8 @@ def test_a_call_of_the_original_that_answers_so_is_noted() -> None:
 def test_what_is_known_of_a_test_holds_for_its_calls_alone() -> None:
     refused = RefusedCalls()
     refused.start([RefusedAt(SITE[0], "robot:Arm.move", None, (2, 4))])
-    assert [number for number in range(1, 6) if refused.has(Made(SITE, call(), number))] == [2, 4]
+    assert [number for number in range(1, 6) if refused.has(SiteCall(SITE, call(), number))] == [2, 4]
     elsewhere = (Span("mission.py", 4, 4, 4, 20, "run"), Role.PROGRAM)
-    assert not refused.has(Made(elsewhere, call(), 2))
+    assert not refused.has(SiteCall(elsewhere, call(), 2))
     refused.start(())
-    assert not refused.has(Made(SITE, call(), 2))
+    assert not refused.has(SiteCall(SITE, call(), 2))

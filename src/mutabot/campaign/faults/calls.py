@@ -21,7 +21,7 @@ from mutabot.model.mutant import Place, When
 from mutabot.model.quantity import is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all, operator
 from mutabot.operators.operator import with_operation
-from mutabot.operators.passage import Passage, rehearse
+from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import operator as operator_of
 from mutabot.operators.value import NOT_PASSED, NOT_RETURNED
 
@@ -323,7 +323,7 @@ def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
     return any(is_reading_of(part, subject.quantity) for part in reading.readings)
 
 
-def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> Passage:
+def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> CallRecord:
     payload = object() if Need.MEMORY in rule.needs else None  # no two messages need be the same
     call = Call(subject.operation, subject.pattern, hit.written, idle=Reply(), payload=payload)
     try:
@@ -338,7 +338,7 @@ def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middlewar
     return passage
 
 
-def _check_promises(rule: Operator, subject: Subject, passage: Passage) -> None:
+def _check_promises(rule: Operator, subject: Subject, passage: CallRecord) -> None:
     broken = None
     if rule.does_nothing and passage.performed:
         broken = "declares does_nothing, but makes the call"
@@ -355,7 +355,7 @@ def _value(subject: Subject, hit: Hit) -> Any:
     return {**hit.read, **hit.written}.get(subject.quantity.name)
 
 
-def _changed(subject: Subject, passage: Passage) -> Any:
+def _changed(subject: Subject, passage: CallRecord) -> Any:
     name = subject.quantity.name if subject.quantity is not None else ""
     if passage.changed_reading and passage.received is not None:
         return passage.received.values.get(name)

@@ -1,17 +1,10 @@
-"""Between Python calls and the ``Call`` and ``Reply`` that operators see.
+"""Translate between Python calls and the ``Call`` and ``Reply`` that operators see.
 
-The door binds arguments to the vocabulary's quantities, writes changed values back into copies of the
-arguments, performs the call, and does the same with the result. The user's own objects are never changed.
+The adapter binds arguments to the vocabulary's quantities, writes changed values back into copies of the
+arguments, performs the call, and does the same with the result. It never changes the user's own objects.
 
-What a call writes: which command it is, the values it gives, and the same call with other values.
-
-What commands answer: noted in the baseline, and given while the robot does nothing.
-
-The robot is called by the program: what looks at its caller finds the program's line.
-
-Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function was
-called. Between the program and an operation there are frames of ours; the last of them has the program's
-file, line, function and global names.
+A changed argument goes to the callable in the way the program gave it: by position or by keyword. What the
+program left out stays left out, so that a native callable sees only what it was given.
 """
 
 from __future__ import annotations
@@ -20,205 +13,486 @@ import copy
 import inspect
 import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
-from types import CodeType, FrameType, FunctionType
+from inspect import Parameter, Signature
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Vocabulary
-from mutabot.model.answer import NotKeptError, is_member, is_of_numpy, is_plain, keep, name_of, restore
+from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Role, Span, Vocabulary
+from mutabot.model.answer import NotKeptError, is_member, is_of_numpy, keep, name_of, restore
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
 from mutabot.model.path import Path
 from mutabot.model.quantity import Value, changes, is_reading_of, is_same
-from mutabot.runtime.interception.arguments import Arguments, signature_for
-from mutabot.runtime.interception.mishaps import why_not
+from mutabot.model.signature import ANYTHING, parse_signature, signature_of
+from mutabot.runtime.interception.call_faults import why_not
+from mutabot.runtime.interception.live import copied
 from mutabot.runtime.observation.clock import ProgramTime
-from mutabot.runtime.targets.target import Means, resolve
+from mutabot.runtime.targets.target import NOWHERE, Where, resolve
+
+#: containers that a program may change after it got them
+_CHANGEABLE = frozenset({list, dict, set, bytearray})
+_POSITIONAL = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
+#: makes a call of a callable as the program does
+Caller = Callable[[Callable[..., Any], tuple[Any, ...], dict[str, Any]], Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Message:
-    """The argument that says which command it is.
+def _apply(wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    return wrapped(*args, **kwargs)
+
+
+@dataclass(slots=True)
+class Invocation:
+    """A call as Python made it: ``Call.payload``.
 
     Attributes:
-        value: the argument itself.
-        text: its text, without a line ending.
-        ending: the line ending.
+        wrapped: the original callable, bound.
+        instance: the object it is bound to, or None.
+        args, kwargs: as the program gave them.
+        where: what the frames do not tell of it.
+        caller: makes calls of callables as the program does.
+        signature: by which the arguments are read.
+        values: the arguments by parameter, with known defaults; None if they do not fit the signature.
+        message: the argument that says which command it is, or None.
+        text: its text, without a line ending; None if it has none.
     """
 
-    value: Any
-    text: str
-    ending: str = ""
+    wrapped: Callable[..., Any] = field(compare=False)
+    instance: Any
+    args: tuple[Any, ...]
+    kwargs: dict[str, Any]
+    where: Where = field(default=NOWHERE, compare=False)
+    caller: Caller = field(default=_apply, compare=False)
+    signature: Signature = field(default=ANYTHING, compare=False)
+    values: dict[str, Any] | None = field(default=None, compare=False)
+    message: Any = field(default=None, compare=False)
+    text: str | None = field(default=None, compare=False)
 
-    @classmethod
-    def of(cls, value: Any) -> Message | None:
-        """The message in an argument: text, bytes, or anything else by what it prints."""
-        if value is None:
-            return None
-        if isinstance(value, str | bytes):
-            text = value.decode("utf-8", "surrogateescape") if isinstance(value, bytes) else value
-            body = text.rstrip("\r\n")
-            return cls(value, body, text[len(body) :])
+    def bind(self, signature: Signature) -> None:
+        """Read the arguments by a signature. If they do not fit, the call itself will say what is wrong."""
+        self.signature = signature
         try:
-            return cls(value, str(value))
-        except Exception:  # an object of the user's may fail to print itself in any way
-            return None
+            bound = signature.bind(*self.args, **self.kwargs)
+        except TypeError:
+            self.values = None
+            return
+        bound.apply_defaults()
+        self.values = {name: value for name, value in bound.arguments.items() if value is not ...}
 
-    @property
-    def can_be_written(self) -> bool:
-        """Whether another text can be put in its place."""
-        return isinstance(self.value, str | bytes | int) and not isinstance(self.value, bool)
+    def get(self, name: str) -> Any:
+        """Return the argument of this name, which may be one of ``**kwargs``; None if the call gives none."""
+        values = self.values or {}
+        if name in self.signature.parameters:
+            return values.get(name)
+        for parameter in self.signature.parameters.values():
+            if parameter.kind is Parameter.VAR_KEYWORD:
+                return values.get(parameter.name, {}).get(name)
+        return None
 
-    def with_text(self, text: str) -> Any:
-        """The argument with another text."""
-        if isinstance(self.value, int):
-            return int(text)
-        text += self.ending
-        return text.encode("utf-8", "surrogateescape") if isinstance(self.value, bytes) else text
+    def start_of(self, path: Path) -> Any:
+        """Return what a path begins at: an argument, or the instance as ``self``."""
+        return self.instance if path.root == "self" else self.get(path.root or "")
+
+    def changed(self, arguments: Mapping[str, Any]) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """Return positional and keyword arguments with other values for these names."""
+        args, kwargs = list(self.args), dict(self.kwargs)
+        for name, value in arguments.items():
+            self._change(args, kwargs, name, value)
+        return tuple(args), kwargs
+
+    def _change(self, args: list[Any], kwargs: dict[str, Any], name: str, value: Any) -> None:
+        parameter = self.signature.parameters.get(name)
+        kind = parameter.kind if parameter is not None else Parameter.KEYWORD_ONLY
+        positional = [one.name for one in self.signature.parameters.values() if one.kind in _POSITIONAL]
+        values = self.values or {}
+        if kind is Parameter.VAR_POSITIONAL:
+            args[len(positional) :] = value
+        elif kind is Parameter.VAR_KEYWORD:
+            for key in values.get(name, ()):
+                kwargs.pop(key, None)
+            kwargs.update(value)
+        elif kind in _POSITIONAL and positional.index(name) < len(args):
+            args[positional.index(name)] = value
+        elif kind is Parameter.POSITIONAL_ONLY:  # a default: what comes before it must be given as well
+            before = positional[len(args) : positional.index(name)]
+            args.extend(values.get(one) for one in before)
+            args.append(value)
+        else:
+            kwargs[name] = value
+
+    def copied(self, names: Collection[str] | None = None) -> Invocation:
+        """Return the same call with copies of all arguments, or of those of these names alone.
+
+        The program may use an object again for its next call.
+        """
+        if self.values is None or names is None:
+            args, kwargs, values = copied((self.args, self.kwargs, self.values))
+            return replace(self, args=args, kwargs=kwargs, values=values)
+        known = self.values
+        args, kwargs = self.changed({name: copied(known[name]) for name in names if name in known})
+        found = replace(self, args=args, kwargs=kwargs)
+        found.bind(self.signature)
+        return found
 
 
-class Writer:
-    """Reads and changes what the calls of one operation write.
+@dataclass(slots=True)
+class SiteCall:
+    """A call of an operation at a site, in the running test.
 
-    Args:
-        operation: the operation.
-        on_problem: told about each path or argument that does not fit: (key, error).
+    Attributes:
+        site: where it stands.
+        call: the call.
+        number: of the call among those of its site in this test, from 1.
+        is_async: whether what the operation returns is to be awaited.
+        is_direct: whether the program itself makes the call, rather than a library that it calls.
     """
 
-    def __init__(self, operation: Operation, on_problem: Callable[[str, PathError], None]) -> None:
-        self._operation = operation
-        self._on_problem = on_problem
-        self._path = Path.parse(operation.message, rooted=True) if operation.message is not None else None
+    site: tuple[Span, Role]
+    call: Call
+    number: int
+    is_async: bool = False
+    is_direct: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class Adapter:
+    """Translates the calls of one operation.
+
+    Attributes:
+        operation: the operation.
+        readings: the operations that tell where the robot is, by name.
+        on_problem: told about each path or argument that does not fit: (key, error).
+        lately: values that last came by under the names of a middleware, by target; adapters share it.
+        handles: classes that are part of the robot API: their objects are never copied.
+        time: the program's time.
+        commands: how often the robot was made to do this, if it does anything.
+    """
+
+    operation: Operation
+    readings: Mapping[str, Operation | None]
+    on_problem: Callable[[str, PathError], None]
+    lately: dict[str, Mapping[str, Value]]
+    handles: Collection[str]
+    time: ProgramTime
+    commands: int = 0
+    _message: Path | None = None
+    _declared: Signature | None = None
+    _own: Signature | None = None
+    _parts: dict[str, tuple[tuple[str, ...], tuple[Quantity, ...]]] = field(default_factory=dict)
+    _last_results: dict[str | None, Any] = field(default_factory=dict)
+    _last_written: dict[str | None, dict[str, Value]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        operation = self.operation
+        self._message = Path.parse(operation.message, rooted=True) if operation.message is not None else None
+        self._declared = parse_signature(operation.signature) if operation.signature is not None else None
         self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
 
-    def message(self, arguments: Arguments, instance: Any) -> Message | None:
-        """What says which command a call is; None if the operation has no such argument, or the call."""
-        if self._path is None:
-            return None
-        if self._path.root == "self" and instance is None:
-            self._tell("message", f"{self._operation.target} is called on no object, so it has no self")
-        start = instance if self._path.root == "self" else arguments.get(self._path.root or "")
-        try:
-            return Message.of(self._path.get(start)) if start is not None else None
-        except PathError as error:
-            self._on_problem("message", error)
-            return None
+    def reset(self) -> None:
+        """Forget earlier answers and commands: a new test begins."""
+        self._last_results.clear()
+        self._last_written.clear()
+        self.lately.clear()
+        self.commands = 0
 
-    def read(
-        self, arguments: Arguments, instance: Any, message: Message | None
-    ) -> tuple[Pattern | None, dict[str, Value]]:
-        """Which of the operation's commands a call is, if any, and the values it writes."""
+    def to_call(self, invocation: Invocation) -> Call:
+        """Return the call as operators see it."""
+        signature = self._declared or invocation.where.signature or self._own
+        if signature is None:
+            signature = self._own = signature_of(invocation.wrapped) or ANYTHING
+        invocation.bind(signature)
+        pattern, values = None, dict[str, Value]()
+        if invocation.values is not None:
+            if self._message is not None:
+                self._read_message(invocation, self._message)
+            pattern, values = self._read_command(invocation)
+        key = pattern.text if pattern is not None else None
+        before = self._last_written.get(key)
+        self._last_written[key] = {name: snapshot(value) for name, value in values.items()}
+        means = invocation.where.means
+        return Call(
+            self.operation, pattern, values, current=partial(self._where_is, invocation, pattern),
+            payload=invocation, cannot=partial(why_not, means), previous=lambda: before,
+            time=self.time.now, wait=self.time.wait if means is None else means.sleep,
+        )  # fmt: skip
+
+    def _read_message(self, invocation: Invocation, path: Path) -> None:
+        """Find what says which command a call is: text, bytes, or anything else by what it prints."""
+        if path.root == "self" and invocation.instance is None:
+            self._tell("message", f"{self.operation.target} is called on no object, so it has no self")
+        start = invocation.start_of(path)
+        try:
+            invocation.message = path.get(start) if start is not None else None
+        except PathError as error:
+            self.on_problem("message", error)
+            return
+        if invocation.message is not None:
+            invocation.text = _text(invocation.message)
+
+    def _read_command(self, invocation: Invocation) -> tuple[Pattern | None, dict[str, Value]]:
+        """Find which of the operation's commands a call is, if any, and the values it writes."""
         undecided = []
-        for pattern, values in self._candidates(message):
-            unfit = [
-                case for case in pattern.when if case.value not in _names(arguments, instance, case.argument)
-            ]
+        for pattern in self.operation.patterns:
+            said: Mapping[str, Value] | None = {}
+            if pattern.notation is not None:
+                text = invocation.text
+                said = Notation.compile(pattern.notation).read(text) if text is not None else None
+            if said is None:
+                continue
+            unfit = [case for case in pattern.when if case.value not in _names(invocation, case.argument)]
             if not unfit:
-                return pattern, self._written(pattern, values, arguments, message)
+                return pattern, self._written(pattern, said, invocation)
             if all(case.key == "mode" for case in unfit):
                 undecided.append(pattern)
         if undecided:
-            self._tell_undecided(undecided, arguments)
-        return None, self._values(self._operation.arguments, arguments)
-
-    def changed(
-        self, call: Call, values: Mapping[str, Value], arguments: Arguments, message: Message | None
-    ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Positional and keyword arguments of a call with these other values, or of its opposite."""
-        pattern = call.pattern
-        fields, beside = self._parts[pattern.text] if pattern is not None else ((), self._operation.arguments)
-        roots: dict[str, Any] = {}
-        for quantity in beside:
-            if quantity.name in values:
-                root = quantity.path.root or ""
-                roots[root] = quantity.put(roots.get(root, arguments.get(root)), values[quantity.name])
-        is_said_otherwise = call.reversed or any(name in values for name in fields)
-        if pattern is not None and message is not None and self._path is not None and is_said_otherwise:
-            _put(roots, arguments, self._path, message.with_text(_text(pattern, call, message)))
-        return arguments.replaced(roots)
-
-    def _candidates(self, message: Message | None) -> Iterator[tuple[Pattern, dict[str, Value]]]:
-        for pattern in self._operation.patterns:
-            if pattern.notation is None:
-                yield pattern, {}
-                continue
-            values = Notation.compile(pattern.notation).read(message.text) if message is not None else None
-            if values is not None:
-                yield pattern, values
+            self._tell_undecided(undecided, invocation)
+        return None, self._values(self.operation.arguments, invocation)
 
     def _written(
-        self, pattern: Pattern, said: Mapping[str, Value], arguments: Arguments, message: Message | None
+        self, pattern: Pattern, said: Mapping[str, Value], invocation: Invocation
     ) -> dict[str, Value]:
         fields, beside = self._parts[pattern.text]
-        found = self._values(beside, arguments) if beside else {}
-        if fields and message is not None and self._can_be_written(message):
+        found = self._values(beside, invocation)
+        needs_text = bool(fields) or (pattern.notation is not None and pattern.opposite is not None)
+        if needs_text and invocation.text is not None and self._can_be_written(invocation.message):
             found |= {name: said[name] for name in fields}
-        elif pattern.notation is not None and pattern.opposite is not None and message is not None:
-            self._can_be_written(message)
         return found
 
-    def _can_be_written(self, message: Message) -> bool:
-        """Whether the text can be changed; a problem if not."""
-        if not message.can_be_written:
-            kind = type(message.value).__name__
-            text = f"{self._operation.message} is {_a(kind)}, whose text cannot be changed"
-            self._tell("message", f"{text}; describe the arguments beside it, and no opposite")
-        return message.can_be_written
+    def _can_be_written(self, message: Any) -> bool:
+        """Whether the text can be changed; tells a problem if not."""
+        if isinstance(message, str | bytes | int) and not isinstance(message, bool):
+            return True
+        kind = type(message).__name__
+        which = f"{'an' if kind[:1].lower() in 'aeiou' else 'a'} {kind}"
+        text = f"{self.operation.message} is {which}, whose text cannot be changed"
+        self._tell("message", f"{text}; describe the arguments beside it, and no opposite")
+        return False
 
-    def _values(self, quantities: tuple[Quantity, ...], arguments: Arguments) -> dict[str, Value]:
-        values = {}
-        for quantity in quantities:
-            start = arguments.get(quantity.path.root or "")
+    def _values(self, quantities: tuple[Quantity, ...], invocation: Invocation) -> dict[str, Value]:
+        starts = ((one, invocation.get(one.path.root or "")) for one in quantities)
+        return self._read(((one, start) for one, start in starts if start is not None), "arguments")
+
+    def _read(self, quantities: Iterator[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
+        """Read quantities, each from what its path begins at."""
+        values: dict[str, Value] = {}
+        for quantity, start in quantities:
             try:
-                value = quantity.get(start) if start is not None else None
+                value = quantity.get(start)
             except PathError as error:
-                self._on_problem(f"arguments.{quantity.name}", error)
+                self.on_problem(f"{key}.{quantity.name}", error)
                 continue
             if value is not None:
                 values[quantity.name] = value
         return values
 
-    def _tell_undecided(self, patterns: list[Pattern], arguments: Arguments) -> None:
+    def _read_result(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
+        return self._read(((one, result) for one in quantities), "result")
+
+    def _tell_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
         """No mode fits: say which argument has a value that the vocabulary does not mention."""
         cases = [case for pattern in patterns for case in pattern.when if case.key == "mode"]
         for argument in dict.fromkeys(case.argument for case in cases):
             known = tuple(dict.fromkeys(case.value for case in cases if case.argument == argument))
-            found = _names(arguments, None, argument)
+            found = _names(invocation, argument)
             if not set(found) & set(known):
                 text = f"{argument} is {found[-1]}, for which mode says nothing; it knows {', '.join(known)}"
                 self._tell("mode", text)
 
-    def _tell(self, key: str, text: str) -> None:
-        self._on_problem(key, PathError(text, path="", step="", found=""))
+    def _tell(self, key: str, text: str, step: str = "") -> None:
+        self.on_problem(key, PathError(text, path="", step=step, found=""))
+
+    def perform(self, call: Call, original: Call) -> Any:
+        """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
+        invocation: Invocation = call.payload
+        fits = invocation.values is not None or self.operation.signature is not None
+        self.commands += call.is_command and fits  # what does not fit never reaches the robot
+        if call is original:
+            return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
+        is_text = call.pattern is not None and call.pattern.notation is not None
+        wrapped = self._opposite(call) if call.reversed and not is_text else invocation.wrapped
+        meant = call.pattern if call.pattern is not None else self.operation
+        changed = changes(meant.arguments, original.values, call.values)
+        args, kwargs = invocation.args, invocation.kwargs
+        if invocation.values is not None and (changed or call.reversed):
+            args, kwargs = invocation.changed(self._changed(call, changed))
+        return invocation.caller(wrapped, args, kwargs)
+
+    def _changed(self, call: Call, values: Mapping[str, Value]) -> dict[str, Any]:
+        """Return the arguments that are others where a call has these other values, or is its opposite."""
+        invocation, pattern = call.payload, call.pattern
+        fields, beside = self._parts[pattern.text] if pattern is not None else ((), self.operation.arguments)
+        changed: dict[str, Any] = {}
+        for quantity in beside:
+            if quantity.name in values:
+                root = quantity.path.root or ""
+                changed[root] = quantity.put(changed.get(root, invocation.get(root)), values[quantity.name])
+        is_said_otherwise = call.reversed or any(name in values for name in fields)
+        path = self._message
+        if pattern is not None and path is not None and invocation.text is not None and is_said_otherwise:
+            root = path.root or ""
+            message = _with_text(invocation.message, _changed_text(pattern, call, invocation.text))
+            changed[root] = path.put(changed.get(root, invocation.get(root)), message)
+        return changed
+
+    def to_reply(self, call: Call, result: Any) -> Reply:
+        """Return the reply as operators see it."""
+        self._check_result(call.payload, result)
+        meant = call.pattern if call.pattern is not None else self.operation
+        values = self._read_result(meant.result, result)
+        if call.is_command:
+            self._last_results[call.pattern.text if call.pattern is not None else None] = snapshot(result)
+        if self.operation.named is not None:
+            self.lately[self.operation.target] = {**call.values, **values}
+        return Reply(values, result)
+
+    def observe_message(self, name: str, message: Any) -> None:
+        """Note a message that the program may receive without a call of this operation at any site."""
+        named = self.operation.named
+        if named is not None and named.node is None and named.fits(Form.RECEIVE, name, None):
+            self.lately[self.operation.target] = self._read_result(self.operation.result, message)
+
+    def to_result(self, call: Call, reply: Reply, original: Reply | None) -> Any:
+        """Return what the program receives: the result itself, or a copy with changed values."""
+        result = reply.payload
+        before: Mapping[str, Value] = original.values if original is not None else {}
+        for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
+            if quantity.name in reply.values:
+                value = reply.values[quantity.name]
+                if not is_same(quantity, value, before.get(quantity.name)):
+                    result = quantity.put(result, _typed_like(value, before.get(quantity.name)))
+        return result
+
+    def _check_result(self, invocation: Invocation, result: Any) -> None:
+        """Tell of a coroutine that nobody awaits, and of a call that went well against its signature."""
+        if inspect.iscoroutine(result):
+            text = f"{self.operation.target} returns a coroutine but is no coroutine function"
+            self._tell("call", f"{text}; name the coroutine function behind it", step="call")
+        if invocation.values is None and self.operation.signature is not None:
+            given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
+            text = f"{self.operation.signature} does not take the call ({', '.join(given)})"
+            self._tell("signature", text)
+
+    def _opposite(self, call: Call) -> Callable[..., Any]:
+        target = call.pattern.opposite if call.pattern is not None else self.operation.opposite
+        assert target is not None
+        opposite: Callable[..., Any] = self._other(target, call.payload)
+        return opposite
+
+    def _other(self, target: str, invocation: Invocation) -> Any:
+        """Return another attribute of the same object, or of its module where that is not possible."""
+        module, _, qualname = target.partition(":")
+        name = qualname.rpartition(".")[2]
+        instance, receiver = invocation.instance, invocation.where.receiver
+        if instance is not None and "." in qualname and hasattr(type(instance), name):
+            return getattr(instance, name)
+        found = getattr(receiver, name, None)  # of a mock, or of what stands in for a module
+        if receiver is not None and found is not None:
+            return found
+        owner, name, _ = resolve(sys.modules[module], qualname)
+        return getattr(owner, name)
+
+    async def _where_is(self, invocation: Invocation, pattern: Pattern | None, quantity: Quantity) -> float:
+        """Tell where a quantity is: ask the robot; of a name on a middleware, what came last tells."""
+        own = pattern.current if pattern is not None else None
+        reading = self.readings.get(own or self.operation.current or "")
+        if reading is None:
+            raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
+        is_named = reading.named is not None
+        value = None if is_named else await self._ask(reading, invocation)
+        lately = self.lately.get(reading.target, {})
+        for part in reading.readings if is_named else reading.result:
+            if is_reading_of(part, quantity):
+                number: Any = lately.get(part.name) if is_named else part.path.get(value)
+                if number is None and is_named:
+                    raise NotToldError(f"nothing has come yet of {reading.target}")
+                return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
+        raise NotToldError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
+
+    async def _ask(self, reading: Operation, invocation: Invocation) -> Any:
+        value = self._other(reading.target, invocation)
+        if callable(value):
+            value = value()
+        return await value if inspect.isawaitable(value) else value
+
+    def last_answer(self, call: Call) -> Reply | None:
+        """Return what the robot answered last to this command in the running test; None if it has not yet.
+
+        It is a copy, so that the program cannot change it, or the object where that cannot be copied safely.
+        """
+        key = call.pattern.text if call.pattern is not None else None
+        if key not in self._last_results:
+            return None
+        last, known = self._last_results[key], call_context(call)
+        try:
+            return Reply({}, restore(keep(last, known, self.handles), known))
+        except NotKeptError:
+            return Reply({}, last)
+
+
+def snapshot(value: Any) -> Any:
+    """Return an answer as it is now: a program may change the list or array it got."""
+    if type(value) in _CHANGEABLE or is_of_numpy(value):
+        return copy.copy(value)
+    return tuple(map(snapshot, value)) if type(value) is tuple else value
+
+
+def call_context(call: Call) -> dict[str, Any]:
+    """Return what a call knows before it is made, by name: the instance as ``self``, and the arguments."""
+    invocation: Invocation = call.payload
+    known = {} if invocation.instance is None else {"self": invocation.instance}
+    return {**(invocation.values or {}), **known}
+
+
+def handles_of(vocabulary: Vocabulary) -> frozenset[str]:
+    """Return the classes that have operations as methods."""
+    owners = (operation.target.rpartition(".")[0] for operation in vocabulary.operations)
+    return frozenset(owner for owner in owners if ":" in owner)
 
 
 def _parts(pattern: Pattern) -> tuple[tuple[str, ...], tuple[Quantity, ...]]:
-    """The names of the described fields of a command's text, and the quantities beside it."""
+    """Return the names of the described fields of a command's text, and the quantities beside it."""
     fields = pattern.fields
     named = tuple(quantity.name for quantity in pattern.arguments if quantity.name in fields)
     return named, tuple(quantity for quantity in pattern.arguments if quantity.name not in fields)
 
 
-def _put(roots: dict[str, Any], arguments: Arguments, path: Path, value: Any) -> None:
-    root = path.root or ""
-    roots[root] = path.put(roots.get(root, arguments.get(root)), value)
+def _whole_text(message: str | bytes) -> str:
+    return message.decode("utf-8", "surrogateescape") if isinstance(message, bytes) else message
 
 
-def _text(pattern: Pattern, call: Call, message: Message) -> str:
-    """The text of the command with the call's values, or that of its opposite."""
+def _text(message: Any) -> str | None:
+    """Return the text of a message without its line ending; None if it fails to print itself."""
+    if isinstance(message, str | bytes):
+        return _whole_text(message).rstrip("\r\n")
+    try:
+        return str(message)
+    except Exception:  # an object of the user's may fail in any way
+        return None
+
+
+def _with_text(message: Any, text: str) -> Any:
+    """Return the message with another text, and its own line ending."""
+    if isinstance(message, int):
+        return int(text)
+    whole = _whole_text(message)
+    text += whole[len(whole.rstrip("\r\n")) :]
+    return text.encode("utf-8", "surrogateescape") if isinstance(message, bytes) else text
+
+
+def _changed_text(pattern: Pattern, call: Call, text: str) -> str:
+    """Return the text of the command with the call's values, or that of its opposite."""
     notation = Notation.compile(pattern.notation or "")
-    values = {**(notation.read(message.text) or {}), **call.values}
+    values = {**(notation.read(text) or {}), **call.values}
     if call.reversed and pattern.opposite is not None:
-        return Notation.compile(pattern.opposite).write(values, looks=notation.looks(message.text))
-    return notation.write(values, like=message.text)
+        return Notation.compile(pattern.opposite).write(values, looks=notation.looks(text))
+    return notation.write(values, like=text)
 
 
-def _names(arguments: Arguments, instance: Any, argument: str) -> tuple[str, ...]:
-    """What a vocabulary may call the value of an argument that decides what the call means."""
+def _names(invocation: Invocation, argument: str) -> tuple[str, ...]:
+    """Return what a vocabulary may call the value of an argument that decides what the call means."""
     path = Path.parse(argument, rooted=True)
-    start = instance if path.root == "self" else arguments.get(path.root or "")
+    start = invocation.start_of(path)
     try:
         value = path.get(start) if start is not None else None
     except PathError:
@@ -229,7 +503,7 @@ def _names(arguments: Arguments, instance: Any, argument: str) -> tuple[str, ...
         return (str(value.value), name_of(value))
     try:
         if isinstance(value, bytes):
-            return (str(value), value.decode("utf-8", "surrogateescape"))
+            return (str(value), _whole_text(value))
         whole = (str(int(value)),) if isinstance(value, float) and value.is_integer() else ()
         is_truth = type(value).__name__ in ("bool", "bool_") or value in (0, 1)
         return (*((str(bool(value)).lower(),) if is_truth else ()), *whole, str(value))
@@ -237,431 +511,8 @@ def _names(arguments: Arguments, instance: Any, argument: str) -> tuple[str, ...
         return (f"a {type(value).__name__}",)
 
 
-def _a(name: str) -> str:
-    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"
-
-
-#: containers that a program may change after it got them
-_CHANGEABLE = frozenset({list, dict, set, bytearray})
-
-
-#: stands for an answer that cannot be kept and that the program waits for: it never comes
-LOST = {"pending": ""}
-
-
-@dataclass(frozen=True, slots=True)
-class Returned:
-    """What a call returned, and what it knew: the instance as ``self``, and the arguments.
-
-    ``can_be_lost`` is whether the middleware knows what a program meets whose answer never comes.
-    """
-
-    value: Any
-    here: Mapping[str, Any]
-    can_be_lost: bool = False
-
-
-@dataclass(slots=True)
-class Answers:
-    """The answers of the running test, for the trace.
-
-    Plain values are noted as they are. Of others, the first at each site is noted by value, and later ones
-    only by whether they are the same: what the robot answered first is all that is needed.
-
-    Attributes:
-        handles: classes that are part of the robot API.
-    """
-
-    handles: Collection[str] = ()
-    _first: dict[int, Any] = field(default_factory=dict)
-    _varying: set[int] = field(default_factory=set)
-
-    @classmethod
-    def of(cls, vocabulary: Vocabulary) -> Answers:
-        """For this robot API."""
-        return cls(handles_of(vocabulary))
-
-    def start(self) -> None:
-        """A new test begins."""
-        self._first.clear()
-        self._varying.clear()
-
-    def note(self, site: int, returned: Returned | None) -> Any:
-        """The note about an answer at a site; None for ``returned`` if the call raised."""
-        if returned is None:
-            return {"raised": True}
-        if is_plain(returned.value):
-            self._first.setdefault(site, returned.value)
-            return returned.value
-        if site in self._varying:
-            return {"other": True}
-        data = self._data(returned)
-        if site not in self._first:
-            self._first[site] = data
-            return data
-        if data == self._first[site] and "kept" in data:
-            return {"same": True}
-        self._varying.add(site)
-        return {"other": True}
-
-    def _data(self, returned: Returned) -> dict[str, Any]:
-        try:
-            return {"kept": keep(returned.value, returned.here, self.handles)}
-        except NotKeptError as error:
-            return {"kept": LOST} if returned.can_be_lost else {"opaque": str(error)}
-        except Exception as error:  # objects of the user's may do anything when they are looked at
-            return {"opaque": f"{type(returned.value).__qualname__}, which raises {error!r}"}
-
-
-def handles_of(vocabulary: Vocabulary) -> frozenset[str]:
-    """The classes that have operations as methods."""
-    owners = (operation.target.rpartition(".")[0] for operation in vocabulary.operations)
-    return frozenset(owner for owner in owners if ":" in owner)
-
-
-def snapshot(value: Any) -> Any:
-    """An answer as it is now: a program may change the list or array it got."""
-    if type(value) in _CHANGEABLE or is_of_numpy(value):
-        return copy.copy(value)
-    return tuple(map(snapshot, value)) if type(value) is tuple else value
-
-
-Caller = Callable[[Callable[..., Any], tuple[Any, ...], dict[str, Any]], Any]
-
-
-def _call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
-    return wrapped(*args, **kwargs)
-
-
-async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
-    return await wrapped(*args, **kwargs)
-
-
-#: code units of one entry of a table of places, and its kind: all of a span is told
-_MOST_UNITS, _LONG = 8, 14
-
-
-class Callers:
-    """Makes calls in the name of frames."""
-
-    def __init__(self) -> None:
-        # the code is kept, so that no other can get its address
-        self._made: dict[tuple[int, int, bool], tuple[Caller, CodeType, dict[str, Any]]] = {}
-
-    def of(self, frame: FrameType, is_async: bool) -> Caller:
-        """What makes a call as if this frame did, where it stands now."""
-        code = frame.f_code
-        key = (id(code), frame.f_lasti, is_async)
-        known = self._made.get(key)
-        if known is None or known[2] is not frame.f_globals:
-            made = _made(code, frame.f_lasti, frame.f_globals, is_async)
-            known = self._made[key] = (made, code, frame.f_globals)
-        return known[0]
-
-
-def _made(code: CodeType, instruction: int, names: dict[str, Any], is_async: bool) -> Caller:
-    line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
-    line = line or code.co_firstlineno
-    own = (_async_call if is_async else _call).__code__
-    own = own.replace(
-        co_name=code.co_name,
-        co_qualname=code.co_qualname,
-        co_filename=code.co_filename,
-        co_firstlineno=line,
-        co_linetable=_all_at(len(own.co_code) // 2, (end_line or line) - line, column or 0, end_column or 0),
-    )
-    return FunctionType(own, names, code.co_name, (True,))
-
-
-def _all_at(units: int, lines: int, column: int, end_column: int) -> bytes:
-    """A table that gives the span to all of a code: from its first line on, so many more lines.
-
-    The format: CPython, Objects/locations.md (3.11 to 3.13). Compiling a tree with places takes ten times as
-    long, and every fork calls from places where nothing has called before.
-    """
-    found = bytearray()
-    for first in range(0, units, _MOST_UNITS):
-        size = min(_MOST_UNITS, units - first)
-        found.append(1 << 7 | _LONG << 3 | size - 1)
-        for number in (0, lines, column + 1, end_column + 1):
-            found += _varint(number)
-    return bytes(found)
-
-
-def _varint(number: int) -> bytes:
-    """Six bits a byte, the lowest first; a seventh says that more follow."""
-    if number < 1 << 6:
-        return bytes([number])
-    return bytes([1 << 6 | number & 0x3F]) + _varint(number >> 6)
-
-
-def _apply(wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-    return wrapped(*args, **kwargs)
-
-
-@dataclass(slots=True)
-class Invocation:
-    """A call as Python made it: the door's payload in ``Call.payload``.
-
-    Attributes:
-        wrapped: the original callable, bound.
-        instance: the object it is bound to, or None.
-        args, kwargs: as the program gave them.
-        arguments: the same by name; None if they do not fit the signature.
-        message: what says which command it is, or None.
-        means: what can befall it; None if nothing can.
-        receiver: what it was read from where it is called, if that is known.
-        caller: makes calls of callables as the program does.
-    """
-
-    wrapped: Callable[..., Any] = field(compare=False)
-    instance: Any
-    args: tuple[Any, ...]
-    kwargs: dict[str, Any]
-    arguments: Arguments | None = field(compare=False)
-    message: Message | None = field(default=None, compare=False)
-    means: Means | None = field(default=None, compare=False)
-    receiver: Any = field(default=None, compare=False)
-    caller: Caller = field(default=_apply, compare=False)
-
-
-class Door:
-    """Translates the calls of one operation.
-
-    Args:
-        operation: the operation.
-        readings: the operations that tell where the robot is, by name.
-        on_problem: told once about each path that does not fit: (key, error).
-
-    Attributes:
-        commands: how often the robot was made to do this, if it does anything.
-        calls: how often it was called.
-        lately: values that last came by under the names of a middleware, by target; doors share it.
-        handles: classes that are part of the robot API: their objects are never copied.
-        time: the program's time; None where nothing tells.
-    """
-
-    def __init__(
-        self,
-        operation: Operation,
-        readings: Mapping[str, Operation | None],
-        on_problem: Callable[[str, PathError], None] = lambda key, error: None,
-    ) -> None:
-        self.operation = operation
-        self._readings = readings
-        self._on_problem = on_problem
-        self._signature: inspect.Signature | None = None
-        self._writer = Writer(operation, on_problem)
-        self._last_replies: dict[str | None, Any] = {}
-        self._last_written: dict[str | None, dict[str, Value]] = {}
-        self.commands = 0
-        self.calls = 0
-        self.lately: dict[str, Mapping[str, Value]] = {}
-        self.handles: Collection[str] = ()
-        self.time: ProgramTime | None = None
-
-    def use_signature(self, signature: inspect.Signature) -> None:
-        """Read calls by this signature, unless the vocabulary or an earlier call has told another."""
-        if self._signature is None and self.operation.signature is None:
-            self._signature = signature
-
-    def reset(self) -> None:
-        """Forget earlier answers and commands: a new test begins."""
-        self._last_replies.clear()
-        self._last_written.clear()
-        self.lately.clear()
-        self.commands = self.calls = 0
-
-    def call(
-        self,
-        wrapped: Callable[..., Any],
-        instance: Any,
-        args: tuple[Any, ...],
-        kwargs: dict[str, Any],
-        means: Means | None = None,
-        receiver: Any = None,
-        caller: Caller = _apply,
-    ) -> Call:
-        """The call as operators see it."""
-        self.calls += 1
-        bound = self._bind(wrapped, args, kwargs)
-        invocation = Invocation(wrapped, instance, args, kwargs, bound, None, means, receiver, caller)
-        pattern, values = None, dict[str, Value]()
-        if invocation.arguments is not None:
-            invocation.message = self._writer.message(invocation.arguments, instance)
-            pattern, values = self._writer.read(invocation.arguments, instance, invocation.message)
-
-        async def current(quantity: Quantity) -> float:
-            return await self._where(quantity, invocation, pattern)
-
-        cannot = partial(why_not, means)
-        before = self._last_written.get(_text_of(pattern))
-        self._last_written[_text_of(pattern)] = {name: snapshot(value) for name, value in values.items()}
-        times: dict[str, Any] = {}
-        if self.time is not None:
-            times = {"time": self.time.now, "wait": self.time.wait if means is None else means.sleep}
-        return Call(
-            self.operation, pattern, values, current=current, payload=invocation, cannot=cannot,
-            previous=lambda: before, **times,
-        )  # fmt: skip
-
-    def perform(self, call: Call, original: Call) -> Any:
-        """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
-        invocation: Invocation = call.payload
-        fits = invocation.arguments is not None or self.operation.signature is not None
-        self.commands += call.is_command and fits  # what does not fit never reaches the robot
-        if call is original:
-            return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
-        is_text = call.pattern is not None and call.pattern.notation is not None
-        wrapped = self._opposite(call) if call.reversed and not is_text else invocation.wrapped
-        meant = call.pattern if call.pattern is not None else self.operation
-        changed = changes(meant.arguments, original.values, call.values)
-        if invocation.arguments is None or (not changed and not call.reversed):
-            return invocation.caller(wrapped, invocation.args, invocation.kwargs)
-        args, kwargs = self._writer.changed(call, changed, invocation.arguments, invocation.message)
-        return invocation.caller(wrapped, args, kwargs)
-
-    def reply(self, call: Call, result: Any) -> Reply:
-        """The reply as operators see it."""
-        self._refuse_coroutine(result)
-        self._refuse_signature(call.payload)
-        meant = call.pattern if call.pattern is not None else self.operation
-        values = self._read(meant.result, result)
-        if call.is_command:
-            self._last_replies[_text_of(call.pattern)] = snapshot(result)
-        if self.operation.named is not None:
-            self.lately[self.operation.target] = {**call.values, **values}
-        return Reply(values, result)
-
-    def _read(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
-        """The values that are read from a result."""
-        values: dict[str, Value] = {}
-        for quantity in quantities:
-            try:
-                value = quantity.get(result)
-            except PathError as error:
-                self._on_problem(f"result.{quantity.name}", error)
-                continue
-            if value is not None:
-                values[quantity.name] = value
-        return values
-
-    def hear(self, name: str, message: Any) -> None:
-        """A message came by that the program may receive without a call of this operation at any site."""
-        named = self.operation.named
-        if named is not None and named.node is None and named.fits(Form.RECEIVE, name, None):
-            self.lately[self.operation.target] = self._read(self.operation.result, message)
-
-    def result(self, call: Call, reply: Reply, original: Reply | None) -> Any:
-        """What the program receives: the result itself, or a copy with changed values."""
-        result = reply.payload
-        before: Mapping[str, Value] = original.values if original is not None else {}
-        for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
-            if quantity.name in reply.values:
-                value = reply.values[quantity.name]
-                if not is_same(quantity, value, before.get(quantity.name)):
-                    result = quantity.put(result, _typed_like(value, before.get(quantity.name)))
-        return result
-
-    def _refuse_coroutine(self, result: Any) -> None:
-        """A plain function that hands out a coroutine has done nothing yet: it cannot be mutated in place."""
-        if inspect.iscoroutine(result):
-            text = f"{self.operation.target} returns a coroutine but is no coroutine function"
-            error = PathError(
-                f"{text}; name the coroutine function behind it", path="", step="call", found="coroutine"
-            )
-            self._on_problem("call", error)
-
-    def _refuse_signature(self, invocation: Invocation) -> None:
-        """A call that went well, although the vocabulary's signature does not take it."""
-        if invocation.arguments is None and self.operation.signature is not None:
-            given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
-            text = f"{self.operation.signature} does not take the call ({', '.join(given)})"
-            self._on_problem("signature", PathError(text, path="", step="", found=""))
-
-    def _bind(
-        self, wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]
-    ) -> Arguments | None:
-        if self._signature is None:
-            self._signature = signature_for(self.operation.signature, wrapped)
-        return Arguments.of(self._signature, args, kwargs)  # None: the call itself will say what is wrong
-
-    def _opposite(self, call: Call) -> Callable[..., Any]:
-        target = call.pattern.opposite if call.pattern is not None else self.operation.opposite
-        assert target is not None
-        opposite: Callable[..., Any] = self._other(target, call.payload)
-        return opposite
-
-    def _other(self, target: str, invocation: Invocation) -> Any:
-        """Another attribute of the same object, or of its module where that is not possible."""
-        module, _, qualname = target.partition(":")
-        name = qualname.rpartition(".")[2]
-        instance, receiver = invocation.instance, invocation.receiver
-        if instance is not None and "." in qualname and hasattr(type(instance), name):
-            return getattr(instance, name)
-        found = getattr(receiver, name, None)  # of a mock, or of what stands in for a module
-        if receiver is not None and found is not None:
-            return found
-        owner, name, _ = resolve(sys.modules[module], qualname)
-        return getattr(owner, name)
-
-    async def _where(self, quantity: Quantity, invocation: Invocation, pattern: Pattern | None) -> float:
-        own = pattern.current if pattern is not None else None
-        reading = self._readings.get(own or self.operation.current or "")
-        if reading is None:
-            raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
-        if reading.named is not None:
-            return self._lately_at(reading, quantity)
-        value = self._other(reading.target, invocation)
-        if callable(value):
-            value = value()
-        if inspect.isawaitable(value):
-            value = await value
-        for part in reading.result:
-            if is_reading_of(part, quantity):
-                number = part.path.get(value)
-                return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
-        raise NotToldError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
-
-    def _lately_at(self, reading: Operation, quantity: Quantity) -> float:
-        """Where a quantity is by what came last under a name: the program knows no better."""
-        for part in reading.readings:
-            if is_reading_of(part, quantity):
-                number = self.lately.get(reading.target, {}).get(part.name)
-                if number is None:
-                    raise NotToldError(f"nothing has come yet of {reading.target}")
-                return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
-        raise NotToldError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
-
-    def last_answer(self, call: Call) -> Reply | None:
-        """What the robot answered last to this command in the running test; None if it has not yet.
-
-        A copy, so that the program cannot change it; the object itself where that cannot be copied safely.
-        """
-        if _text_of(call.pattern) not in self._last_replies:
-            return None
-        last = self._last_replies[_text_of(call.pattern)]
-        known = here(call)
-        try:
-            return Reply({}, restore(keep(last, known, self.handles), known))
-        except NotKeptError:
-            return Reply({}, last)
-
-
-def here(call: Call) -> dict[str, Any]:
-    """What a call knows before it is made, by name: the instance as ``self``, and the arguments."""
-    invocation: Invocation = call.payload
-    known = {} if invocation.instance is None else {"self": invocation.instance}
-    given = invocation.arguments.values if invocation.arguments is not None else {}
-    return {**given, **known}
-
-
-def _text_of(pattern: Pattern | None) -> str | None:
-    return pattern.text if pattern is not None else None
-
-
 def _typed_like(value: Value, original: Value) -> Value:
-    """``value`` in the type of the original, where that is a scalar of a numeric library."""
+    """Return ``value`` in the type of the original, where that is a scalar of a numeric library."""
     if value is None:
         return None
     if hasattr(original, "dtype") and not hasattr(value, "dtype") and not getattr(original, "shape", None):

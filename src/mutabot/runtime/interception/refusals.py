@@ -9,28 +9,14 @@ from functools import cache
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.model import Call, Path, Role, Span
+from mutabot.model import Call, Path, Span
 from mutabot.model.answer import is_member, member_of
 from mutabot.model.job import RefusedAt
 from mutabot.model.operation import Form, Refused
+from mutabot.runtime.interception.adapter import SiteCall
 
 #: a call of a test: its site, operation and pattern, and its number among those of the site
 _Key = tuple[Span, str, str | None]
-
-
-@dataclass(frozen=True, slots=True)
-class Made:
-    """A call of the running test.
-
-    Attributes:
-        site: where it stands.
-        call: the call.
-        number: of the call among those of its site in this test, from 1.
-    """
-
-    site: tuple[Span, Role]
-    call: Call
-    number: int
 
 
 @dataclass(slots=True)
@@ -44,9 +30,9 @@ class RefusedCalls:
         on_refused: told of each one in the baseline; None in all other runs.
     """
 
-    on_refused: Callable[[Made], None] | None = None
+    on_refused: Callable[[SiteCall], None] | None = None
     _known: dict[_Key, frozenset[int]] = field(default_factory=dict)
-    _watched: dict[str, tuple[Made, tuple[Refused, ...]]] = field(default_factory=dict)
+    _watched: dict[str, tuple[SiteCall, tuple[Refused, ...]]] = field(default_factory=dict)
 
     def start(self, known: Iterable[RefusedAt]) -> None:
         """A test begins, of which these are known."""
@@ -54,16 +40,16 @@ class RefusedCalls:
         self._watched.clear()
 
     def at(self, span: Span, operation: str, pattern: str | None) -> frozenset[int]:
-        """The numbers of those of a site."""
+        """Return the numbers of the refused calls of a site."""
         return self._known.get((span, operation, pattern), frozenset())
 
-    def has(self, made: Made) -> bool:
+    def has(self, made: SiteCall) -> bool:
         """Whether this call of the original's is known to be one."""
         pattern = made.call.pattern.text if made.call.pattern is not None else None
         return made.number in self.at(made.site[0], made.call.operation.target, pattern)
 
-    def begins(self, made: Made) -> None:
-        """A call of the original's is made: as with mutated ones, what is refused from now on is this."""
+    def begins(self, made: SiteCall) -> None:
+        """Note that the original makes a call: as with mutated ones, what is refused from now on is this."""
         if self.on_refused is None:
             return
         self._watched.pop(made.call.operation.target, None)
@@ -71,13 +57,13 @@ class RefusedCalls:
         if any(one.topic is not None for one in refused):  # nothing of the program's is kept without need
             self._watched[made.call.operation.target] = (made, refused)
 
-    def returned(self, made: Made, result: Any) -> None:
-        """A call of the original's has returned: its answer may say that the robot refuses it."""
+    def returned(self, made: SiteCall, result: Any) -> None:
+        """Look whether the answer to a call of the original's says that the robot refuses it."""
         if self.on_refused is not None and answered(made.call, result) is not None:
             self.on_refused(made)
 
     def heard(self, name: str, message: Any) -> None:
-        """A message came by."""
+        """Look whether a message says that the robot refuses a call of the original's."""
         for target, (made, refused) in list(self._watched.items()):
             if self.on_refused is not None and heard(refused, name, message) is not None:
                 del self._watched[target]
@@ -85,13 +71,13 @@ class RefusedCalls:
 
 
 def refused_of(call: Call) -> tuple[Refused, ...]:
-    """How the robot says that it refuses this command."""
+    """Return how the robot says that it refuses this command."""
     own = call.pattern.refused if call.pattern is not None else ()
     return own or call.operation.refused
 
 
 def answered(call: Call, result: Any) -> str | None:
-    """How the answer to a command says that it is refused, in words; None if it does not."""
+    """Return how the answer to a command says that it is refused, in words; None if it does not."""
     for refused in refused_of(call):
         if refused.topic is None:
             found = _found(refused, result)
@@ -103,7 +89,7 @@ def answered(call: Call, result: Any) -> str | None:
 
 
 def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
-    """How a message under this name says that a command before it is refused, in words; None if it does not.
+    """Return how a message under this name refuses a command before it, in words; None if it does not.
 
     Of an action, messages are its results, and the words by which its goals end.
     """

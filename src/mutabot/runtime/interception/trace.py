@@ -6,7 +6,7 @@ Whose call it is, and exactly where it stands: from the frames of the running pr
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from types import CodeType, FrameType
 from typing import Any
@@ -15,16 +15,16 @@ from mutabot.evidence.recording import Told
 from mutabot.languages.front_end import Position
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.registry import front_ends
-from mutabot.model import Role, Span
+from mutabot.model import Call, Reply, Role, Span
+from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
-from mutabot.runtime.interception.adapter import Answers, Returned
+from mutabot.model.operation import Form
+from mutabot.runtime.interception.adapter import SiteCall, call_context
 
+#: stands for an answer that cannot be kept and that the program waits for: it never comes
+LOST = {"pending": ""}
 #: of the calls of a trace, how many are recorded with their times
 _TOLD = 2000
-
-
-def _no_clock() -> float | None:
-    return None
 
 
 @dataclass(slots=True)
@@ -49,7 +49,7 @@ class Recorder:
     truncated: bool = False
     sites: list[SiteSeen] = field(default_factory=list)
     on_hit: Callable[[int, Any, Any, Any], None] | None = None
-    clock: Callable[[], float | None] = _no_clock
+    clock: Callable[[], float | None] | None = None
     when: list[tuple[float | None, float | None]] = field(default_factory=list)
     began: float | None = None
     _indexes: dict[SiteSeen, int] = field(default_factory=dict)
@@ -61,32 +61,22 @@ class Recorder:
         if self.answers is not None:
             self.answers.start()
 
-    def hit(
-        self,
-        span: Span,
-        role: Role,
-        operation: str,
-        pattern: str | None,
-        written: Mapping[str, Any],
-        read: Mapping[str, Any],
-        returned: Returned | None,
-        began: float | None = None,
-        *,
-        is_direct: bool = False,
-    ) -> None:
-        """One call at a site has been made; ``returned`` is None if it raised, ``began`` is in s."""
+    def record(self, made: SiteCall, reply: Reply | None, began: float | None) -> None:
+        """Note a call that is over; ``reply`` is the robot's last one, None if the call raised."""
         if len(self.trace) >= TRACE_LIMIT:
             self.truncated = True
             return
-        index = self.index_of(SiteSeen(-1, span, operation, pattern, role is Role.ORACLE, is_direct))
-        answer = self.answers.note(index, returned) if self.answers is not None else None
-        self.trace.append((index, _frozen(written), _frozen(read), answer))
-        self.when.append((began, self.clock()))
+        call = made.call
+        index = self.index_of(seen_by(made))
+        answer = self.answers.note(index, call, reply) if self.answers is not None else None
+        read = reply.values if reply is not None else {}
+        self.trace.append((index, _frozen(call.values), _frozen(read), answer))
+        self.when.append((began, self.clock() if self.clock is not None else None))
         if self.on_hit is not None:
             self.on_hit(*self.trace[-1])
 
     def index_of(self, seen: SiteSeen) -> int:
-        """The index of a site that was reached here or, under another index, in another process."""
+        """Return the index of a site that was reached here or, under another index, in another process."""
         key = replace(seen, index=-1)
         index = self._indexes.get(key)
         if index is None:
@@ -96,7 +86,7 @@ class Recorder:
         return index
 
     def told(self) -> list[Told]:
-        """The calls of the running test with their times, as far as they are recorded."""
+        """Return the calls of the running test with their times, as far as they are recorded."""
         return [
             self.told_of(index, written, read, began, ended)
             for (index, written, read, _), (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False)
@@ -105,7 +95,7 @@ class Recorder:
     def told_of(
         self, index: int, written: Any, read: Any, began: float | None, ended: float | None = None
     ) -> Told:
-        """One call at the site of this index; ``ended`` is ``began`` where that is not known."""
+        """Return one call at the site of this index; ``ended`` is ``began`` where that is not known."""
         site = self.sites[index]
         place = f"{site.span.file}:{site.span.line}"
         role = Role.ORACLE if site.oracle else Role.PROGRAM
@@ -113,8 +103,69 @@ class Recorder:
         return Told(began, ended, site.operation, place, site.pattern, written, read, role)
 
     def sites_of(self, trace: Iterable[Any]) -> tuple[SiteSeen, ...]:
-        """The sites that a trace refers to; those of processes below the tests are in it as well."""
+        """Return the sites that a trace refers to, those of processes below the tests as well."""
         return tuple(self.sites[index] for index in sorted({hit[0] for hit in trace}))
+
+
+def seen_by(made: SiteCall) -> SiteSeen:
+    """Return the site of a call, whose index is not known."""
+    (span, role), call = made.site, made.call
+    pattern = call.pattern.text if call.pattern is not None else None
+    return SiteSeen(-1, span, call.operation.target, pattern, role is Role.ORACLE, made.is_direct)
+
+
+@dataclass(slots=True)
+class Answers:
+    """The answers of the running test, for the trace.
+
+    Plain values are noted as they are. Of others, the first at each site is noted by value, and later ones
+    only by whether they are the same: what the robot answered first is all that is needed.
+
+    Attributes:
+        handles: classes that are part of the robot API.
+    """
+
+    handles: Collection[str] = ()
+    _first: dict[int, Any] = field(default_factory=dict)
+    _varying: set[int] = field(default_factory=set)
+
+    def start(self) -> None:
+        """A new test begins."""
+        self._first.clear()
+        self._varying.clear()
+
+    def note(self, site: int, call: Call, reply: Reply | None) -> Any:
+        """Return the note about an answer at a site; ``reply`` is None if the call raised."""
+        if reply is None:
+            return {"raised": True}
+        if is_plain(reply.payload):
+            self._first.setdefault(site, reply.payload)
+            return reply.payload
+        if site in self._varying:
+            return {"other": True}
+        data = self._data(call, reply.payload)
+        if site not in self._first:
+            self._first[site] = data
+            return data
+        if data == self._first[site] and "kept" in data:
+            return {"same": True}
+        self._varying.add(site)
+        return {"other": True}
+
+    def _data(self, call: Call, answer: Any) -> dict[str, Any]:
+        try:
+            return {"kept": keep(answer, call_context(call), self.handles)}
+        except NotKeptError as error:
+            return {"kept": LOST} if _can_be_lost(call) else {"opaque": str(error)}
+        except Exception as error:  # objects of the user's may do anything when they are looked at
+            return {"opaque": f"{type(answer).__qualname__}, which raises {error!r}"}
+
+
+def _can_be_lost(call: Call) -> bool:
+    """Whether it sends the goal of an action to a server that may never answer."""
+    named, means = call.operation.named, call.payload.where.means
+    is_goal = named is not None and named.form is Form.GOAL
+    return is_goal and means is not None and means.lost is not None
 
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -26,9 +26,14 @@ MOST = 20
 
 
 class Instances:
-    """The objects of certain classes, by the classes' names ``module:qualified.name``."""
+    """The objects of certain classes, by the classes' names ``module:qualified.name``.
+
+    Attributes:
+        is_watching: whether there is a class to watch.
+    """
 
     def __init__(self) -> None:
+        self.is_watching = False
         self._classes: dict[type, str] = {}
         self._names: set[str] = set()
         self._known: dict[type, tuple[str, ...]] = {}
@@ -41,6 +46,7 @@ class Instances:
         """Note the objects of each of these that turns out to be a class, from now on."""
         for name in names:
             if name and name not in self._names:
+                self.is_watching = True
                 self._names.add(name)
                 self._watch(name)
 
@@ -60,11 +66,6 @@ class Instances:
                             self._note(value, is_of_test=False)
 
         wrapt.register_post_import_hook(imported, module_name)
-
-    @property
-    def is_idle(self) -> bool:
-        """Whether there is no class to watch."""
-        return not self._names
 
     def start(self, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
         """A new test begins: nothing has been used in it.

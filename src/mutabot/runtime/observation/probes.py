@@ -216,11 +216,12 @@ class Along:
         read: reads the probes.
         entries: number of the call after which it was read, parts that differ from the reading before, and
             whether these are all parts there are.
+        step: it is read after every so many commands; 0 for never.
     """
 
     read: Callable[[], Reading]
     entries: list[tuple[int, dict[str, Any], bool]] = field(default_factory=list)
-    _step: int = 0
+    step: int = 0
     _commands: int = 0
     _thins_at: int = FIRST
     _last: dict[str, Any] | None = None
@@ -228,16 +229,16 @@ class Along:
     def start(self, stride: int) -> None:
         """A new test begins; it is not read along the way if ``stride`` is 0."""
         self.entries, self._last = [], None
-        self._step, self._commands, self._thins_at = stride, 0, FIRST
+        self.step, self._commands, self._thins_at = stride, 0, FIRST
 
     def stop(self) -> None:
         """What comes now is no more part of the test."""
-        self._step = 0
+        self.step = 0
 
     def after(self, call: int) -> None:
         """A command, the test's ``call``-th call, is over."""
         self._commands += 1
-        if not self._step or self._commands % self._step:
+        if not self.step or self._commands % self.step:
             return
         if threading.current_thread() is not threading.main_thread():
             return
@@ -251,7 +252,7 @@ class Along:
         self._last = values
         if len(self.entries) >= self._thins_at:
             self._thins_at += NEXT
-            self._step *= 2
+            self.step *= 2
 
 
 @frozen

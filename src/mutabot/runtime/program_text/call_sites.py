@@ -19,9 +19,9 @@ import builtins
 import copy
 import sys
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
-from types import FrameType
+from types import FrameType, FunctionType, MethodType
 from typing import Any, Protocol
 
 import wrapt
@@ -92,6 +92,10 @@ _entries: list[Any] = []
 _MOST_OF_METHOD = 30
 
 
+#: names in modules, and what they meant
+Guards = tuple[tuple[dict[str, Any], str, Any], ...]
+
+
 @dataclass(slots=True, eq=False)
 class CallSite:
     """A call in the text, or a place where something is handed on.
@@ -101,16 +105,21 @@ class CallSite:
         role: whose file it is.
         name: the last name of what is called.
         extent: where it stands, as the interpreter tells of the running call.
+        is_handed: whether something is handed on there, rather than called.
         is_awaited: whether it is awaited where it stands.
         is_given: whether what is handed on is given to the call that stands there.
+        left_alone: what is called as it is there, by the classes of its object and of itself, as long as some
+            names mean what they did.
     """
 
     path: str
     role: Role
     name: str
     extent: Extent
+    is_handed: bool = False
     is_awaited: bool = False
     is_given: bool = False
+    left_alone: dict[tuple[type, Any], Guards] = field(default_factory=dict)
 
 
 class Stands(Protocol):
@@ -125,6 +134,8 @@ class Stands(Protocol):
 
 #: the receiver of what was read from a name
 NOTHING = object()
+#: a guard that never holds
+_ASK: Guards = (({}, "", NOTHING),)
 
 
 class CallSites:
@@ -155,6 +166,7 @@ class CallSites:
         self._sees_itself = sees_itself
         self._hands = hands
         self.loaded: list[str] = []
+        self._is_on = True
         self._numbers: dict[tuple[str, Extent, str], int] = {}
 
     def install(self) -> None:
@@ -168,7 +180,7 @@ class CallSites:
         if self._names:
             loading.remove(self)
         self._names = frozenset()
-        self._stands = self._hands = lambda site, found, receiver, frame: found
+        self._is_on = False
 
     def hook_pytest(self) -> None:
         """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
@@ -215,71 +227,67 @@ class CallSites:
         number = self._numbers.get(key)
         if number is None:
             number = self._numbers[key] = len(_entries)
-            place = place_of(node) if form.startswith("handed") else node
-            site = CallSite(path, role, name, extent_of(place))
-            site.is_awaited, site.is_given = bool(getattr(node, "is_awaited", False)), place is not node
+            is_handed = form.startswith("handed")
+            place = place_of(node) if is_handed else node
+            is_awaited = bool(getattr(node, "is_awaited", False))
+            site = CallSite(path, role, name, extent_of(place), is_handed, is_awaited, place is not node)
             _entries.append(getattr(self, f"_{form}")(site))
         return number
 
+    def _decide(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        decide = self._hands if site.is_handed else self._stands
+        return found if decide is None or not self._is_on else decide(site, found, receiver, frame)
+
     def _attribute(self, site: CallSite) -> Callable[[Any], Any]:
-        name, seen, frame_of = site.name, self._sees_itself, sys._getframe
+        name, left_alone, seen, frame_of = site.name, site.left_alone, self._sees_itself, sys._getframe
 
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
             found = getattr(receiver, name)
-            if type(found) in _WRAPPERS and found._self_wrapper in seen:
-                return found
-            return self._stands(site, found, receiver, frame_of(1))
+            kind = type(found)
+            if kind in _WRAPPERS:
+                if found._self_wrapper in seen:
+                    return found
+            elif left_alone:  # this is run at each call of such a name
+                own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
+                for names, one, value in left_alone.get((type(receiver), own), _ASK):
+                    if names.get(one) is not value:
+                        break
+                else:
+                    return found
+            return self._decide(site, found, receiver, frame_of(1))
 
         return read
 
-    def _name(self, site: CallSite) -> Callable[[Any], Any]:
-        seen, frame_of = self._sees_itself, sys._getframe
+    def _name(self, site: CallSite) -> Callable[..., Any]:
+        left_alone, seen, frame_of = site.left_alone, self._sees_itself, sys._getframe
 
-        def read(found: Any) -> Any:
-            if type(found) in _WRAPPERS and found._self_wrapper in seen:
+        def read(found: Any, receiver: Any = NOTHING) -> Any:
+            if type(found) in _WRAPPERS and not site.is_handed and found._self_wrapper in seen:
                 return found
-            return self._stands(site, found, NOTHING, frame_of(1))
+            if left_alone and type(found) is FunctionType:
+                guards = left_alone.get((type(receiver), found), _ASK)
+                if all(names.get(one) is value for names, one, value in guards):
+                    return found
+            return self._decide(site, found, receiver, frame_of(1))
 
         return read
 
-    def _pair(self, site: CallSite) -> Callable[[Any, Any], Any]:
-        seen, frame_of = self._sees_itself, sys._getframe
-
-        def read(found: Any, receiver: Any) -> Any:
-            if type(found) in _WRAPPERS and found._self_wrapper in seen:
-                return found
-            return self._stands(site, found, receiver, frame_of(1))
-
-        return read
+    _handed_name = _name
 
     def _handed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
-        name, frame_of = site.name, sys._getframe
-
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
-            found = getattr(receiver, name)
-            hands = self._hands
-            return found if hands is None else hands(site, found, receiver, frame_of(1))
-
-        return read
-
-    def _handed_name(self, site: CallSite) -> Callable[[Any], Any]:
-        frame_of = sys._getframe
-
-        def read(found: Any) -> Any:
-            hands = self._hands
-            return found if hands is None else hands(site, found, NOTHING, frame_of(1))
+            return self._decide(site, getattr(receiver, site.name), receiver, sys._getframe(1))
 
         return read
 
     def _handed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
-        frame_of = sys._getframe
         sites = {name: replace(site, name=name) for name in self._names}
 
         def read(function: Any) -> Any:
-            is_ours = function is getattr and self._hands is not None
-            return partial(self._got, sites, frame_of(1)) if is_ours else function
+            is_ours = function is getattr and self._is_on
+            return partial(self._got, sites, sys._getframe(1)) if is_ours else function
 
         return read
 
@@ -288,9 +296,7 @@ class CallSites:
     ) -> Any:
         __tracebackhide__ = True
         found = getattr(receiver, name, *default)
-        if self._hands is None or name not in sites:
-            return found
-        return self._hands(sites[name], found, receiver, frame)
+        return self._decide(sites[name], found, receiver, frame) if name in sites else found
 
 
 class _Writer(ast.NodeTransformer):
@@ -340,7 +346,7 @@ class _Writer(ast.NodeTransformer):
                 node.func = self._question(self._number(node, read.attr, "attribute"), function, [read.value])
             else:
                 given = [function, copy.deepcopy(read.value)]
-                node.func = self._question(self._number(node, read.attr, "pair"), function, given)
+                node.func = self._question(self._number(node, read.attr, "name"), function, given)
         elif isinstance(read, ast.Name) and read.id == "getattr" and self._are_handed:
             node.func = self._question(self._number(node, "", "handed_by_name"), function, [function])
         elif isinstance(read, ast.Name) and read.id in self._names:

@@ -16,31 +16,22 @@ from __future__ import annotations
 import copy
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pkgutil import resolve_name
-from types import FrameType, FunctionType, MethodType, ModuleType
+from types import FrameType, MethodType, ModuleType
 from typing import Any
 
 import wrapt
 
 from mutabot.model import Role, Span
-from mutabot.runtime.interception.adapter import Door
+from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
-from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, is_mock
-from mutabot.runtime.targets.target import Where
+from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, mock_of
 
+#: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
+#: which is None if nobody knows any more
 _MARK = "_mutabot_handed"
-
-
-@dataclass(slots=True)
-class _Mark:
-    """What a mock stands for, as noted on it, and where it was handed on; None if nobody knows any more."""
-
-    one: Candidate
-    receiver: Any
-    place: tuple[Span, Role] | None
 
 
 class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
@@ -74,7 +65,7 @@ class Handing:
         given: takes where functions of the robot were handed on; None if nobody knows any more.
     """
 
-    def __init__(self, standing: Standing, given: dict[Door, tuple[Span, Role] | None]) -> None:
+    def __init__(self, standing: Standing, given: dict[Adapter, tuple[Span, Role] | None]) -> None:
         self._standing = standing
         self._given = given
         self._undo: Callable[[], None] | None = None
@@ -98,9 +89,9 @@ class Handing:
                 return found
             self._standing.stood[place[0]] = own.operation.target
             if type(found) is wrapt.FunctionWrapper:  # all names of a function mean this very object
-                known = self._given.setdefault(own.door, place)
+                known = self._given.setdefault(own.adapter, place)
                 if known == place or not site.is_given:
-                    self._given[own.door] = place if known == place else None
+                    self._given[own.adapter] = place if known == place else None
                     return found
             return self._wrapped(own, place, receiver, found, found.__wrapped__)
         one = self._standing.candidate(site, found, receiver, frame)
@@ -108,11 +99,11 @@ class Handing:
             return found
         if self._standing.noted is not None:
             self._standing.noted.note(site, one.operation, found, receiver)
-        mock = _mock_of(found)
+        mock = mock_of(found)
         if mock is not None:
-            mark = vars(mock).setdefault(_MARK, _Mark(one, receiver, place))
-            if mark.place == place or not site.is_given:
-                mark.place = place if mark.place == place else None
+            known = vars(mock).get(_MARK, (one, receiver, place))
+            if known[2] == place or not site.is_given:
+                vars(mock)[_MARK] = (*known[:2], place if known[2] == place else None)
                 return found
         return self._wrapped(one, place, receiver, found, found)
 
@@ -137,7 +128,7 @@ class Handing:
         __tracebackhide__ = True
         if receiver is NOTHING and instance is not None:  # it was made a method, or is one
             receiver, found = instance, wrapped
-        where = Where(handed=place, receiver=_given(receiver), frame=sys._getframe(1))
+        where = {"handed": place, "frame": sys._getframe(1)}
         return self._standing.call(one, where, found, receiver, *args, **kwargs)
 
     def _watch(self, mock: ModuleType) -> None:
@@ -167,7 +158,7 @@ class Handing:
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if mark is not None:
-            one, receiver, place = mark.one, mark.receiver, mark.place
+            one, receiver, place = mark
         else:
             parent = own.get("_mock_new_parent")
             one, receiver, place = None, NOTHING if parent is None else parent, None
@@ -177,21 +168,8 @@ class Handing:
             return original(mock, *args, **kwargs)
         if place is None and mark is not None and self._standing.noted is not None:
             self._standing.noted.note_elsewhere(one.operation, self._standing.locator.locate(caller))
-        found = partial(original, mock)
-        is_awaited = is_coroutine_function(mock)
-        where = Where(handed=place, receiver=_given(receiver), frame=caller, is_awaited=is_awaited)
-        return self._standing.call(one, where, found, receiver, *args, **kwargs)
-
-
-def _given(receiver: Any) -> Any:
-    return None if receiver is NOTHING else receiver
-
-
-def _mock_of(found: Any) -> Any:
-    """The mock that a callable is, or stands before; None if it is none."""
-    module = sys.modules.get("unittest.mock")
-    made = vars(found).get("mock") if type(found) is FunctionType else found
-    return made if module is not None and made is not None and is_mock(module, made) else None
+        where = {"handed": place, "frame": caller, "is_awaited": is_coroutine_function(mock)}
+        return self._standing.call(one, where, partial(original, mock), receiver, *args, **kwargs)
 
 
 def _caller(frame: FrameType | None) -> FrameType | None:

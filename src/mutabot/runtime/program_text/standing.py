@@ -21,6 +21,7 @@ import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
+from inspect import Signature
 from types import BuiltinMethodType, FrameType, FunctionType, MethodType, ModuleType
 from typing import Any
 
@@ -30,9 +31,9 @@ from mutabot.languages.python import function_of
 from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
-from mutabot.runtime.interception.adapter import Door
+from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Where, named_class
 
@@ -72,30 +73,26 @@ class StandIns:
             self._elsewhere.setdefault(operation.target, set()).add(self.test())
 
     def findings(self, operations: Iterable[Operation]) -> Iterator[tuple[Operation, Finding]]:
-        """What is to be said about these operations."""
+        """Say what stood for these operations, what nobody can place, and what was left alone."""
         for operation in operations:
-            said = list(self._said(operation))
+            target, name, said = operation.target, last_name(operation), []
+            stood = self._standing.get(target, {})
+            if stood and not target.startswith(ANY):
+                shown = (f"{what} in {_count(len(tests), 'test')}" for what, tests in stood.items())
+                said.append(f"in its place stands {', '.join(shown)}")
+            if target in self._elsewhere:
+                which = _count(len(self._elsewhere[target]), "test")
+                where = "handed on in several places and called in a thread"
+                said.append(f"{where} in {which}: such calls are not mutated")
             if said:
                 yield operation, Finding("call", "; ".join(said), is_remark=True)
-            alone = self._alone.pop(last_name(operation), {})
+            alone = self._alone.pop(name, {})
             if alone:
                 listed = ", ".join(f"{place} ({what})" for place, what in list(alone.items())[:_MOST])
                 more = f" and {len(alone) - _MOST} more" if len(alone) > _MOST else ""
-                text = f"{_calls(len(alone))} of this name left alone, since nothing says that it is meant"
-                advice = f'if it is, write method = "{last_name(operation)}"'
-                yield operation, Finding("method", f"{text}: {listed}{more}; {advice}", is_remark=True)
-
-    def _said(self, operation: Operation) -> Iterator[str]:
-        """What stood for an operation, and what nobody can place."""
-        stood = self._standing.get(operation.target, {})
-        if stood and not operation.target.startswith(ANY):
-            yield "in its place stands " + ", ".join(
-                f"{what} in {_tests(len(tests))}" for what, tests in stood.items()
-            )
-        elsewhere = self._elsewhere.get(operation.target)
-        if elsewhere:
-            which = _tests(len(elsewhere))
-            yield f"handed on in several places and called in a thread in {which}: such calls are not mutated"
+                text = f"{_count(len(alone), 'call')} of this name left alone, since nothing says that it is"
+                advice = f'if it is, write method = "{name}"'
+                yield operation, Finding("method", f"{text} meant: {listed}{more}; {advice}", is_remark=True)
 
 
 def last_name(operation: Operation) -> str:
@@ -108,25 +105,25 @@ def is_mock(mock: Any, value: Any) -> bool:
     return issubclass(type(value), mock.NonCallableMock)
 
 
+def mock_of(found: Any) -> Any:
+    """Return the mock that a callable is, or stands before; None if it is none."""
+    module = sys.modules.get("unittest.mock")
+    made = vars(found).get("mock") if type(found) is FunctionType else found
+    return made if module is not None and is_mock(module, made) else None
+
+
 def _shown(found: Any, receiver: Any) -> str:
-    mock = sys.modules.get("unittest.mock")
-    if mock is not None and (is_mock(mock, found) or is_mock(mock, receiver)):
+    if mock_of(found) is not None or mock_of(receiver) is not None:
         return "a mock"
     if receiver is NOTHING or isinstance(receiver, ModuleType):
         return str(getattr(type(found), "__name__", ""))
     return class_name(receiver if isinstance(receiver, type) else type(receiver))
 
 
-def _tests(count: int) -> str:
-    return "1 test" if count == 1 else f"{count} tests"
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
-def _calls(count: int) -> str:
-    return "1 call" if count == 1 else f"{count} calls"
-
-
-#: names in modules, and what they meant
-_Guards = tuple[tuple[dict[str, Any], str, Any], ...]
 #: what stands around callables that see their calls themselves
 WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
@@ -138,13 +135,14 @@ class Candidate:
     Attributes:
         operation: the operation.
         handler: what its calls go through.
-        door: reads its calls.
+        adapter: reads its calls.
+        signature: what its arguments are, as the operation itself tells; None if it does not.
     """
 
     operation: Operation
     handler: Handler
-    door: Door
-    is_told: bool = False
+    adapter: Adapter
+    signature: Signature | None = None
 
 
 @dataclass(slots=True)
@@ -173,7 +171,6 @@ class Standing:
     stood: dict[Span, str] = field(default_factory=dict)
     alone: set[Span] = field(default_factory=set)
     _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
-    _left_alone: dict[tuple[CallSite, type, Any], _Guards] = field(default_factory=dict)
     _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
     _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
 
@@ -183,31 +180,20 @@ class Standing:
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is called at a site: ``found``, or what makes the same call as one of an operation."""
-        kind = type(found)
-        own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
-        key = (site, type(receiver), own)
-        guards = self._left_alone.get(key)
-        if guards is not None:
-            for names, name, value in guards:
-                if names.get(name) is not value:
-                    break
-            else:
-                return found
         one = self.candidate(site, found, receiver, frame)
         if self.noted is not None:
             operation = one.operation if one is not None else None
             self.noted.note(site, operation, found, receiver)
         if one is None:
             if _is_told_by_type(found, receiver):
-                self._left_alone[key] = self._guards(site, frame)
+                kind = type(found)
+                own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
+                site.left_alone[type(receiver), own] = self._guards(site, frame)
             return found
-        where = Where(
-            site=self.place(site, frame), receiver=None if receiver is NOTHING else receiver,
-            is_awaited=site.is_awaited, frame=frame,
-        )  # fmt: skip
+        where = {"site": self.place(site, frame), "is_awaited": site.is_awaited, "frame": frame}
         return partial(self.call, one, where, found, receiver)
 
-    def _guards(self, site: CallSite, frame: FrameType) -> _Guards:
+    def _guards(self, site: CallSite, frame: FrameType) -> Guards:
         """What must be as it is for the same to be left alone: all that names an operation, or its class."""
         here = frame.f_globals
         named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
@@ -224,19 +210,19 @@ class Standing:
                 self._names_of(vars(module))
 
     def call(
-        self, one: Candidate, where: Where, found: Any, receiver: Any, /, *args: Any, **kwargs: Any
+        self, one: Candidate, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
-        """Make a call as one of an operation."""
+        """Make a call of what was read from ``receiver`` as an operation's; ``where`` is of ``Where``."""
         __tracebackhide__ = True
-        if not one.is_told:
-            one.is_told = True
-            self._tell_signature(one)
         owner = self._owner(one)
         is_method = owner is not None or one.operation.target.startswith(ANY)
-        instance = receiver if is_method and receiver is not NOTHING else None
+        given = None if receiver is NOTHING else receiver
+        instance = given if is_method else None
+        is_own = one.operation.overrides and type(found) is MethodType
+        signature = signature_of(found) if is_own else self._signature_of(one)
         if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
             instance, found, args = args[0], partial(found, args[0]), args[1:]
-        return one.handler(found, instance, args, kwargs, where)
+        return one.handler(found, instance, args, kwargs, Where(receiver=given, signature=signature, **where))
 
     def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
         """Where a site stands."""
@@ -274,13 +260,17 @@ class Standing:
         return one
 
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
-        """The operation of this name in whose place something stands."""
+        """Return the operation of this name in whose place something stands."""
         ones = [one for one in self._by_name[name] if not self._is_read(one)]
-        for find in (self._of_class, self._of_name, self._of_mock, self._of_any):
-            one = find(ones, found, receiver, frame)
-            if one is not None:
-                return one
-        return None
+        mock = mock_of(found)
+        fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
+        if fitting:
+            return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target][0].__mro__))
+        fitting += [one for one in ones if self._means(one, found, receiver, frame)]
+        if mock is not None:
+            fitting += ones if len(ones) == 1 else [one for one in ones if self._is_mocked(one, mock)]
+        fitting += [one for one in ones if one.operation.target.startswith(ANY)]
+        return fitting[0] if fitting else None
 
     def _is_read(self, one: Candidate) -> bool:
         """Whether an operation is an attribute, which nobody calls."""
@@ -290,19 +280,16 @@ class Standing:
         seen = self.sees_itself
         return any(type(one) in WRAPPERS and one._self_wrapper in seen for one in _layers(found))
 
-    def _of_class(
-        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
-    ) -> Candidate | None:
+    def _is_of_class(self, one: Candidate, found: Any, receiver: Any, frame: FrameType) -> bool:
+        """Whether what is called is an attribute of an object of the operation's class."""
         if receiver is NOTHING and isinstance(found, MethodType):
             receiver = found.__self__
-        if receiver is NOTHING or self._is_of_program(found):
-            return None
-        fitting = []
-        for one in ones:
-            owner = self._owner(one)
-            if owner is not None and any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame)):
-                fitting.append((len(owner.__mro__), one))
-        return max(fitting, key=lambda pair: pair[0])[1] if fitting else None
+        owner = self._owner(one)
+        if owner is None or receiver is NOTHING:
+            return False
+        if self._is_of_program(found) and not one.operation.overrides:
+            return False
+        return any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame))
 
     def _kinds(self, one: Candidate, owner: type, frame: FrameType) -> Iterator[Any]:
         """The operation's class, and what was put in its place."""
@@ -312,46 +299,25 @@ class Standing:
             if meant is owner:
                 yield frame.f_globals.get(name)
 
-    def _of_name(
-        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
-    ) -> Candidate | None:
-        for one in ones:
-            if self._owner(one) is None and named_class(one.operation.target) is found:
-                return one
-        if receiver is not NOTHING:
-            return None
-        for name, meant in self._names_of(frame.f_globals).items():
-            for one in ones:
-                if meant is one.handler and frame.f_globals.get(name) is found:
-                    return one
-        return None
+    def _means(self, one: Candidate, found: Any, receiver: Any, frame: FrameType) -> bool:
+        """Whether what is called is what the operation's name means now, or a name that meant it first."""
+        if self._owner(one) is None and named_class(one.operation.target) is found:
+            return True
+        meant = self._names_of(frame.f_globals).items() if receiver is NOTHING else ()
+        names = frame.f_globals
+        return any(value is one.handler and names.get(name) is found for name, value in meant)
 
-    def _of_mock(
-        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
-    ) -> Candidate | None:
-        mock = sys.modules.get("unittest.mock")
-        if mock is None:
-            return None
-        made = vars(found).get("mock") if type(found) is FunctionType else found
-        if not is_mock(mock, made):
-            return None
-        if len(ones) == 1:
-            return ones[0]
-        wrapped = vars(made).get("_mock_wraps")
-        parent = vars(made).get("_mock_parent") or vars(made).get("_mock_new_parent")
+    def _is_mocked(self, one: Candidate, mock: Any) -> bool:
+        """Whether a mock tells by what it is made of that it stands for an operation."""
+        wrapped = vars(mock).get("_mock_wraps")
+        parent = vars(mock).get("_mock_parent") or vars(mock).get("_mock_new_parent")
         spec = vars(parent).get("_spec_class") if parent is not None else None
-        for one in ones:
-            owner = self._owner(one)
-            if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
-                return one
-            if wrapped is not None and any(
-                type(layer) in WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
-            ):
-                return one
-        return None
-
-    def _of_any(self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
-        return next((one for one in ones if one.operation.target.startswith(ANY)), None)
+        owner = self._owner(one)
+        if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
+            return True
+        return any(
+            type(layer) in WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
+        )
 
     def _is_of_program(self, found: Any) -> bool:
         function = found.__func__ if isinstance(found, MethodType) else found
@@ -381,17 +347,15 @@ class Standing:
         owner = self.callables.owners.get(one.operation.target)
         return owner[0] if owner is not None else None
 
-    def _tell_signature(self, one: Candidate) -> None:
+    def _signature_of(self, one: Candidate) -> Signature | None:
         original = self.callables.found.get(one.operation.target)
-        if original is None or one.operation.signature is not None:
-            return
-        function = getattr(original, "__func__", original)
-        signature = signature_of(function)
-        owner = self._owner(one)
-        if signature is not None and owner is not None and not isinstance(original, staticmethod):
-            signature = signature.replace(parameters=list(signature.parameters.values())[1:])
-        if signature is not None:
-            one.door.use_signature(signature)
+        if one.signature is None and original is not None:
+            found = signature_of(getattr(original, "__func__", original))
+            is_method = self._owner(one) is not None and not isinstance(original, staticmethod)
+            if found is not None and is_method:
+                found = found.replace(parameters=list(found.parameters.values())[1:])
+            one.signature = found
+        return one.signature
 
 
 def _is_of_objects(owner: type | None, one: Candidate) -> bool:
@@ -417,15 +381,14 @@ def _layers(found: Any) -> Iterator[Any]:
 
 def _is_told_by_type(found: Any, receiver: Any) -> bool:
     """Whether all that is called like this on objects of this type is left alone if this is."""
-    kind = type(found)
-    if kind is FunctionType:  # one that is always the same
+    if type(found) is FunctionType:  # one that is always the same
         return receiver is NOTHING and "<locals>" not in found.__qualname__
     if receiver is NOTHING or isinstance(receiver, type | ModuleType):
         return False
     if receiver.__class__ is not type(receiver):  # it stands for something else
         return False
-    of_python = kind is MethodType and type(found.__func__) is FunctionType
-    return (of_python or kind is BuiltinMethodType) and found.__self__ is receiver
+    of_python = type(found) is MethodType and type(found.__func__) is FunctionType
+    return (of_python or type(found) is BuiltinMethodType) and found.__self__ is receiver
 
 
 def _is_a(value: Any, kind: Any) -> bool:

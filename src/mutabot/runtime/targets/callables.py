@@ -1,8 +1,8 @@
 """Targets that are Python callables, ``module:qualified.name``: wrapped before or after they are imported.
 
 Functions, methods, class and static methods, async functions and properties can be wrapped. Where a
-module was already imported, names that other modules, classes and default arguments took from it (``from
-x import f``) are re-bound too; references kept in containers or closures are not found.
+module was already imported, names that other modules took from it (``from x import f``) are re-bound too;
+other references to it are not found.
 """
 
 from __future__ import annotations
@@ -13,25 +13,17 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from importlib import import_module
-from types import FunctionType, ModuleType
+from types import ModuleType
 from typing import Any
 
 import wrapt
 
 from mutabot.model import Operation
 from mutabot.model.path import class_name
-from mutabot.model.signature import (
-    described_in,
-    parse_signature,
-    signature_of,
-    spell_signature,
-    takes_anything,
-)
+from mutabot.model.signature import parse_signature, signature_of, takes_anything
 from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Targets, Tell, resolve
 
 _ONLY_READ = "only its reading is seen; describe the method that its setter calls"
-#: how deep decorators are looked into for the function that they wrap
-_DEPTH = 5
 
 
 def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
@@ -53,7 +45,7 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
     elif signature is None or takes_anything(signature):
         unnamed = [root for root in described if signature is None or root not in signature.parameters]
         if unnamed:
-            yield Finding("signature", _advice(operation, callable, signature is None), is_remark=True)
+            yield Finding("signature", _advice(operation, signature is None), is_remark=True)
         return
     if any(one.kind is inspect.Parameter.VAR_KEYWORD for one in signature.parameters.values()):
         return
@@ -63,41 +55,16 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
             yield Finding(key, f"{operation.target} has no argument {root!r}", root, known)
 
 
-def _advice(operation: Operation, callable: Any, is_native: bool) -> str:
-    name = operation.name.rpartition(".")[2]
+def _advice(operation: Operation, is_native: bool) -> str:
     if is_native:
         why = f"{operation.target} is native and does not tell its arguments"
-        found = described_in(getattr(callable, "__doc__", None), name)
     else:
         why = f"{operation.target} is wrapped in (*args, **kwargs), which does not tell its arguments"
-        found = _wrapped_in(callable, name, _DEPTH)
-    proposal = spell_signature(found) if found is not None else f"({', '.join(operation.described)}, …)"
-    order = "" if found is not None else ", with all names in their order"
-    return (
-        f"{why}: only those that a call gives by keyword can be told apart; "
-        f'write signature = "{proposal}"{order}'
-    )
-
-
-def _wrapped_in(function: Any, name: str, depth: int) -> inspect.Signature | None:
-    """The signature of the function of this name that a decorator keeps in its closure."""
-    for cell in getattr(function, "__closure__", None) or ():
-        try:
-            content = cell.cell_contents
-        except ValueError:  # not filled yet
-            continue
-        if not inspect.isfunction(content):
-            continue
-        found = signature_of(content) if content.__name__ == name else None
-        if found is None and depth:
-            found = _wrapped_in(content, name, depth - 1)
-        if found is not None and not takes_anything(found):
-            return found
-    return None
+    proposal = f'write signature = "({", ".join(operation.described)}, …)", with all names in their order'
+    return f"{why}: only those that a call gives by keyword can be told apart; {proposal}"
 
 
 Undo = Callable[[], None]
-_MAKING = "__init_subclass__"
 
 
 class NotCallableError(TypeError):
@@ -114,29 +81,19 @@ class Callables(Targets):
     """
 
     def __init__(self, tell: Tell) -> None:
-        self._tell = tell
+        super().__init__(tell)
         self.pending: set[str] = set()
         self.found: dict[str, Any] = {}
         self.owners: dict[str, tuple[type, str]] = {}
-        self._targets: set[str] = set()
-        self._covering: dict[str, Callable[[type], Handler]] = {}
-        self._uncovered: dict[str, list[str]] = {}
         self._undo: list[Undo] = []
         self._wrappers: list[tuple[Any, Any]] = []
         self._removed = False
         self._before = set(sys.modules)
 
-    def wrap(self, target: str, handler: Handler, overrides: Callable[[type], Handler] | None = None) -> None:
-        """Wrap a callable now, or as soon as its module is imported.
-
-        With ``overrides`` also the methods that override it, of classes that are there and of those that are
-        still to be made.
-        """
+    def wrap(self, target: str, handler: Handler) -> None:
+        """Wrap a callable now, or as soon as its module is imported."""
         module_name, _, qualname = target.partition(":")
         self.pending.add(target)
-        self._targets.add(target)
-        if overrides is not None:
-            self._covering[target] = overrides
         late = module_name in sys.modules
 
         def imported(module: ModuleType) -> None:
@@ -145,8 +102,6 @@ class Callables(Targets):
             self.pending.discard(target)
             try:
                 self._install(target, module, qualname, handler, late=late)
-                if overrides is not None:
-                    self._cover(target, overrides)
             except NotFoundError as error:
                 self._tell(target, Finding("call", str(error), error.name, error.known))
             except NotCallableError as error:
@@ -156,12 +111,6 @@ class Callables(Targets):
 
         wrapt.register_post_import_hook(imported, module_name)
 
-    def look_again(self) -> None:
-        """Cover the classes whose making went unnoticed."""
-        for target, overrides in self._covering.items():
-            if target in self.owners:
-                self._wrap_overriding(target, overrides)
-
     def here(self) -> Iterable[str]:
         """The targets whose modules were imported."""
         return self.found.keys()
@@ -169,10 +118,6 @@ class Callables(Targets):
     def found_elsewhere(self, targets: Iterable[str]) -> None:
         """Their modules may not even be importable here."""
         self.pending.difference_update(targets)
-
-    def uncovered(self, target: str) -> list[str]:
-        """Overriding methods that cannot be wrapped, with the reason."""
-        return self._uncovered.get(target, [])
 
     def seek(self) -> Iterator[tuple[str, Finding]]:
         """Import what nobody imported, so that every target is looked at."""
@@ -187,46 +132,6 @@ class Callables(Targets):
         """What of the described arguments does not fit the callable."""
         original = self.found.get(operation.target)
         return look_at(operation, original) if original is not None else iter(())
-
-    def _wrap_overriding(self, target: str, overrides: Callable[[type], Handler]) -> None:
-        owner, name = self.owners[target]
-        for kind in overriding(owner, name):
-            self._wrap_own(target, kind, name, overrides)
-
-    def _cover(self, target: str, overrides: Callable[[type], Handler]) -> None:
-        if target not in self.owners:
-            raise NotCallableError(f"{target} is no method, so nothing overrides it")
-        owner, name = self.owners[target]
-        self._wrap_overriding(target, overrides)
-        self._undo.append(watch_subclasses(owner, lambda kind: self._wrap_own(target, kind, name, overrides)))
-
-    def _wrap_own(self, target: str, kind: type, name: str, overrides: Callable[[type], Handler]) -> None:
-        original = vars(kind).get(name)
-        is_wrapped = any(original is wrapper for _, wrapper in self._wrappers)
-        if original is None or is_wrapped or not self._is_nearest(target, kind):
-            return
-        try:
-            wrapper = _wrapper(kind, name, original, overrides(kind))
-            setattr(kind, name, wrapper)
-        except (NotCallableError, AttributeError, TypeError) as error:
-            why = f"{class_name(kind)}.{name} cannot be intercepted: {error}"
-            if why not in self._uncovered.setdefault(target, []):
-                self._uncovered[target].append(why)
-            return
-        self._undo.append(functools.partial(setattr, kind, name, original))
-        self._wrappers.append((original, wrapper))
-
-    def _is_nearest(self, target: str, kind: type) -> bool:
-        """Whether no other target covers the class that is nearer to it, nor names its method itself."""
-        owner, name = self.owners[target]
-        installed = {id(place): other for other, (place, same) in self.owners.items() if same == name}
-        for place in kind.__mro__:
-            if place is owner:
-                break
-            other = installed.get(id(place), f"{class_name(place)}.{name}")
-            if other in self._covering or (place is kind and other in self._targets):
-                return False
-        return True
 
     def remove(self) -> None:
         """Take all wrappers away, last one first. Hooks of modules not yet imported become idle."""
@@ -303,7 +208,7 @@ def _as_getter(handler: Handler) -> Handler:
 
 
 def _rebind(modules: Iterable[Any], original: Any, wrapper: Any) -> Iterator[Undo]:
-    """Put the wrapper wherever the modules, their classes or default arguments refer to the original."""
+    """Put the wrapper wherever names of the modules mean the original."""
     if isinstance(original, property | classmethod | staticmethod | functools.cached_property):
         return
     for module in modules:
@@ -313,75 +218,6 @@ def _rebind(modules: Iterable[Any], original: Any, wrapper: Any) -> Iterator[Und
             if value is original:
                 setattr(module, name, wrapper)
                 yield functools.partial(setattr, module, name, original)
-            elif isinstance(value, FunctionType):
-                if value.__module__ == module.__name__ and _has_defaults(value):
-                    yield from _rebind_defaults(value, original, wrapper)
-            elif isinstance(value, type) and value.__module__ == module.__name__:
-                yield from _rebind_class(value, original, wrapper)
-
-
-def _rebind_class(owner: type, original: Any, wrapper: Any) -> Iterator[Undo]:
-    for name, value in list(vars(owner).items()):
-        if value is original:
-            setattr(owner, name, wrapper)
-            yield functools.partial(setattr, owner, name, original)
-        elif isinstance(value, FunctionType) and _has_defaults(value):
-            yield from _rebind_defaults(value, original, wrapper)
-
-
-def _has_defaults(function: FunctionType) -> bool:
-    return bool(function.__defaults__ or function.__kwdefaults__)
-
-
-def _rebind_defaults(function: FunctionType, original: Any, wrapper: Any) -> Iterator[Undo]:
-    keyword_only = function.__kwdefaults__ or {}
-    for name in [name for name, value in keyword_only.items() if value is original]:
-        keyword_only[name] = wrapper
-        yield functools.partial(keyword_only.__setitem__, name, original)
-    defaults = function.__defaults__
-    if defaults and any(value is original for value in defaults):
-        function.__defaults__ = tuple(wrapper if value is original else value for value in defaults)
-        yield functools.partial(setattr, function, "__defaults__", defaults)
-
-
-def overriding(owner: type, name: str) -> Iterator[type]:
-    """The classes below ``owner`` that define ``name`` themselves."""
-    waiting: list[type] = list(reversed(type.__subclasses__(owner)))
-    seen: set[int] = set()
-    while waiting:
-        kind = waiting.pop()
-        if id(kind) in seen:
-            continue
-        seen.add(id(kind))
-        waiting.extend(reversed(type.__subclasses__(kind)))
-        if vars(kind).get(name) is not None:
-            yield kind
-
-
-def watch_subclasses(owner: type, notice: Callable[[type], None]) -> Callable[[], None]:
-    """Be told of every class that is made below ``owner`` from now on; returns how to end that.
-
-    A class whose ``__init_subclass__`` does not call that of its bases is not told.
-    """
-    own = vars(owner).get(_MAKING)
-    base: Any = owner
-
-    def init_subclass(cls: Any, /, **options: Any) -> None:
-        if own is not None:
-            own.__get__(None, cls)(**options)
-        else:
-            super(base, cls).__init_subclass__(**options)
-        notice(cls)
-
-    setattr(owner, _MAKING, classmethod(init_subclass))
-
-    def end() -> None:
-        if own is not None:
-            setattr(owner, _MAKING, own)
-        else:
-            delattr(owner, _MAKING)
-
-    return end
 
 
 #: what this file is, to ``interception``

@@ -1,7 +1,7 @@
 """Targets that have a name on a middleware: topics, services, actions, parameters.
 
-What stands around each use are hooks that packages bring (``middleware``). They are put in place as soon as
-the program imports the client library of a middleware, and not imported before.
+What stands around each use are hooks that packages bring (``target.Middleware``). They are put in place as
+soon as the program imports the client library of a middleware, and not imported before.
 
 Giving the program what comes by itself, as a mutant would have it: late, several times, or not at all.
 
@@ -73,7 +73,7 @@ class Messages(Targets):
     """
 
     def __init__(self, tell: Tell) -> None:
-        self._tell = tell
+        super().__init__(tell)
         self._handlers: list[tuple[Named, Handler]] = []
         self._found: dict[tuple[Form, str, str | None], Handler | None] = {}
         self._undo: list[Callable[[], None]] = []
@@ -83,7 +83,7 @@ class Messages(Targets):
         for part in brought("middlewares").values():
             wrapt.register_post_import_hook(partial(self._hook, part), part.name)
 
-    def wrap(self, target: str, handler: Handler, overrides: object = None) -> None:
+    def wrap(self, target: str, handler: Handler) -> None:
         """Let a handler stand around what is done under a name; nothing is ever put in its place."""
         self._handlers.append((Named.of(target), handler))
         self._found.clear()
@@ -103,7 +103,7 @@ class Messages(Targets):
             return found
 
     def heard(self, name: str, message: Any) -> None:
-        """A message passed under a resolved name, as it is in truth; see ``middleware.Names``."""
+        """A message passed under a resolved name, as it is in truth; see ``target.Names``."""
         if self.on_heard is not None:
             self.on_heard(name, message)
 
@@ -163,17 +163,18 @@ class Messages(Targets):
 
 
 def unused(wanted: Collection[Named], used: Collection[Named]) -> Iterator[tuple[str, Finding]]:
-    """Each operation of the vocabulary that was never used, with what was used instead, nearest first."""
+    """Tell of each operation of the vocabulary that was never used, with what was used instead."""
     for named in wanted:
         text = _NOTHING.get(named.form)
         if text is None or any(named.fits(one.form, one.name, one.node) for one in used):
             continue
-        sentence = f"{text.format(named.name)}{_where(named)}; {_instead(named, used)}"
+        where = f" in a node {named.node}" if named.node is not None else ""
+        sentence = f"{text.format(named.name)}{where}; {_instead(named, used)}"
         yield named.target, Finding(named.form.value, sentence, is_remark=True)
 
 
 def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[Finding]:
-    """Names under which the vocabulary expects refusals, and nothing listens."""
+    """Tell of names under which the vocabulary expects refusals, and nothing listens."""
     for name in dict.fromkeys(one.topic for one in refused if one.topic is not None):
         wanted = [Named(form, name) for form in _LISTENING]
         if any(one.fits(other.form, other.name, other.node) for one in wanted for other in used):
@@ -183,32 +184,16 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
         yield Finding("refused", sentence, is_remark=True)
 
 
-def _where(named: Named) -> str:
-    return f" in a node {named.node}" if named.node is not None else ""
-
-
 def _instead(named: Named, used: Collection[Named]) -> str:
-    forms = (named.form, _SET_UP.get(named.form))
-    alike = [one for one in used if one.form in forms]
-    nodes = {one.node for one in alike if Named(one.form, named.name).fits(one.form, one.name, None)}
-    told = sorted(node for node in nodes if node is not None)
-    if told:
-        is_set_up = any(named.fits(one.form, one.name, one.node) for one in _as(named.form, alike))
-        return f"it is set up in {', '.join(told)}" if is_set_up else f"seen in {', '.join(told)}"
-    names = sorted({one.name for one in alike}, key=lambda name: (-_likeness(name, named.name), name))
-    if not names:
+    """Say what was used or set up for the same, nearest first."""
+    alike = {one.name: one.target for one in used if one.form in (named.form, _SET_UP.get(named.form))}
+    if not alike:
         known = f"; middlewares that are known here: {', '.join(brought('middlewares')) or 'none'}"
         return f"nothing of that kind was seen under any name{'' if used else known}"
-    more = f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
-    return f"seen: {', '.join(names[:_MOST])}{more}"
-
-
-def _as(form: Form, alike: Collection[Named]) -> Iterator[Named]:
-    return (Named(form, one.name, one.node) for one in alike if one.form is _SET_UP.get(form))
-
-
-def _likeness(one: str, other: str) -> float:
-    return SequenceMatcher(None, one, other).ratio()
+    likeness = {name: SequenceMatcher(None, name, named.name).ratio() for name in alike}
+    targets = [alike[name] for name in sorted(alike, key=lambda name: (-likeness[name], name))]
+    more = f" and {len(targets) - _MOST} more" if len(targets) > _MOST else ""
+    return f"seen: {', '.join(targets[:_MOST])}{more}"
 
 
 #: what this file is, to ``interception``

@@ -23,7 +23,7 @@ What hooks keep to, so that all operators mean the same in every middleware:
 - Each use gives the handler a ``Where`` with ``means`` (``target.Means``): how the node sleeps, does
   something later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of
   it by the clock of the node, so that simulated time counts.
-- What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``delivery``:
+- What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``messages``:
   ``deliver`` calls the program's callback, ``wait_for`` stands around a wait. A handler's own result
   may be a ``Delivery`` there and nowhere else.
 - An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
@@ -41,9 +41,9 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from abc import ABC, abstractmethod
 from collections.abc import Awaitable, Callable, Iterable, Iterator
 from importlib import import_module
+from inspect import Signature
 from types import CodeType, FrameType, ModuleType
 from typing import Any, Protocol, runtime_checkable
 
@@ -105,6 +105,7 @@ class Where:
         handed: the place at which what is called was handed on, if the frames tell none.
         receiver: what was called was read from this object; None if it was not, or that is the instance.
         is_awaited: whether what the call gives is awaited there.
+        signature: by which its arguments are read, where it is not the operation's.
         frame: that makes the call; None if it is the next one.
     """
 
@@ -117,11 +118,15 @@ class Where:
     receiver: Any = None
     is_awaited: bool = False
     frame: FrameType | None = None
+    signature: Signature | None = None
 
 
-#: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if
-#: the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
-#: coroutine function. Of what comes by itself it may return a ``delivery.Delivery`` in its place
+#: the frames above tell all
+NOWHERE = Where()
+
+#: ``handler(wrapped, instance, args, kwargs, where=NOWHERE)``, as wrapt calls it, with a ``Where`` behind it
+#: if the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
+#: coroutine function. Of what comes by itself it may return a ``messages.Delivery`` in its place
 Handler = Callable[..., Any]
 
 
@@ -147,8 +152,8 @@ class Finding:
 Tell = Callable[[str, Finding], None]
 
 
-class Targets(ABC):
-    """All targets of one kind in this process.
+class Targets:
+    """All targets of one kind in this process. Of methods of whatever object has them, nothing is wrapped.
 
     Args:
         tell: told about a target that turns out wrong when it is found.
@@ -159,45 +164,33 @@ class Targets(ABC):
 
     on_heard: Callable[[str, Any], None] | None = None
 
-    @abstractmethod
-    def __init__(self, tell: Tell) -> None: ...
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
 
-    @abstractmethod
-    def wrap(self, target: str, handler: Handler, overrides: Callable[[type], Handler] | None = None) -> None:
-        """Let a handler stand around a target, now or as soon as the program has it.
+    def wrap(self, target: str, handler: Handler) -> None:
+        """Let a handler stand around a target, now or as soon as the program has it."""
 
-        With ``overrides``, which makes their handlers, also around what the program puts in its place.
-        """
-
-    @abstractmethod
     def remove(self) -> None:
         """Take all handlers away; none comes any more."""
 
-    @abstractmethod
     def seek(self) -> Iterator[tuple[str, Finding]]:
         """Find what the program has not come to by itself; yields what cannot be found."""
+        return iter(())
 
-    @abstractmethod
     def check(self, operation: Operation) -> Iterator[Finding]:
-        """What of an operation does not fit its target, once that is found."""
+        """Say what of an operation does not fit its target, once that is found."""
+        return iter(())
 
     def unheard(self, operation: Operation) -> Iterator[Finding]:
-        """Where the vocabulary expects the operation's refusals to be told, and nothing listens."""
+        """Say where the vocabulary expects the operation's refusals to be told, and nothing listens."""
         return iter(())
 
     def here(self) -> Iterable[str]:
-        """The targets that this process has."""
+        """Return the targets that this process has."""
         return ()
 
-    def found_elsewhere(self, targets: Iterable[str]) -> None:  # noqa: B027  # most kinds have nothing to do
+    def found_elsewhere(self, targets: Iterable[str]) -> None:
         """A process below the tests has these: nobody needs to seek them here."""
-
-    def look_again(self) -> None:  # noqa: B027  # most kinds have nothing to do
-        """A test begins: find what was made since the last one."""
-
-    def uncovered(self, target: str) -> list[str]:
-        """What the program uses in place of a target and no handler can stand around, with the reason."""
-        return []
 
 
 class NotFoundError(LookupError):
@@ -265,8 +258,8 @@ def named_class(name: str) -> Any:
         return None
 
 
-#: the kind of a target that says nothing else
-_DEFAULT = "callables"
+#: the kind of a target that says nothing else, and of methods, whose calls are seen where they are written
+_DEFAULT, METHODS = "callables", "methods"
 
 
 class Interception:
@@ -284,14 +277,13 @@ class Interception:
         """All targets of a kind; by default Python callables."""
         name = kind or _DEFAULT
         if name not in self._kinds:
-            self._kinds[name] = import_module(f"{__package__}.{name}").KIND(self._tell)
+            made = Targets if name == METHODS else import_module(f"{__package__}.{name}").KIND
+            self._kinds[name] = made(self._tell)
         return self._kinds[name]
 
-    def wrap(
-        self, operation: Operation, handler: Handler, overrides: Callable[[type], Handler] | None = None
-    ) -> None:
+    def wrap(self, operation: Operation, handler: Handler) -> None:
         """Let a handler stand around an operation; see ``Targets.wrap``."""
-        self.of(operation.kind).wrap(operation.target, handler, overrides)
+        self.of(operation.kind).wrap(operation.target, handler)
 
     @property
     def kinds(self) -> Iterable[Targets]:
@@ -307,11 +299,6 @@ class Interception:
         """A process below the tests has these targets: nobody needs to seek them here."""
         for targets in self._kinds.values():
             targets.found_elsewhere(names)
-
-    def look_again(self) -> None:
-        """A test begins: find what was made since the last one."""
-        for targets in self._kinds.values():
-            targets.look_again()
 
     def remove(self) -> None:
         """Take all handlers away."""

@@ -1,4 +1,4 @@
-"""What befalls a call beside other values: it is late, cancelled, fails, or its process dies of it."""
+"""Faults of a call beside other values: it is late, cancelled, fails, or its process dies of it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 
 from mutabot.model import Call, Mishap, Reply
 from mutabot.model.operation import ANSWERED, COMING
-from mutabot.runtime.interception.arguments import copied
+from mutabot.runtime.interception.live import copied
 from mutabot.runtime.targets.messages import Delivery
 from mutabot.runtime.targets.target import Means, resolve
 
@@ -27,7 +27,7 @@ _SAYS = "no reading (planted by mutabot)"
 
 
 def why_not(means: Means | None, mishap: Mishap) -> str:
-    """Why something cannot befall a call here; empty if it can."""
+    """Say why something cannot befall a call here; empty if it can."""
     if means is None:
         return "it is no call of a middleware"
     if mishap is Mishap.CANCELLED and means.cancel is None:
@@ -43,9 +43,7 @@ def why_not(means: Means | None, mishap: Mishap) -> str:
 
 
 async def before(call: Call, at_end: Callable[[], None]) -> None:
-    """What befalls a call before it is made; ``at_end`` is told before this process dies of it."""
-    if not call.mishaps:
-        return
+    """Let happen what befalls a call before it is made; ``at_end`` is told before this process dies of it."""
     means = _means(call)
     if Mishap.JUMPED in call.mishaps and means.jump is not None:
         means.jump(call.mishaps[Mishap.JUMPED])
@@ -56,23 +54,23 @@ async def before(call: Call, at_end: Callable[[], None]) -> None:
         await means.sleep(call.mishaps[Mishap.LATE])
 
 
-def timed(call: Call, perform: Callable[[], Any]) -> Callable[[], Any]:
-    """``perform``, or what has it done later: what goes out without an answer is not waited for."""
+def perform(call: Call, action: Callable[[], Any]) -> Any:
+    """Make a call, or have it made later: what goes out without an answer is not waited for."""
     if Mishap.LATE not in call.mishaps or _is_answered(call):
-        return perform
-    return lambda: _means(call).goes_out(call.mishaps[Mishap.LATE], partial(_quietly, perform))
+        return action()
+    return _means(call).goes_out(call.mishaps[Mishap.LATE], partial(_quietly, action))
 
 
 async def after(call: Call, result: Any) -> None:
-    """What befalls what a call began; ``result`` is what it returned."""
+    """Let happen what befalls what a call began; ``result`` is what it returned."""
     cancel = _means(call).cancel if Mishap.CANCELLED in call.mishaps else None
     if cancel is not None:
         await cancel(result)
 
 
 def heard_of(call: Call, reply: Reply) -> Reply:
-    """What the program hears of a reply: who waits for one message hears no other after it."""
-    means: Means | None = call.payload.means
+    """Return what the program hears of a reply: who waits for one message hears no other after it."""
+    means: Means | None = call.payload.where.means
     if means is None or not means.once or not reply.more:
         return reply
     first = replace(reply.parts[0], more=()) if reply.parts else reply
@@ -80,28 +78,24 @@ def heard_of(call: Call, reply: Reply) -> Reply:
 
 
 def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Callable[[], Awaitable[Any]]:
-    """How the program gets a reply; ``result`` makes its object of one.
+    """Return how the program gets a reply that does not come as usual; ``result`` makes its object of one.
 
     Raises LookupError where nobody knows how. What is returned raises what the middleware raises for an
     answer that never comes, and what the program gets in the stead of a reading.
     """
     if reply.error:
         return partial(_raised, missing(reply.error))
+    means = _means(call)
     named = call.operation.named
-    comes = named is not None and named.form in COMING
-    means = None if reply.comes_as_usual else _means(call)
-    if means is not None and reply.lost and not comes and means.lost is None:
-        raise LookupError(f"nobody knows how {call.operation.name} loses its answer")
-    if means is not None and comes:
+    if named is not None and named.form in COMING:
         parts = [(part.late, result(part)) for part in reply.parts]
         # the program may change what it got, and would find that in what comes next
-        got: Any = Delivery((*parts[:1], *((late, copied(one)) for late, one in parts[1:])))
-    else:
-        got = None if reply.lost else result(reply)
+        return partial(_given, Delivery((*parts[:1], *((late, copied(one)) for late, one in parts[1:]))))
+    if reply.lost and means.lost is None:
+        raise LookupError(f"nobody knows how {call.operation.name} loses its answer")
+    got = None if reply.lost else result(reply)
 
     async def handed() -> Any:
-        if means is None or comes:
-            return got
         if reply.late:
             await means.sleep(reply.late)
         return await means.lost() if reply.lost and means.lost is not None else got
@@ -110,7 +104,7 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
 
 
 def missing(name: str) -> BaseException:
-    """What the program gets in the stead of a reading: an exception of this class (``module:Name``).
+    """Return what the program gets in the stead of a reading: an exception of this class (``module:Name``).
 
     Raises LookupError if there is none, or if it is no exception.
     """
@@ -134,8 +128,12 @@ async def _raised(error: BaseException) -> NoReturn:
     raise error
 
 
+async def _given(result: Any) -> Any:
+    return result
+
+
 def _means(call: Call) -> Means:
-    means: Means | None = call.payload.means
+    means: Means | None = call.payload.where.means
     if means is None:
         raise LookupError(f"nobody knows what can befall {call.operation.name}")
     return means

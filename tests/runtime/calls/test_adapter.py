@@ -284,5 +284,4 @@ def test_keyword_only_defaults_are_intercepted_too(make_stage: Make) -> None:
     robot = "def move(x):\n    return x\n"
     program = "import robot\n\ndef run(*, go=robot.move):\n    return go(1.0)\n"
     stage = make_stage(robot, program, f'[[operation]]\ncall = "robot:move"\narguments.x = {X}\n')
-    stage.load_program()
     assert stage.mutated("reverse", "x")[0] == -1.0

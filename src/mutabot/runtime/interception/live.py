@@ -1,0 +1,191 @@
+"""Answers that are the robot's own memory, and copies of values.
+
+To write to an array that a simulator hands out is to command the robot. A mutated reading is a copy of it:
+what the program writes to the copy is lost, so such a run says nothing of the tests.
+"""
+
+from __future__ import annotations
+
+import copy
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from functools import cached_property
+from typing import Any
+
+from mutabot.errors import PathError
+from mutabot.model import Quantity
+from mutabot.model.path import Path, Step
+
+#: copies that are looked at after each call
+_LAST = 8
+_MISSING = object()
+#: values that nobody can write to
+_FIXED = (int, float, complex, str, bytes, bool, type(None), frozenset, range)
+
+
+def copied(value: Any) -> Any:
+    """Return a copy of a value, or the value itself if it cannot be copied."""
+    try:
+        return copy.deepcopy(value)
+    except Exception:  # objects of the user's may refuse to be copied in any way
+        return value
+
+
+def is_live(answer: Any, quantities: Iterable[Quantity]) -> bool:
+    """Whether somebody else holds an answer, or a part of it that the vocabulary describes.
+
+    To be asked as soon as the answer is there, by the one function that has it.
+    """
+    try:
+        return _is_held(answer, _OF_ANSWER) or any(
+            _is_held(part, _OF_PART) for quantity in quantities for part in _parts(answer, quantity.path)
+        )
+    except Exception:  # objects of the user's may do anything when they are looked at: then it may be
+        return True
+
+
+def _is_held(value: Any, known: int) -> bool:
+    """``known``: the references to it that are no more than how one comes here."""
+    if isinstance(value, (*_FIXED, tuple)):  # of a tuple, the parts may be written to
+        return False
+    if sys.getrefcount(value) > known:
+        return True
+    base = getattr(value, "base", None) if hasattr(value, "dtype") else None
+    if base is None or not getattr(getattr(value, "flags", None), "writeable", True):
+        return False
+    # a view of an array that nobody else has is as good as that array
+    return not hasattr(base, "dtype") or _is_held(base, _OF_ANSWER)
+
+
+def _parts(answer: Any, path: Path) -> Iterator[Any]:
+    """What lies on the way to a quantity, bar the answer itself and copies of parts of it."""
+    value = answer
+    for step in path.steps:
+        if step.bounds is not None:
+            return
+        try:
+            value = Path(None, (step,)).get(value)
+        except PathError:
+            return
+        yield value
+
+
+def _references(ask: Callable[[Any, int], bool], of_part: bool) -> int:
+    """The most references that do not make a new list, or a new list in one, live."""
+    known = 0
+    while True:
+        new: list[Any] = [[]] if of_part else []
+        if not ask(new, known):
+            return known
+        known += 1
+
+
+def _answer_is_held(answer: Any, known: int) -> bool:
+    return _is_held(answer, known)
+
+
+def _part_is_held(answer: Any, known: int) -> bool:
+    return any(_is_held(part, known) for _ in (None,) for part in _parts(answer, _FIRST))
+
+
+_FIRST = Path(None, (Step(item=0),))
+# Counted and not written down, for what a call adds differs between versions of Python. Both functions have
+# the shape of ``is_live``.
+_OF_ANSWER = _references(_answer_is_held, of_part=False)
+_OF_PART = _references(_part_is_held, of_part=True)
+
+
+class HandedCopies:
+    """Copies of live answers that the program has of a mutated reading.
+
+    Attributes:
+        written: whether it has written to one.
+    """
+
+    def __init__(self) -> None:
+        self.written = False
+        self._handed: list[_Handed] = []
+
+    def note(self, original: Any, handed: Any, quantities: Iterable[Quantity]) -> None:
+        """Note that the program gets ``handed`` in the place of a live answer."""
+        pairs = [(original, handed)]
+        for quantity in quantities:
+            pairs += zip(_parts(original, quantity.path), _parts(handed, quantity.path), strict=False)
+        known: set[int] = set()
+        for before, after in pairs:
+            if after is not before and id(after) not in known and not isinstance(after, (*_FIXED, tuple)):
+                known.add(id(after))
+                self._handed.append((after, _content(after)))
+
+    def look(self, *, at_all: bool = False) -> bool:
+        """Say whether the program has written to one by now, and forget those that it has no more.
+
+        Without ``at_all`` only the last ones are looked at: a program may keep every reading that it takes.
+        """
+        start = 0 if at_all else max(0, len(self._handed) - _LAST)
+        waiting = self._handed[start:]
+        del self._handed[start:]
+        while waiting and not self.written:
+            one = waiting.pop(0)  # what it is a part of comes before a part, and goes before it
+            self.written = not _is_as_before(*one)
+            if sys.getrefcount(one[0]) > _IN_RECORD:
+                self._handed.append(one)
+        return self.written
+
+
+#: a copy that the program was given, and what was in it
+_Handed = tuple[Any, dict[Any, Any]]
+
+
+def _of_new_record() -> int:
+    one: _Handed = ([], {})
+    return sys.getrefcount(one[0])
+
+
+#: references to a value that nothing but such a record holds
+_IN_RECORD = _of_new_record()
+
+
+def _content(value: Any) -> dict[Any, Any]:
+    """Return what is in an object itself, to be compared later; its parts are looked at by themselves."""
+    if hasattr(value, "tobytes") and hasattr(value, "dtype"):
+        return {None: (str(value.dtype), value.tobytes())}
+    if isinstance(value, list):
+        return dict(enumerate(value))
+    if isinstance(value, set | bytearray) or hasattr(value, "typecode"):
+        return {None: copy.copy(value)}
+    own = value if isinstance(value, dict) else getattr(value, "__dict__", None)
+    if own is not None:
+        return dict(own)
+    return {name: getattr(value, name, None) for kind in type(value).__mro__ for name in _slots(kind)}
+
+
+def _slots(kind: type) -> tuple[str, ...]:
+    slots = kind.__dict__.get("__slots__", ())
+    return (slots,) if isinstance(slots, str) else tuple(slots)
+
+
+def _is_as_before(value: Any, before: dict[Any, Any]) -> bool:
+    """Whether an object holds the same objects as before, or equal plain values."""
+    now = _content(value)
+    return all(
+        _is_alike(before.get(key, _MISSING), now.get(key, _MISSING))
+        or (before.get(key) is None and _is_remembered(value, key))
+        for key in before | now
+    )
+
+
+def _is_remembered(value: Any, key: Any) -> bool:
+    """Whether an attribute that was not there yet is what an object remembers of its own: no write."""
+    if isinstance(value, dict) or not isinstance(key, str):
+        return False
+    return key.startswith("_") or isinstance(getattr(type(value), key, None), cached_property)
+
+
+def _is_alike(one: Any, other: Any) -> bool:
+    if one is other:
+        return True
+    try:
+        return type(one) is type(other) and bool(one == other or (one != one and other != other))  # noqa: PLR0124  # NaN
+    except Exception:  # a value of the user's may compare in any way; it is another object
+        return False
