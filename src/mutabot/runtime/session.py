@@ -37,7 +37,8 @@ from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Interception
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
-    from mutabot.runtime.isolation.fork_parent import Bunch, Trunk
+    from mutabot.runtime.isolation.fork_parent import ForkParent
+    from mutabot.runtime.isolation.forked_run import ForkedRun
 
 
 @dataclass(slots=True)
@@ -52,7 +53,7 @@ class Session:
         interception: what stands around the vocabulary's targets.
         passing: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
-        branch: id of the mutant that this process was forked to be; None in all others.
+        fork: what this process does as a fork of another; None in all others.
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
         standing: what stands there.
@@ -78,7 +79,7 @@ class Session:
     instances: Instances = field(default_factory=Instances)
     along: Along = field(init=False)
     rehearsal: Rehearsal = field(default_factory=Rehearsal)
-    branch: str | None = None
+    fork: ForkedRun | None = None
     text: SessionText | None = None
     returns: Returns | None = None
     call_sites: CallSites = field(init=False)
@@ -236,8 +237,8 @@ class Session:
         return self.passing.meter
 
     @property
-    def trunk(self) -> Trunk | None:
-        """What forks a branch per mutant, while this process runs the original."""
+    def trunk(self) -> ForkParent | None:
+        """What forks a process for each mutant, while this process runs the original."""
         return self.passing.trunk
 
     @property
@@ -271,20 +272,20 @@ class Session:
             made.time = self._time.now_if_known
             self.passing.activate(made)
 
-    def grow(self, trunk: Trunk) -> None:
-        """Run the original from now on, and fork a branch for every mutant of the trunk's."""
-        self.passing.trunk = trunk
-        trunk.is_moment = self._is_moment
+    def grow(self, parent: ForkParent) -> None:
+        """Run the original from now on, and fork a process for each of the parent's mutants."""
+        self.passing.trunk = parent
+        parent.is_moment = self._is_moment
         if self.text is not None:
-            self.text.watch(trunk.fork_at_place, trunk.places())
+            self.text.watch(parent.fork_at_place, parent.places())
 
-    def become(self, bunch: Bunch) -> None:
-        """In a branch that was just forked: be its mutants."""
-        self.passing.trunk, self.branch = None, bunch.first.id
-        self.activate(bunch.first)
+    def become(self, fork: ForkedRun) -> None:
+        """In a process that was just forked: be its mutant."""
+        self.passing.trunk, self.fork = None, fork
+        self.activate(fork.mutant)
         self._start_activations()
         if self.text is not None:
-            self.text.become(bunch)
+            self.text.become(fork.choices)
 
     def take_on(self, job: Job, pipe: Sink) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
@@ -320,8 +321,8 @@ class Session:
             door.reset()
         trunk = self.trunk
         if self.text is not None:
-            branch = trunk.fork_at_place if trunk is not None else None
-            self.text.start_test(test, branch, trunk.places() if trunk is not None else {})
+            on_place = trunk.fork_at_place if trunk is not None else None
+            self.text.start_test(test, on_place, trunk.places() if trunk is not None else {})
         self._start_activations()
         self.placed.start_test(test, self._random_of)
         has_clock = self.job.vocabulary.clock is not None
@@ -408,7 +409,7 @@ class Session:
         self.inspection.look_ahead(self.interception)
 
     def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
-        """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to.
+        """All tests are over: wait for forks, tell what was seen, and check the vocabulary if asked to.
 
         ``texts`` is what processes below the tests saw of the program text.
         """
@@ -473,7 +474,7 @@ class Session:
         self.pipe.send(line)  # which is another one once a copy knows its job
 
     def _site_seen(self, site: SiteSeen) -> None:
-        if self.branch is None:  # a branch sends its sites with its end
+        if self.fork is None:  # a fork sends its sites with its end
             self.pipe.send(site)
 
     def _acted(self, mutant: str) -> None:

@@ -34,7 +34,7 @@ from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import Handler, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
-    from mutabot.runtime.isolation.fork_parent import Trunk
+    from mutabot.runtime.isolation.fork_parent import ForkParent
 
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
@@ -115,7 +115,7 @@ class Passing:
         self.on_end = on_end
         self.turn: Callable[[], None] | None = None
         self.meter: Meter | None = None
-        self.trunk: Trunk | None = None
+        self.trunk: ForkParent | None = None
         self.activations: list[Activation] = []
         self.oracle_nodes: tuple[str, ...] = ()
         self._operator = ""

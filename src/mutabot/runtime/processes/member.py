@@ -62,12 +62,12 @@ class TextOnly:
         text: the program text, if it is instrumented.
         test: node id of the running test.
         meter: what the running test has used.
-        commands, sites, branch: of calls there are none.
+        commands, sites, fork: of calls there are none.
     """
 
     commands = 0
     sites: tuple[SiteSeen, ...] = ()
-    branch: str | None = None
+    fork: None = None
 
     def __init__(self, job: Job, pipe: Sink) -> None:
         self.job, self.pipe = job, pipe
@@ -167,7 +167,7 @@ class Member:
             self.file.send(site)
         self._told = _copy_of(session.evidence)
         self._attend()
-        session.pipe, session.branch = self, None  # it tells its own sites, also below a branch
+        session.pipe, session.fork = self, None  # it tells its own sites, also below a fork
         if session.text is not None:
             session.text.pipe = self
         self._watch_text()
