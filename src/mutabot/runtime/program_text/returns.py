@@ -124,7 +124,7 @@ class Returns:
 
     def _note(self, function: FrameType, value: Callable[[], Any]) -> None:
         if len(self.entries) >= LIMIT:
-            self.truncated = True
+            self.truncated, self.is_on = True, False
             return
         try:
             self.entries.append((function.f_code.co_qualname, value()))

@@ -21,7 +21,6 @@ from typing import Any, NoReturn
 
 from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice
 from mutabot.model.path import class_name
-from mutabot.runtime.observation.probes import opaque
 from mutabot.runtime.program_text.foresee import Forms, locals_of, value_of
 
 
@@ -257,6 +256,8 @@ def _plain(value: Any) -> Any:
         return value
     if isinstance(value, tuple | list) and len(value) <= _SHOWN:
         return tuple(_plain(item) for item in value)
+    from mutabot.runtime.observation.probes import opaque  # noqa: PLC0415  # slow, and of no use to most processes
+
     return opaque(value)
 
 
