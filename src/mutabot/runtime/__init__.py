@@ -1,11 +1,11 @@
 """What lives beside the robot program, in its process.
 
-It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``languages``, ``border`` and
-``operators``.
-Its rooms: ``suite`` makes pytest run a job, ``targets`` finds what the vocabulary names, ``calls`` and
-``text`` are the two ways of a mutant into it, ``readings`` looks at the world,
-``fork`` makes branches and copies, and ``watching`` is for ``mutabot init``. To follow one call, begin
-at ``calls/passing.py``.
+It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``languages`` and
+``operators``. ``session_hooks`` and ``test_hooks`` make pytest run a job, and ``session`` holds what stands
+in the program for it: ``targets`` finds what the vocabulary names, ``interception`` and ``program_text`` are
+the two ways of a mutant into it, ``observation`` looks at the world, ``isolation`` forks, ``processes`` is
+for programs below the tests, and ``watching`` is for ``mutabot init``. To follow one call, begin at
+``interception/dispatcher.py``.
 """
 
 import os

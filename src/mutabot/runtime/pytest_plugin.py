@@ -9,9 +9,21 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from mutabot.runtime.unrewritten import import_us_unrewritten
 
-import_us_unrewritten()  # before anything else of us is imported
+def _import_us_unrewritten() -> None:
+    """From now on pytest does not rewrite modules of mutabot that are imported.
+
+    It would rewrite the asserts of everything in a plugin's distribution, and parse each module anew in
+    every process, as none may write bytecode beside the sources.
+    """
+    for finder in sys.meta_path:
+        marked: Any = getattr(finder, "_must_rewrite", None)
+        if isinstance(marked, set):
+            marked.difference_update([name for name in marked if name.partition("_")[0] == "mutabot"])
+            getattr(finder, "_marked_for_rewrite_cache", {}).clear()
+
+
+_import_us_unrewritten()  # before anything else of us is imported
 
 from mutabot.model.call import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
@@ -95,6 +107,13 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(_plain_round, "mutabot-round")
 
 
+def _seed(request: pytest.FixtureRequest) -> int:
+    seeded = _hooks or _plain_round
+    if seeded is not None:
+        return seeded.seed_of(node_id(request.node))
+    return int(os.environ.get(SEED_VARIABLE, "0"))
+
+
 @pytest.fixture
 def mutabot_seed(request: pytest.FixtureRequest) -> int:
     """The seed of this test in this round: a whole number of 32 bits.
@@ -114,26 +133,10 @@ def mutabot_round_seed(request: pytest.FixtureRequest) -> int:
     return _seed(request)
 
 
-@pytest.fixture(scope="package")
-def _mutabot_package_seed(request: pytest.FixtureRequest) -> int:
-    return _seed(request)
-
-
-@pytest.fixture(scope="module")
-def _mutabot_module_seed(request: pytest.FixtureRequest) -> int:
-    return _seed(request)
-
-
-@pytest.fixture(scope="class")
-def _mutabot_class_seed(request: pytest.FixtureRequest) -> int:
-    return _seed(request)
-
-
-def _seed(request: pytest.FixtureRequest) -> int:
-    seeded = _hooks or _plain_round
-    if seeded is not None:
-        return seeded.seed_of(node_id(request.node))
-    return int(os.environ.get(SEED_VARIABLE, "0"))
+# what stands for ``mutabot_seed`` where a shared fixture asks for it
+_mutabot_package_seed = pytest.fixture(scope="package", name=_SHARED["package"])(_seed)
+_mutabot_module_seed = pytest.fixture(scope="module", name=_SHARED["module"])(_seed)
+_mutabot_class_seed = pytest.fixture(scope="class", name=_SHARED["class"])(_seed)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -237,9 +237,9 @@ class Session:
         return self.passing.meter
 
     @property
-    def trunk(self) -> ForkParent | None:
+    def fork_parent(self) -> ForkParent | None:
         """What forks a process for each mutant, while this process runs the original."""
-        return self.passing.trunk
+        return self.passing.fork_parent
 
     @property
     def evidence(self) -> Evidence:
@@ -274,14 +274,18 @@ class Session:
 
     def grow(self, parent: ForkParent) -> None:
         """Run the original from now on, and fork a process for each of the parent's mutants."""
-        self.passing.trunk = parent
+        self.passing.fork_parent = parent
         parent.is_moment = self._is_moment
-        if self.text is not None:
+        self._watch_text()
+
+    def _watch_text(self) -> None:
+        parent = self.fork_parent
+        if self.text is not None and parent is not None:
             self.text.watch(parent.fork_at_place, parent.places())
 
     def become(self, fork: ForkedRun) -> None:
         """In a process that was just forked: be its mutant."""
-        self.passing.trunk, self.fork = None, fork
+        self.passing.fork_parent, self.fork = None, fork
         self.activate(fork.mutant)
         self._start_activations()
         if self.text is not None:
@@ -319,10 +323,9 @@ class Session:
             self.returns.start()
         for door in self._doors:
             door.reset()
-        trunk = self.trunk
         if self.text is not None:
-            on_place = trunk.fork_at_place if trunk is not None else None
-            self.text.start_test(test, on_place, trunk.places() if trunk is not None else {})
+            self.text.start_test(test)
+            self._watch_text()
         self._start_activations()
         self.placed.start_test(test, self._random_of)
         has_clock = self.job.vocabulary.clock is not None
@@ -371,8 +374,8 @@ class Session:
         self.passing.meter = None
         self.placed.end_test()
         if self.text is not None:
-            if self.trunk is not None:
-                self.trunk.tell_undiverged(self.text.hits, self.text.early)
+            if self.fork_parent is not None:
+                self.fork_parent.tell_undiverged(self.text.hits, self.text.early)
             self.text.end_test()
 
     def take_probes(self) -> Reading:
@@ -413,8 +416,8 @@ class Session:
 
         ``texts`` is what processes below the tests saw of the program text.
         """
-        if self.trunk is not None:
-            self.trunk.finish()
+        if self.fork_parent is not None:
+            self.fork_parent.finish()
         if self.text is not None:
             self.text.finish(texts)
         if self.job.record and self.job.mutant is None:

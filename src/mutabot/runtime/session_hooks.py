@@ -146,14 +146,14 @@ class SessionHooks:
 
     def _become(self, mutant: Mutant, folder: str) -> None:
         """In a process that was just forked: go on as this mutant."""
-        assert self.session.trunk is not None
+        assert self.session.fork_parent is not None
         self.tests.start_clocks()
         self.tests.left_out = self.job.left_out(mutant.id)
         if self.config is not None:
             # nobody reads a fork's traceback, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
-        self.session.become(ForkedRun(self.session, self.session.trunk, mutant, folder))
+        self.session.become(ForkedRun(self.session, self.session.fork_parent, mutant, folder))
 
     def look_at_checks(self) -> None:
         """Note what tests check."""

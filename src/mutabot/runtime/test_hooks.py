@@ -109,8 +109,8 @@ class TestHooks:
         if limit is not None:
             session.pipe.send(limit)
         seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
-        if session.trunk is not None:
-            session.trunk.begin_test(test)
+        if session.fork_parent is not None:
+            session.fork_parent.begin_test(test)
         self.start_clocks()
         members = self.members if session.fork is None else session.fork.members
         if members is not None:
@@ -128,7 +128,7 @@ class TestHooks:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """The fixtures of a test are next."""
-        if self.session.trunk is not None:
+        if self.session.fork_parent is not None:
             drop_idle_watchdog(item)
         if self.session.placed.fatal is not None:
             raise self.session.placed.fatal

@@ -87,7 +87,7 @@ class Passing:
         on_end: told of each call that is over, with what it read; None if nobody asks.
         turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
-        trunk: set while this process runs the original and forks a branch per mutant.
+        fork_parent: set while this process runs the original and forks for each mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         activations: the mutants of calls that are at work: none for the original.
         on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
@@ -115,7 +115,7 @@ class Passing:
         self.on_end = on_end
         self.turn: Callable[[], None] | None = None
         self.meter: Meter | None = None
-        self.trunk: ForkParent | None = None
+        self.fork_parent: ForkParent | None = None
         self.activations: list[Activation] = []
         self.oracle_nodes: tuple[str, ...] = ()
         self._operator = ""
@@ -216,11 +216,11 @@ class Passing:
                 token = _under_way.set(False)
                 return await self._leave_alone(is_async, made[0], made[2], made[3])
             try:
-                # 2. A trunk forks a branch for each mutant that differs from here on, and goes on as the
-                #    original; a branch comes back from here as its mutant.
+                # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
+                #    original; a fork comes back from here as its mutant.
                 number = self._counted(site[0], call)
-                if self.trunk is not None:
-                    self.trunk.fork_at(site[0], call, number)
+                if self.fork_parent is not None:
+                    self.fork_parent.fork_at(site[0], call, number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = self._mutant_of(site, call)
                 if mutant is None:

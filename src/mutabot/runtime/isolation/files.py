@@ -144,10 +144,15 @@ class PrivateFiles:
         return True
 
     def _uncover(self) -> None:
-        """Take back what was laid over these folders, the last first."""
+        """Take back what was laid over these folders, the last first.
+
+        What lies on another cover goes with it. The kernel takes several milliseconds for each one.
+        """
         libc = ctypes.CDLL(None, use_errno=True)
         while self._covered:
-            libc.umount2(os.fsencode(self._covered.pop()), _MNT_DETACH)
+            folder = self._covered.pop()
+            if not any(folder != one and is_below(folder, one) for one in self._covered):
+                libc.umount2(os.fsencode(folder), _MNT_DETACH)
 
 
 def may_be_private() -> bool:

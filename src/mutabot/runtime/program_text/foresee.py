@@ -1,9 +1,9 @@
 """What an expression would give, found out without letting anything happen.
 
-The trunk looks ahead with it: a mutant of the program text needs no process of its own as long as its value
-is the original's. And a mutant tells by it what the original would have given. Operators on plain numbers and
-texts are computed, and a few functions; what they work on are constants, names, and stored attributes and
-items. All else is left to a real evaluation.
+The fork parent looks ahead with it: a mutant of the program text needs no process of its own as long as its
+value is the original's. And a mutant tells by it what the original would have given. Operators on plain
+numbers and texts are computed, and a few functions; what they work on are constants, names, and stored
+attributes and items. All else is left to a real evaluation.
 """
 
 from __future__ import annotations

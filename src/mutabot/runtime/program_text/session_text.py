@@ -60,33 +60,20 @@ class SessionText:
         """Whether an alternative is active."""
         return bool(self.hook.alternatives.active)
 
-    def start_test(
-        self,
-        test: str,
-        on_place: Callable[[int, frozenset[int]], None] | None,
-        live: Mapping[int, frozenset[int]],
-    ) -> None:
-        """A test begins.
-
-        In a fork parent, ``on_place`` is told a place and which of its ``live`` alternatives are about to
-        change something.
-        """
+    def start_test(self, test: str) -> None:
+        """A test begins."""
         if not self._begun:
             self._note_early()
         self._test, self._refusals, self._unknown = test, (), False
         if self.hook.sightings is not None:
             self.hook.sightings.start()
-            return
-        self.hook.alternatives.start()
-        if on_place is not None:
-            self.watch(on_place, live)
+        else:
+            self.hook.alternatives.start()
 
     def watch(
         self, on_place: Callable[[int, frozenset[int]], None], live: Mapping[int, frozenset[int]]
     ) -> None:
-        """In a fork parent: tell ``on_place`` a place and which of its ``live`` alternatives are about to
-        differ.
-        """
+        """In a fork parent: tell ``on_place`` which of the ``live`` alternatives of a place are to differ."""
         self.hook.alternatives.on_place = on_place
         self.hook.alternatives.watch(live)
 
