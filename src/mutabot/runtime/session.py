@@ -11,7 +11,7 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from mutabot.model import Moment, Mutant, Operation, Probe, Role
+from mutabot.model import Choice, Moment, Mutant, Operation, Probe, Role
 from mutabot.model.events import Acted, Called, Event, KnownLater, SiteSeen, TextsSeen
 from mutabot.model.job import Budget, Job
 from mutabot.model.quantity import Value
@@ -38,7 +38,6 @@ from mutabot.runtime.targets.target import Finding, Handler, Interception
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
-    from mutabot.runtime.isolation.forked_run import ForkedRun
 
 
 @dataclass(slots=True)
@@ -53,7 +52,7 @@ class Session:
         interception: what stands around the vocabulary's targets.
         passing: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
-        fork: what this process does as a fork of another; None in all others.
+        is_fork: whether this process was forked to be its mutant.
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
         standing: what stands there.
@@ -79,7 +78,7 @@ class Session:
     instances: Instances = field(default_factory=Instances)
     along: Along = field(init=False)
     rehearsal: Rehearsal = field(default_factory=Rehearsal)
-    fork: ForkedRun | None = None
+    is_fork: bool = False
     text: SessionText | None = None
     returns: Returns | None = None
     call_sites: CallSites = field(init=False)
@@ -283,13 +282,13 @@ class Session:
         if self.text is not None and parent is not None:
             self.text.watch(parent.fork_at_place, parent.places())
 
-    def become(self, fork: ForkedRun) -> None:
-        """In a process that was just forked: be its mutant."""
-        self.passing.fork_parent, self.fork = None, fork
-        self.activate(fork.mutant)
+    def become(self, mutant: Mutant, choices: Iterable[Choice]) -> None:
+        """In a process that was just forked: be this mutant, with its alternatives in the program text."""
+        self.passing.fork_parent, self.is_fork = None, True
+        self.activate(mutant)
         self._start_activations()
         if self.text is not None:
-            self.text.become(fork.choices)
+            self.text.become(choices)
 
     def take_on(self, job: Job, pipe: Sink) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
@@ -477,7 +476,7 @@ class Session:
         self.pipe.send(line)  # which is another one once a copy knows its job
 
     def _site_seen(self, site: SiteSeen) -> None:
-        if self.fork is None:  # a fork sends its sites with its end
+        if not self.is_fork:  # a fork sends its sites with its end
             self.pipe.send(site)
 
     def _acted(self, mutant: str) -> None:

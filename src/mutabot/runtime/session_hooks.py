@@ -153,7 +153,9 @@ class SessionHooks:
             # nobody reads a fork's traceback, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
-        self.session.become(ForkedRun(self.session, self.session.fork_parent, mutant, folder))
+        fork = ForkedRun(self.session, self.session.fork_parent, mutant, folder)
+        self.tests.fork = fork
+        self.session.become(mutant, fork.choices)
 
     def look_at_checks(self) -> None:
         """Note what tests check."""
@@ -223,8 +225,8 @@ class SessionHooks:
                 invalid=evidence.invalid or is_no_program(evidence, ending),
                 hits=evidence.hits, acted=evidence.acted, example=evidence.example,
             )  # fmt: skip
-            if self.session.fork is not None:
-                self.session.fork.end_test(end)
+            if self.tests.fork is not None:
+                self.tests.fork.end_test(end)
             else:
                 self.session.pipe.send(end)
 
@@ -275,8 +277,8 @@ class SessionHooks:
         """Everything has run: tell what is left to tell."""
         if self._server is not None:
             return
-        if self.session.fork is not None:
-            self.session.fork.finish(self._errors)
+        if self.tests.fork is not None:
+            self.tests.fork.finish(self._errors)
             return
         members = self.tests.members
         self.session.finish(members.texts_seen() if members is not None else ())

@@ -17,6 +17,7 @@ from mutabot.model.process_time import TimeUsed
 from mutabot.runtime import seeds
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.isolation.forked_run import ForkedRun
 from mutabot.runtime.observation.checks import Looks
 from mutabot.runtime.observation.probes import Reading
 from mutabot.runtime.plugins import drop_idle_watchdog, watched, watched_by_faulthandler
@@ -46,6 +47,7 @@ class TestHooks:
 
     Attributes:
         members: processes below the test process; None as long as no job is known. A fork has its own.
+        fork: what this process does if it was forked to be a mutant; None in all others.
         left_out: tests that are not run, since they do not reach the mutant and one before has.
         looks: the checks that the test makes.
     """
@@ -56,6 +58,7 @@ class TestHooks:
         self.session = session
         self.locator = locator
         self.members: Members | None = None
+        self.fork: ForkedRun | None = None
         self.left_out: frozenset[str] = frozenset()
         self.looks = Looks()
         self._address: str | None = None
@@ -77,20 +80,20 @@ class TestHooks:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """One test, its fixtures included."""
         session, test = self.session, node_id(item)
-        if session.fork is not None:
-            session.fork.start_test()
+        if self.fork is not None:
+            self.fork.start_test()
         if test in self.left_out:
             return (yield)
         self._start(item, test)
         result = yield
         end = self._test_end(test)
-        members = self.members if session.fork is None else session.fork.members
+        members = self.members if self.fork is None else self.fork.members
         if members is not None:
             end = members.merged(end)
-        if session.fork is not None:  # which may have begun in this test
-            session.fork.end_test(end)
+        if self.fork is not None:  # which may have begun in this test
+            self.fork.end_test(end)
         session.end_test()
-        if session.fork is None:
+        if self.fork is None:
             session.pipe.send(end)
         if session.job.stop_at_kill and end.is_decided:
             item.session.shouldstop = "the mutant's verdict is known"
@@ -112,7 +115,7 @@ class TestHooks:
         if session.fork_parent is not None:
             session.fork_parent.begin_test(test)
         self.start_clocks()
-        members = self.members if session.fork is None else session.fork.members
+        members = self.members if self.fork is None else self.fork.members
         if members is not None:
             members.start_test(test)
         session.start_test(test, partial(objects_of_fixtures, item))

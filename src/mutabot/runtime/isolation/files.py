@@ -29,9 +29,8 @@ from mutabot.runtime.isolation.forkable import go_on_running, own_event_loops, r
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
 _SHARED_MEMORY = "/dev/shm"
-#: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
-#: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
-_LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
+#: where the layers of a process lie in its own folder, and where in each of them its changes do
+_LAYERS, _UPPER = "files", "upper"
 #: attributes that an overlay gives to a file of its upper layer, and that hold for no copy of it
 _OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overlay.nlink")
 
@@ -59,7 +58,6 @@ class PrivateFiles:
     home: str
     shared: str
     _own: str = ""
-    _is_privileged: bool = False
     _covered: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -72,7 +70,7 @@ class PrivateFiles:
         it is done.
         """
         try:
-            self._is_privileged = _enter_namespace()
+            _enter_namespace()
             _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
             self._lay()
         except OSError as error:
@@ -89,13 +87,13 @@ class PrivateFiles:
         OSError if that is not possible.
         """
         place = os.getcwd()
-        for layers in (os.path.join(self._own, name) for name in (_LAYERS, _IN_MEMORY)):
-            for number in os.listdir(layers) if os.path.isdir(layers) else ():
-                upper = os.path.join(layers, number, _UPPER)
-                if os.listdir(upper):
-                    copied = os.path.join(folder, _LAYERS, number)
-                    os.makedirs(copied)
-                    copy_tree(upper, os.path.join(copied, _UPPER))
+        layers = os.path.join(self._own, _LAYERS)
+        for number in os.listdir(layers):
+            upper = os.path.join(layers, number, _UPPER)
+            if os.listdir(upper):
+                copied = os.path.join(folder, _LAYERS, number)
+                os.makedirs(copied)
+                copy_tree(upper, os.path.join(copied, _UPPER))
         if ctypes.CDLL(None, use_errno=True).unshare(_CLONE_NEWNS) != 0:
             raise _last_error("this system allows no private mounts")
         self._own = folder
@@ -109,15 +107,13 @@ class PrivateFiles:
         below = _mounts_below(folders, self.shared)
         numbers = [n for n, folder in enumerate(folders) if not _is_part(folder, folders, below)]
         beside = os.path.dirname(self.home)
-        in_memory = self._has_memory()
         with _opened([*folders, self.shared, beside, self.home, self._own]) as opened:
             *lowers, common, others, home, own = opened
             with _opened(below) as kept:
                 again = [*zip(below, kept, strict=True), (self.shared, common)]
                 for number in numbers:
                     folder, lower = folders[number], lowers[number]
-                    is_memory = in_memory and folder == os.path.realpath(_SHARED_MEMORY)
-                    _lay_over(folder, lower, _layers(own, number, in_memory=is_memory))
+                    _lay_over(folder, lower, f"{_path(own)}/{_LAYERS}/{number}")
                     self._covered.append(folder)
                     # what is mounted in it comes back before the next folder, which may lie in such a one
                     for inner, descriptor in again:
@@ -125,23 +121,10 @@ class PrivateFiles:
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
                             self._covered.append(inner)
             if beside != self.shared:
-                _lay_over(beside, others, _layers(own, len(folders), in_memory=in_memory))
+                _lay_over(beside, others, f"{_path(own)}/{_LAYERS}/{len(folders)}")
                 self._covered.append(beside)
                 _mount(_path(home), self.home, None, _MS_BIND | _MS_REC)
                 self._covered.append(self.home)
-
-    def _has_memory(self) -> bool:
-        """Mount a file system in memory in the process's own folder, if that can hold layers."""
-        if not self._is_privileged:  # many kernels keep no attributes there for ordinary users
-            return False
-        folder = os.path.join(self._own, _IN_MEMORY)
-        os.makedirs(folder, exist_ok=True)
-        try:
-            _mount("tmpfs", folder, "mode=700", 0, kind="tmpfs")
-        except OSError:
-            return False
-        self._covered.append(folder)
-        return True
 
     def _uncover(self) -> None:
         """Take back what was laid over these folders, the last first.
@@ -216,12 +199,12 @@ def _copy_status(source: str, target: str, status: os.stat_result) -> None:
     os.utime(target, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
-def _enter_namespace() -> bool:
-    """Enter a mount namespace; True if that needed no user namespace."""
+def _enter_namespace() -> None:
+    """Enter a mount namespace, in a user namespace where that needs one."""
     user, group = os.geteuid(), os.getegid()
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.unshare(_CLONE_NEWNS) == 0:
-        return True
+        return
     if libc.unshare(_CLONE_NEWNS | _CLONE_NEWUSER) != 0:
         raise _last_error("this system allows no private mounts")
     for name, text in (
@@ -231,7 +214,6 @@ def _enter_namespace() -> bool:
     ):
         with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
             file.write(text)
-    return False
 
 
 def _is_part(folder: str, folders: list[str], mounted: list[str]) -> bool:
@@ -242,12 +224,6 @@ def _is_part(folder: str, folders: list[str], mounted: list[str]) -> bool:
         for other in folders
         if other != folder
     )
-
-
-def _layers(own: int, number: int, *, in_memory: bool) -> str:
-    """Where the layers over a folder lie; what was copied from the parent lies on the disk."""
-    on_disk = f"{_path(own)}/{_LAYERS}/{number}"
-    return f"{_path(own)}/{_IN_MEMORY}/{number}" if in_memory and not os.path.isdir(on_disk) else on_disk
 
 
 def _lay_over(folder: str, lower: int, layers: str) -> None:
@@ -317,8 +293,6 @@ def is_below(path: str, folder: str) -> bool:
 
 
 _CHUNK = 1 << 16
-#: bytes up to which a copy of a deleted file stays in memory, which is quicker
-_SMALL = 1 << 20
 #: where forks have their folders, in that of the process
 _FORKS = "forks"
 #: device, inode, position and flags of an open file: descriptors that agree in them share one opening
@@ -454,12 +428,7 @@ def _opened_again(descriptor: int, status: os.stat_result, position: int, flags:
 def _copy(descriptor: int) -> int:
     """A private copy of a file, at the same position."""
     position = os.lseek(descriptor, 0, os.SEEK_CUR)
-    if os.fstat(descriptor).st_size <= _SMALL:
-        copied = os.memfd_create("copy")
-    else:
-        with tempfile.TemporaryFile(buffering=0) as file:
-            copied = os.dup(file.fileno())
-    offset = 0
+    copied, offset = os.memfd_create("copy"), 0
     while chunk := os.pread(descriptor, _CHUNK, offset):
         offset += os.pwrite(copied, chunk, offset)
     os.lseek(copied, position, os.SEEK_SET)

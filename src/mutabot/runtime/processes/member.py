@@ -68,12 +68,12 @@ class TextOnly:
         text: the program text, if it is instrumented.
         test: node id of the running test.
         meter: what the running test has used.
-        commands, sites, fork: of calls there are none.
+        commands, sites, is_fork: of calls there are none.
     """
 
     commands = 0
     sites: tuple[SiteSeen, ...] = ()
-    fork: None = None
+    is_fork = False
 
     def __init__(self, job: Job, pipe: Sink) -> None:
         self.job, self.pipe = job, pipe
@@ -169,7 +169,7 @@ class Member:
             self.file.send(site)
         self._told = _copy_of(session.evidence)
         self._attend()
-        session.pipe, session.fork = self, None  # it tells its own sites, also below a fork
+        session.pipe, session.is_fork = self, False  # it tells its own sites, also below a fork
         if session.text is not None:
             session.text.pipe = self
         self._watch_text()
