@@ -29,8 +29,9 @@ from mutabot.runtime.isolation.forkable import go_on_running, own_event_loops, r
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
 _SHARED_MEMORY = "/dev/shm"
-#: where the layers of a process lie in its own folder, and where in each of them its changes do
-_LAYERS, _UPPER = "files", "upper"
+#: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
+#: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
+_LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
 #: attributes that an overlay gives to a file of its upper layer, and that hold for no copy of it
 _OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overlay.nlink")
 
@@ -58,6 +59,7 @@ class PrivateFiles:
     home: str
     shared: str
     _own: str = ""
+    _is_privileged: bool = False
     _covered: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -70,7 +72,7 @@ class PrivateFiles:
         it is done.
         """
         try:
-            _enter_namespace()
+            self._is_privileged = _enter_namespace()
             _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
             self._lay()
         except OSError as error:
@@ -87,13 +89,13 @@ class PrivateFiles:
         OSError if that is not possible.
         """
         place = os.getcwd()
-        layers = os.path.join(self._own, _LAYERS)
-        for number in os.listdir(layers):
-            upper = os.path.join(layers, number, _UPPER)
-            if os.listdir(upper):
-                copied = os.path.join(folder, _LAYERS, number)
-                os.makedirs(copied)
-                copy_tree(upper, os.path.join(copied, _UPPER))
+        for layers in (os.path.join(self._own, name) for name in (_LAYERS, _IN_MEMORY)):
+            for number in os.listdir(layers) if os.path.isdir(layers) else ():
+                upper = os.path.join(layers, number, _UPPER)
+                if os.listdir(upper):
+                    copied = os.path.join(folder, _LAYERS, number)
+                    os.makedirs(copied)
+                    copy_tree(upper, os.path.join(copied, _UPPER))
         if ctypes.CDLL(None, use_errno=True).unshare(_CLONE_NEWNS) != 0:
             raise _last_error("this system allows no private mounts")
         self._own = folder
@@ -107,13 +109,15 @@ class PrivateFiles:
         below = _mounts_below(folders, self.shared)
         numbers = [n for n, folder in enumerate(folders) if not _is_part(folder, folders, below)]
         beside = os.path.dirname(self.home)
+        in_memory = self._has_memory()
         with _opened([*folders, self.shared, beside, self.home, self._own]) as opened:
             *lowers, common, others, home, own = opened
             with _opened(below) as kept:
                 again = [*zip(below, kept, strict=True), (self.shared, common)]
                 for number in numbers:
                     folder, lower = folders[number], lowers[number]
-                    _lay_over(folder, lower, f"{_path(own)}/{_LAYERS}/{number}")
+                    is_memory = in_memory and folder == os.path.realpath(_SHARED_MEMORY)
+                    _lay_over(folder, lower, _layers(own, number, in_memory=is_memory))
                     self._covered.append(folder)
                     # what is mounted in it comes back before the next folder, which may lie in such a one
                     for inner, descriptor in again:
@@ -121,10 +125,23 @@ class PrivateFiles:
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
                             self._covered.append(inner)
             if beside != self.shared:
-                _lay_over(beside, others, f"{_path(own)}/{_LAYERS}/{len(folders)}")
+                _lay_over(beside, others, _layers(own, len(folders), in_memory=in_memory))
                 self._covered.append(beside)
                 _mount(_path(home), self.home, None, _MS_BIND | _MS_REC)
                 self._covered.append(self.home)
+
+    def _has_memory(self) -> bool:
+        """Mount a file system in memory in the process's own folder, if that can hold layers."""
+        if not self._is_privileged:  # many kernels keep no attributes there for ordinary users
+            return False
+        folder = os.path.join(self._own, _IN_MEMORY)
+        os.makedirs(folder, exist_ok=True)
+        try:
+            _mount("tmpfs", folder, "mode=700", 0, kind="tmpfs")
+        except OSError:
+            return False
+        self._covered.append(folder)
+        return True
 
     def _uncover(self) -> None:
         """Take back what was laid over these folders, the last first.
@@ -199,12 +216,12 @@ def _copy_status(source: str, target: str, status: os.stat_result) -> None:
     os.utime(target, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
-def _enter_namespace() -> None:
-    """Enter a mount namespace, in a user namespace where that needs one."""
+def _enter_namespace() -> bool:
+    """Enter a mount namespace; True if that needed no user namespace."""
     user, group = os.geteuid(), os.getegid()
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.unshare(_CLONE_NEWNS) == 0:
-        return
+        return True
     if libc.unshare(_CLONE_NEWNS | _CLONE_NEWUSER) != 0:
         raise _last_error("this system allows no private mounts")
     for name, text in (
@@ -214,6 +231,7 @@ def _enter_namespace() -> None:
     ):
         with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
             file.write(text)
+    return False
 
 
 def _is_part(folder: str, folders: list[str], mounted: list[str]) -> bool:
@@ -224,6 +242,12 @@ def _is_part(folder: str, folders: list[str], mounted: list[str]) -> bool:
         for other in folders
         if other != folder
     )
+
+
+def _layers(own: int, number: int, *, in_memory: bool) -> str:
+    """Where the layers over a folder lie; what was copied from the parent lies on the disk."""
+    on_disk = f"{_path(own)}/{_LAYERS}/{number}"
+    return f"{_path(own)}/{_IN_MEMORY}/{number}" if in_memory and not os.path.isdir(on_disk) else on_disk
 
 
 def _lay_over(folder: str, lower: int, layers: str) -> None:
@@ -426,7 +450,7 @@ def _opened_again(descriptor: int, status: os.stat_result, position: int, flags:
 
 
 def _copy(descriptor: int) -> int:
-    """A private copy of a file, at the same position."""
+    """A private copy of a file in memory, at the same position."""
     position = os.lseek(descriptor, 0, os.SEEK_CUR)
     copied, offset = os.memfd_create("copy"), 0
     while chunk := os.pread(descriptor, _CHUNK, offset):
