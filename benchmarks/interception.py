@@ -30,7 +30,7 @@ arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
 IMPORT = """
 import pytest, time
 start = time.process_time()
-import mutabot.runtime.conductor
+import mutabot.runtime.session_hooks
 print((time.process_time() - start) * 1e3)
 """
 

@@ -79,11 +79,11 @@ CONFIGURED = """
     vocabulary = ["robot.toml"]
     pytest_args = ["-p", "telling", "-o", "pythonpath=."]
 """
-REPORT, PLAN = "runtime.isolation.fork.BranchOfSession._report", "journal.journal.Journal.set_plan"
+REPORT, PLAN = "runtime.isolation.forked_run.ForkedRun._report", "journal.journal.Journal.set_plan"
 #: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
     "A call through a mutant": ("replay", ["runtime.interception.active_mutant.ActiveMutant.apply"]),
-    "A branch": ("branch", [REPORT, "runtime.isolation.fork_parent.Trunk._take_token"]),
+    "A branch": ("branch", [REPORT, "runtime.isolation.fork_parent.ForkParent._take_token"]),
     "An outcome on its way to the screen": ("branch", [REPORT, PLAN]),
     "From a vocabulary's line to a mutant": ("branch", [PLAN]),
 }

@@ -1,10 +1,11 @@
 """What lives beside the robot program, in its process.
 
 It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``languages``, ``evidence``,
-``extensions`` and ``operators``. ``targets`` finds what the vocabulary names; ``interception`` and
-``program_text`` are the two ways of a mutant into the program; ``observation`` looks at the world;
-``isolation`` forks, ``processes`` follows what the tests start, and ``watching`` is for ``mutabot init``. To
-follow one call, begin at ``interception/dispatcher.py``.
+``extensions`` and ``operators``. ``session_hooks`` and ``test_hooks`` make pytest run a job, and ``session``
+holds what stands in the program for it: ``targets`` finds what the vocabulary names, ``interception`` and
+``program_text`` are the two ways of a mutant into it, ``observation`` looks at the world, ``isolation``
+forks, ``processes`` follows what the tests start, and ``watching`` is for ``mutabot init``. To follow one call,
+begin at ``interception/dispatcher.py``.
 """
 
 import os

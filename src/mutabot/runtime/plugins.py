@@ -189,7 +189,7 @@ if TYPE_CHECKING:
 def alarm_held() -> Iterator[None]:
     """Stop the process's alarm for the time of a block, and let a process forked in it have what is left.
 
-    A fork inherits no alarm; and a trunk that waits for its branches has not used that time itself.
+    A fork inherits no alarm; and a parent that waits for its forks has not used that time itself.
     """
     left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0)
     try:
@@ -211,7 +211,7 @@ def watched_by_faulthandler(item: pytest.Item) -> Watched | None:
 
 
 def drop_idle_watchdog(item: pytest.Item) -> None:
-    """Where faulthandler would only print, its thread must not keep a trunk from forking."""
+    """Where faulthandler would only print, its thread must not keep a process from forking."""
     seconds, ends = _faulthandler(item.config)
     if seconds > 0 and not ends:
         faulthandler.cancel_dump_traceback_later()

@@ -9,17 +9,29 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from mutabot.runtime.unrewritten import import_us_unrewritten
 
-import_us_unrewritten()  # before anything else of us is imported
+def _import_us_unrewritten() -> None:
+    """From now on pytest does not rewrite modules of mutabot that are imported.
+
+    It would rewrite the asserts of everything in a plugin's distribution, and parse each module anew in
+    every process, as none may write bytecode beside the sources.
+    """
+    for finder in sys.meta_path:
+        marked: Any = getattr(finder, "_must_rewrite", None)
+        if isinstance(marked, set):
+            marked.difference_update([name for name in marked if name.partition("_")[0] == "mutabot"])
+            getattr(finder, "_marked_for_rewrite_cache", {}).clear()
+
+
+_import_us_unrewritten()  # before anything else of us is imported
 
 from mutabot.model.call import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
 from mutabot.runtime.seeds import node_id  # noqa: E402
 
 if TYPE_CHECKING:
-    from mutabot.runtime.conductor import Conductor
     from mutabot.runtime.plain_round import PlainRound
+    from mutabot.runtime.session_hooks import SessionHooks
 
 _NAME = "mutabot_seed"
 #: the fixtures that stand for it, by scope of who asks
@@ -31,7 +43,7 @@ _SHARED = {
 }
 #: pytest has no public way to say this; where it is not there, ``mutabot_round_seed`` still works
 _ASK = "_get_active_fixturedef"
-_conductor: Conductor | None = None
+_hooks: SessionHooks | None = None
 _plain_round: PlainRound | None = None
 
 
@@ -50,23 +62,23 @@ def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginMa
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None, Any, Any]:
     """Before any of the user's code is imported: wake up if there is a job."""
-    global _conductor, _plain_round  # noqa: PLW0603  # pytest knows this module, not an object of ours
-    if JOB_VARIABLE in os.environ and _conductor is None:
+    global _hooks, _plain_round  # noqa: PLW0603  # pytest knows this module, not an object of ours
+    if JOB_VARIABLE in os.environ and _hooks is None:
         # tests that start pytest themselves must not find the job again
         job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
-        from mutabot.runtime.conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
+        from mutabot.runtime.session_hooks import SessionHooks  # noqa: PLC0415  # a sleeping plugin costs nothing
 
-        _conductor = Conductor.from_files(job, int(pipe))
-        _conductor.running.branch.config = early_config
-    elif _conductor is None and os.environ.get(ROUND_VARIABLE):
+        _hooks = SessionHooks.from_files(job, int(pipe))
+        _hooks.config = early_config
+    elif _hooks is None and os.environ.get(ROUND_VARIABLE):
         from mutabot.runtime.plain_round import PlainRound  # noqa: PLC0415  # see above
 
         _plain_round = PlainRound.from_environment()
     try:
         return (yield)
     except BaseException as error:
-        if _conductor is not None:
-            _conductor.import_failed(getattr(error, "cause", error), "")
+        if _hooks is not None:
+            _hooks.import_failed(getattr(error, "cause", error), "")
         raise
 
 
@@ -78,22 +90,28 @@ def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
     """
     status = yield
     is_last = config.hook.pytest_cmdline_main.get_hookimpls()[-1].plugin is sys.modules[__name__]
-    if _conductor is not None and is_last and isinstance(status, int):
-        from mutabot.runtime.isolation.lifeline import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
+    if _hooks is not None and is_last and isinstance(status, int):
+        from mutabot.runtime.isolation.parent_death import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         leave(int(status))
     return status
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Hand pytest's hooks to the conductor."""
+    """Register the hooks of the job."""
     _offer_at_every_scope(__name__)
-    if _conductor is not None:
-        config.pluginmanager.register(_conductor, "mutabot-conductor")
-        config.pluginmanager.register(_conductor.running, "mutabot-running")
-        config.pluginmanager.register(_conductor.running.branch.left_out, "mutabot-left-out")
+    if _hooks is not None:
+        config.pluginmanager.register(_hooks, "mutabot-session")
+        config.pluginmanager.register(_hooks.tests, "mutabot-tests")
     if _plain_round is not None:
         config.pluginmanager.register(_plain_round, "mutabot-round")
+
+
+def _seed(request: pytest.FixtureRequest) -> int:
+    seeded = _hooks or _plain_round
+    if seeded is not None:
+        return seeded.seed_of(node_id(request.node))
+    return int(os.environ.get(SEED_VARIABLE, "0"))
 
 
 @pytest.fixture
@@ -115,32 +133,16 @@ def mutabot_round_seed(request: pytest.FixtureRequest) -> int:
     return _seed(request)
 
 
-@pytest.fixture(scope="package")
-def _mutabot_package_seed(request: pytest.FixtureRequest) -> int:
-    return _seed(request)
-
-
-@pytest.fixture(scope="module")
-def _mutabot_module_seed(request: pytest.FixtureRequest) -> int:
-    return _seed(request)
-
-
-@pytest.fixture(scope="class")
-def _mutabot_class_seed(request: pytest.FixtureRequest) -> int:
-    return _seed(request)
-
-
-def _seed(request: pytest.FixtureRequest) -> int:
-    seeded = _conductor or _plain_round
-    if seeded is not None:
-        return seeded.seed_of(node_id(request.node))
-    return int(os.environ.get(SEED_VARIABLE, "0"))
+# what stands for ``mutabot_seed`` where a shared fixture asks for it
+_mutabot_package_seed = pytest.fixture(scope="package", name=_SHARED["package"])(_seed)
+_mutabot_module_seed = pytest.fixture(scope="module", name=_SHARED["module"])(_seed)
+_mutabot_class_seed = pytest.fixture(scope="class", name=_SHARED["class"])(_seed)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, Any]:
     """Fixtures shared by several tests draw from a seed of their own."""
-    seeded = _conductor or _plain_round
+    seeded = _hooks or _plain_round
     if seeded is None or fixturedef.scope == "function":
         return (yield)
     from mutabot.runtime.seeds import seeded_apart  # noqa: PLC0415

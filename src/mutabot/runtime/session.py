@@ -11,7 +11,7 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from mutabot.model import Moment, Mutant, Operation, Probe
+from mutabot.model import Choice, Moment, Mutant, Operation, Probe
 from mutabot.model.events import Acted, Called, Event, KnownLater, SiteSeen, TextsSeen
 from mutabot.model.job import Budget, Job
 from mutabot.model.quantity import Value
@@ -36,7 +36,7 @@ from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Interception
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
-    from mutabot.runtime.isolation.fork_parent import Bunch, Trunk
+    from mutabot.runtime.isolation.fork_parent import ForkParent
 
 
 @dataclass(slots=True)
@@ -51,7 +51,7 @@ class Session:
         interception: what stands around the vocabulary's targets.
         passing: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
-        branch: id of the mutant that this process was forked to be; None in all others.
+        is_fork: whether this process was forked to be its mutant.
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
         standing: what stands there.
@@ -77,7 +77,7 @@ class Session:
     instances: Instances = field(default_factory=Instances)
     along: Along = field(init=False)
     rehearsal: Rehearsal = field(default_factory=Rehearsal)
-    branch: str | None = None
+    is_fork: bool = False
     text: SessionText | None = None
     returns: Returns | None = None
     call_sites: CallSites = field(init=False)
@@ -221,9 +221,9 @@ class Session:
         return self.passing.meter
 
     @property
-    def trunk(self) -> Trunk | None:
-        """What forks a branch per mutant, while this process runs the original."""
-        return self.passing.trunk
+    def fork_parent(self) -> ForkParent | None:
+        """What forks a process for each mutant, while this process runs the original."""
+        return self.passing.fork_parent
 
     @property
     def evidence(self) -> Evidence:
@@ -255,20 +255,24 @@ class Session:
             told = (on_act, self._in_mutated_call, self._time.now_if_known)
             self.passing.mutants.append(ActiveMutant(mutant, operation, refusals, *told))
 
-    def grow(self, trunk: Trunk) -> None:
-        """Run the original from now on, and fork a branch for every mutant of the trunk's."""
-        self.passing.trunk = trunk
-        trunk.is_moment = self._is_moment
-        if self.text is not None:
-            self.text.watch(trunk.fork_at_place, trunk.places())
+    def grow(self, parent: ForkParent) -> None:
+        """Run the original from now on, and fork a process for each of the parent's mutants."""
+        self.passing.fork_parent = parent
+        parent.is_moment = self._is_moment
+        self._watch_text()
 
-    def become(self, bunch: Bunch) -> None:
-        """In a branch that was just forked: be its mutants."""
-        self.passing.trunk, self.branch = None, bunch.first.id
-        self.activate(bunch.first)
+    def _watch_text(self) -> None:
+        parent = self.fork_parent
+        if self.text is not None and parent is not None:
+            self.text.watch(parent.fork_at_place, parent.places())
+
+    def become(self, mutant: Mutant, choices: Iterable[Choice]) -> None:
+        """In a process that was just forked: be this mutant, with its alternatives in the program text."""
+        self.passing.fork_parent, self.is_fork = None, True
+        self.activate(mutant)
         self._start_activations()
         if self.text is not None:
-            self.text.become(bunch)
+            self.text.become(choices)
 
     def take_on(self, job: Job, pipe: Sink) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
@@ -303,10 +307,9 @@ class Session:
             self.returns.start()
         for adapter in self._adapters:
             adapter.reset()
-        trunk = self.trunk
         if self.text is not None:
-            branch = trunk.fork_at_place if trunk is not None else None
-            self.text.start_test(test, branch, trunk.places() if trunk is not None else {})
+            self.text.start_test(test)
+            self._watch_text()
         self._start_activations()
         self.placed.start_test(test, self._random_of)
         has_clock = self.job.vocabulary.clock is not None
@@ -354,8 +357,8 @@ class Session:
         self.passing.meter = None
         self.placed.end_test()
         if self.text is not None:
-            if self.trunk is not None:
-                self.trunk.tell_undiverged(self.text.hits, self.text.early)
+            if self.fork_parent is not None:
+                self.fork_parent.tell_undiverged(self.text.hits, self.text.early)
             self.text.end_test()
 
     def take_probes(self) -> Reading:
@@ -392,12 +395,12 @@ class Session:
         self.inspection.look_ahead(self.interception)
 
     def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
-        """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to.
+        """All tests are over: wait for forks, tell what was seen, and check the vocabulary if asked to.
 
         ``texts`` is what processes below the tests saw of the program text.
         """
-        if self.trunk is not None:
-            self.trunk.finish()
+        if self.fork_parent is not None:
+            self.fork_parent.finish()
         if self.text is not None:
             self.text.finish(texts)
         if self.job.record and self.job.mutant is None:
@@ -453,7 +456,7 @@ class Session:
         self.pipe.send(line)  # which is another one once a copy knows its job
 
     def _site_seen(self, site: SiteSeen) -> None:
-        if self.branch is None:  # a branch sends its sites with its end
+        if not self.is_fork:  # a fork sends its sites with its end
             self.pipe.send(site)
 
     def _acted(self, mutant: str) -> None:

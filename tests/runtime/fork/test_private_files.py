@@ -147,7 +147,7 @@ memory.mkdir()
 (home / "forks/1/1").mkdir(parents=True)
 pid = os.fork()
 if pid == 0:
-    files = files.go_on_apart(str(home / "forks/1"))
+    files.go_on_apart(str(home / "forks/1"))
     seen = (memory / "pose").read_text()
     (memory / "pose").write_text("child")
     inner = os.fork()

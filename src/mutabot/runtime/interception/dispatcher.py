@@ -36,7 +36,7 @@ from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, Handler, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
-    from mutabot.runtime.isolation.fork_parent import Trunk
+    from mutabot.runtime.isolation.fork_parent import ForkParent
 
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
@@ -87,7 +87,7 @@ class Dispatcher:
         on_end: told of each call that is over, with what it read; None if nobody asks.
         turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
-        trunk: set while this process runs the original and forks a branch per mutant.
+        fork_parent: set while this process runs the original and forks for each mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         mutants: the mutants of calls that are at work: none for the original.
         on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
@@ -104,7 +104,7 @@ class Dispatcher:
     on_end: Callable[[Call, Mapping[str, Value]], None] | None = None
     turn: Callable[[], None] | None = None
     meter: Meter | None = None
-    trunk: Trunk | None = None
+    fork_parent: ForkParent | None = None
     mutants: list[ActiveMutant] = field(default_factory=list)
     oracle_nodes: tuple[str, ...] = ()
     on_live: Callable[[SiteCall], None] | None = None
@@ -203,10 +203,10 @@ class Dispatcher:
                 return await self._leave_alone(invocation, is_async)
             made = SiteCall(site, call, self._number(site[0], call), is_async, is_direct)
             try:
-                # 2. A trunk forks a branch for each mutant that differs from here on, and goes on as the
-                #    original; a branch comes back from here as its mutant.
-                if self.trunk is not None:
-                    self.trunk.fork_at(site[0], call, made.number)
+                # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
+                #    original; a fork comes back from here as its mutant.
+                if self.fork_parent is not None:
+                    self.fork_parent.fork_at(site[0], call, made.number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = next((one for one in self.mutants if one.is_here(site, call)), None)
                 if mutant is None:

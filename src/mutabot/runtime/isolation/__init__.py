@@ -1,1 +1,1 @@
-"""Processes that begin where another one stands: branches of a trunk, copies of a session."""
+"""Processes that begin where another one stands: forks for mutants, copies of a session."""

@@ -1,6 +1,6 @@
-"""Cutting a branch off from what it shares with its trunk: output, temporary files, random state.
+"""Keep a forked process apart from its parent: open files, output, random state, and private files.
 
-Private files: a process, and all it starts, sees the project as it is on disk, and its own changes to it.
+A process with private files, and all that it starts, sees the project as it is on disk, and its own changes.
 
 The process enters a mount namespace of its own and lays an overlay over each folder: what it writes, renames
 or deletes there goes into a layer that nobody else sees. An ordinary user needs a user namespace for that,
@@ -82,13 +82,11 @@ class PrivateFiles:
             os.chdir(os.getcwd())
         return None
 
-    def go_on_apart(self, folder: str) -> PrivateFiles:
+    def go_on_apart(self, folder: str) -> None:
         """In a process that was just forked, while its parent waits: go on with files of its own.
 
-        What the parent did to its files is copied. ``folder`` lies in the home, which both have. Returns what
-        it has now.
-
-        Raises OSError if that is not possible.
+        What the parent did to its files is copied. ``folder`` lies in the home, which both have. Raises
+        OSError if that is not possible.
         """
         place = os.getcwd()
         for layers in (os.path.join(self._own, name) for name in (_LAYERS, _IN_MEMORY)):
@@ -104,7 +102,6 @@ class PrivateFiles:
         self._uncover()
         self._lay()
         os.chdir(place)
-        return self
 
     def _lay(self) -> None:
         """Lay an overlay over each private folder."""
@@ -147,10 +144,15 @@ class PrivateFiles:
         return True
 
     def _uncover(self) -> None:
-        """Take back what was laid over these folders, the last first."""
+        """Take back what was laid over these folders, the last first.
+
+        What lies on another cover goes with it. The kernel takes several milliseconds for each one.
+        """
         libc = ctypes.CDLL(None, use_errno=True)
         while self._covered:
-            libc.umount2(os.fsencode(self._covered.pop()), _MNT_DETACH)
+            folder = self._covered.pop()
+            if not any(folder != one and is_below(folder, one) for one in self._covered):
+                libc.umount2(os.fsencode(folder), _MNT_DETACH)
 
 
 def may_be_private() -> bool:
@@ -315,16 +317,14 @@ def is_below(path: str, folder: str) -> bool:
 
 
 _CHUNK = 1 << 16
-#: bytes up to which a copy of a deleted file stays in memory, which is quicker
-_SMALL = 1 << 20
 #: where forks have their folders, in that of the process
 _FORKS = "forks"
 #: device, inode, position and flags of an open file: descriptors that agree in them share one opening
 _Shared = tuple[int, int, int, int]
 
 
-class Foot:
-    """What a fork would change and a branch must have as the trunk had it."""
+class StateBeforeFork:
+    """What a fork changes in the child: the random state and the running event loop."""
 
     def __init__(self) -> None:
         # random registers a hook that seeds anew in every child
@@ -334,33 +334,31 @@ class Foot:
         sys.stderr.flush()
 
     def restore(self) -> None:
-        """In the branch: put it back."""
+        """In the child: put it back."""
         random.setstate(self._random)
         go_on_running(self._loop)
 
 
 @frozen
-class Apart:
-    """How a process that is forked is kept apart from its parent.
+class Isolation:
+    """How a forked process is kept apart from its parent.
 
     Attributes:
-        log: device and inode of the parent's log; what leads there leads nowhere in a fork.
-        home: the folder of the process's own.
-        files: its private files; None if they are not.
-        why_not: why it cannot be forked at all, in words, or None.
-        folder: the process's own among its forks, in a fork.
+        log: device and inode of the parent's log; in a fork, what leads there leads nowhere.
+        home: the parent's own folder.
+        files: the parent's private files; None if its files are not private.
+        why_not: why they are not, in words, or None.
     """
 
-    log: tuple[int, int] | None
+    log: tuple[int, int]
     home: str
     files: PrivateFiles | None
     why_not: str | None = None
-    folder: str = ""
 
     def reason(self) -> str | None:
-        """Why this process cannot be forked now as far as its files are concerned; None if it can."""
+        """Why open files or missing namespaces forbid a fork right now; None if they do not."""
         if self.files is None:
-            return self.why_not or "its files are not private"
+            return f"its files are not private: {self.why_not}"
         folders = private_folders(self.files.root)
         for path, mode in _written():
             if is_below(path, self.files.home):
@@ -371,18 +369,19 @@ class Apart:
                 return f"{path} is open for writing"
         return None
 
-    def go(self, name: str) -> Apart:
+    def enter(self, name: str) -> str:
         """In a process that was just forked, while its parent waits: share nothing with it any more.
 
-        ``name``: unlike that of any other fork. Raises OSError if that is not possible.
+        ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
+        cannot be kept apart.
         """
         assert self.files is not None
         folder = os.path.join(self.home, _FORKS, name)
         os.makedirs(folder)
-        files = self.files.go_on_apart(folder)
+        self.files.go_on_apart(folder)
         isolate_files(self.log)
         own_event_loops()
-        return Apart(self.log, self.home, files, folder=folder)
+        return folder
 
 
 def _written() -> Iterator[tuple[str, int]]:
@@ -400,7 +399,7 @@ def _descriptors() -> Iterator[tuple[int, os.stat_result]]:
             yield int(name), os.fstat(int(name))
 
 
-def isolate_files(log: tuple[int, int] | None, instead: int | None = None) -> None:
+def isolate_files(log: tuple[int, int], instead: int | None = None) -> None:
     """In a process that was just forked: stop reading and writing where its parent does.
 
     An open file has one position for parent and child; the child opens its own. Of a deleted temporary file,
@@ -408,7 +407,7 @@ def isolate_files(log: tuple[int, int] | None, instead: int | None = None) -> No
     elsewhere.
 
     Args:
-        log: device and inode of the parent's log; None if there is none.
+        log: device and inode of the parent's log.
         instead: descriptor of the child's own log; None for nowhere.
     """
     found = list(_descriptors())  # before any is opened here
@@ -451,14 +450,9 @@ def _opened_again(descriptor: int, status: os.stat_result, position: int, flags:
 
 
 def _copy(descriptor: int) -> int:
-    """A private copy of a file, at the same position."""
+    """A private copy of a file in memory, at the same position."""
     position = os.lseek(descriptor, 0, os.SEEK_CUR)
-    if os.fstat(descriptor).st_size <= _SMALL:
-        copied = os.memfd_create("copy")
-    else:
-        with tempfile.TemporaryFile(buffering=0) as file:
-            copied = os.dup(file.fileno())
-    offset = 0
+    copied, offset = os.memfd_create("copy"), 0
     while chunk := os.pread(descriptor, _CHUNK, offset):
         offset += os.pwrite(copied, chunk, offset)
     os.lseek(copied, position, os.SEEK_SET)

@@ -5,7 +5,6 @@ Event loops of asyncio in a process that was forked: the descriptors by which th
 
 from __future__ import annotations
 
-import ctypes
 import os
 import select
 import selectors
@@ -142,8 +141,7 @@ def count_threads() -> int:
 
 def _tracer_areas() -> list[tuple[int, int]]:
     """Where threads of a tracer wait to be asked. They do nothing until then, so a fork does without."""
-    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
-        areas = [line.split(maxsplit=1)[0].split("-") for line in file if _TRACER in line]
+    areas = [line.split(maxsplit=1)[0].split("-") for line in _maps() if _TRACER in line]
     return [(int(start, 16), int(end, 16)) for start, end in areas]
 
 
@@ -197,36 +195,21 @@ def _open() -> Iterator[tuple[int, str]]:
 
 def _shared_memory() -> Iterator[tuple[int, str]]:
     """Memory to which a fork and its parent would both write: where it is, in the place of a descriptor."""
-    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
-        for line in file:
-            place, rights = line.split(maxsplit=2)[:2]
-            if rights[1] == "w" and rights[3] == "s":
-                yield (
-                    -int(place.partition("-")[0], 16),
-                    f"memory shared with others {line[73:].strip()}".rstrip(),
-                )
+    for line in _maps():
+        place, rights = line.split(maxsplit=2)[:2]
+        if rights[1] == "w" and rights[3] == "s":
+            yield (
+                -int(place.partition("-")[0], 16),
+                f"memory shared with others {line[73:].strip()}".rstrip(),
+            )
 
 
 def _graphics() -> str | None:
-    loaded = b"\n".join(loaded_libraries()).decode("utf-8", "replace")
-    found = next((name for name in _GRAPHICS if name in loaded), None)
+    maps = _maps()
+    found = next((name for name in _GRAPHICS if any(name in line for line in maps)), None)
     return f"a graphics library is loaded ({found.rstrip('.')})" if found is not None else None
 
 
-class _LoadedObject(ctypes.Structure):
-    """The beginning of ``struct dl_phdr_info``, <link.h>."""
-
-    _fields_ = (("address", ctypes.c_void_p), ("name", ctypes.c_char_p))
-
-
-def loaded_libraries() -> list[bytes]:
-    """Files of all shared libraries of this process, from the linker; /proc/self/maps takes far longer."""
-    names: list[bytes] = []
-
-    def add(found: Any, size: int, data: Any) -> int:
-        names.append(found.contents.name or b"")
-        return 0
-
-    kind = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(_LoadedObject), ctypes.c_size_t, ctypes.c_void_p)
-    ctypes.CDLL(None).dl_iterate_phdr(kind(add), None)
-    return names
+def _maps() -> list[str]:
+    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
+        return file.readlines()

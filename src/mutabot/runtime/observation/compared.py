@@ -174,6 +174,7 @@ class Comparisons:
         self._root = os.path.realpath(root)
         self._looks = looks
         self._is_inside = False
+        self._relative: dict[str, str] = {}
 
     def install(self) -> None:
         """Look at them, whenever their modules are imported."""
@@ -213,7 +214,9 @@ class Comparisons:
     def _note(
         self, file: str, line: int, name: str, arguments: tuple[Any, ...], named: Mapping[str, Any]
     ) -> None:
-        place = f"{os.path.relpath(os.path.realpath(file), self._root)}:{line}"
+        if file not in self._relative:
+            self._relative[file] = os.path.relpath(os.path.realpath(file), self._root)
+        place = f"{self._relative[file]}:{line}"
         text = " ".join(linecache.getline(file, line).split()) or name
         tolerance = _tolerance(name, arguments, named)
         if len(arguments) >= 2 and tolerance is not None:

@@ -1,13 +1,8 @@
 """The way to the campaign, for every process that the tests start: its environment, and the file ``wake``.
 
 The environment goes along also where a process is given one of its own. It leads to the start-up module, and
-that reads in ``wake`` what is of interest. Which test is running is known to all processes below it at no
-cost; and it is noted which are started out of sight, how each ended, and by whose signals.
-
-Programs that are started to end others: nobody can know from outside whom they end.
-
-What the test process notes of the processes that it starts: which are out of sight, how each ended, and by
-whose signals.
+that reads in ``wake`` what is of interest. All processes below a test know at no cost which test is running.
+The test process notes which processes are started out of sight, how each ended, and by whose signals.
 """
 
 from __future__ import annotations
@@ -21,6 +16,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
+from itertools import takewhile
 from typing import Any
 
 from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
@@ -157,7 +153,7 @@ class Now:
         return self._names[number]
 
 
-#: with ``timeout`` and the launchers of ROS, which end what they have started
+#: programs that end others: with ``timeout`` and the launchers of ROS, which end what they have started
 _KILLERS = {
     "kill",
     "pkill",
@@ -170,36 +166,42 @@ _KILLERS = {
     "rostest",
     "ros2",
 }
-#: what runs a command that it is given
+#: programs that run a command that they are given
 _RUNNERS = {"sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "nice", "nohup", "setsid", "xargs"}
 _KILLER_IN_TEXT = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(_KILLERS))})(?![\w.-])")
+#: options of Python by which it leaves out the environment, or what is loaded at its start
+_APART = {"-I", "-E", "-S"}
 
 
 def starts_a_killer(event: str, arguments: tuple[Any, ...]) -> bool:
-    """Whether an audit event is the start of a program that may end others, itself or by a shell."""
+    """Whether an audit event is the start of a program that may end others, itself or by a shell.
+
+    Nobody can know from outside whom such a program ends.
+    """
     if event == "os.system":
-        return _mentions_killer(arguments[:1])
-    if event in ("subprocess.Popen", "os.posix_spawn", "os.exec"):
-        command = arguments[1]
-        return _is_killer([command] if isinstance(command, str | bytes | os.PathLike) else list(command))
-    return False
+        name, words = "sh", _words(None, arguments[0])
+    elif event in ("subprocess.Popen", "os.posix_spawn", "os.exec"):
+        words = _words(None, arguments[1])
+        name = os.path.basename(words[0]) if words else ""
+    else:
+        return False
+    return name in _KILLERS or (name in _RUNNERS and any(map(_KILLER_IN_TEXT.search, words)))
 
 
-def _is_killer(command: Sequence[Any]) -> bool:
-    name = os.path.basename(os.fsdecode(command[0])) if command else ""
-    return name in _KILLERS or (name in _RUNNERS and _mentions_killer(command[1:]))
+def _words(executable: Any, command: Any) -> list[str]:
+    try:
+        given = [command] if isinstance(command, str | bytes | os.PathLike) else list(command)
+        words = [os.fsdecode(word) for word in given]
+    except TypeError:  # it will not start either
+        return []
+    return [os.fsdecode(executable), *words[1:]] if executable is not None else words
 
 
-def _mentions_killer(words: Sequence[Any]) -> bool:
-    return any(_KILLER_IN_TEXT.search(os.fsdecode(word)) for word in words)
+class ProcessWatch:
+    """What the test process notes of the processes that the tests start, from now on.
 
-
-#: options of Python by which it leaves out the environment, or what is loaded at its start
-_APART = {"-I": "the option -I", "-E": "the option -E", "-S": "the option -S"}
-
-
-class Exits:
-    """What the test process knows of the ends of its children.
+    Args:
+        tell_unseen: told the command of each process that does not find its way to the campaign, and why.
 
     Attributes:
         codes: exit codes by process, negative for a signal.
@@ -207,18 +209,16 @@ class Exits:
             started what does so.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, tell_unseen: Callable[[str, str], None]) -> None:
         self.codes: dict[int, int] = {}
         self.signalled: set[int] = set()
-
-    def watch(self) -> None:
-        """Look from now on; it cannot be taken back."""
-        self._watch_waiting()
-        self._watch_popen()
+        self._tell_unseen = tell_unseen
+        self._watch_ends()
         sys.addaudithook(self._hear)
 
-    def _watch_waiting(self) -> None:
-        wait = os.waitpid
+    def _watch_ends(self) -> None:
+        kind: Any = subprocess.Popen
+        wait, handle = os.waitpid, kind._handle_exitstatus
 
         def waitpid(pid: int, options: int, /) -> tuple[int, int]:
             found, status = wait(pid, options)
@@ -226,18 +226,12 @@ class Exits:
                 self.codes[found] = os.waitstatus_to_exitcode(status)
             return found, status
 
-        os.waitpid = waitpid
-
-    def _watch_popen(self) -> None:
-        kind: Any = subprocess.Popen
-        handle = kind._handle_exitstatus
-
         def handled(popen: Any, status: int, *more: Any) -> None:
             handle(popen, status, *more)
             if popen.returncode is not None:
                 self.codes[popen.pid] = popen.returncode
 
-        kind._handle_exitstatus = handled
+        os.waitpid, kind._handle_exitstatus = waitpid, handled
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event == "os.kill":
@@ -246,39 +240,12 @@ class Exits:
             self.signalled.add(-arguments[0])
         elif starts_a_killer(event, arguments):
             self.signalled.add(ANYBODY)
+        elif event == "subprocess.Popen":
+            self._note_unseen(_words(*arguments[:2]))
 
-
-def watch_unseen(tell: Callable[[str, str], None]) -> None:
-    """Look from now on which processes are started that do not find their way to the campaign.
-
-    ``tell`` is told the command and why nothing in it is seen. It cannot be taken back.
-    """
-
-    def hear(event: str, arguments: tuple[Any, ...]) -> None:
-        if event == "subprocess.Popen":
-            words = _words(*arguments[:2])
-            why = _why(words)
-            if why is not None:
-                tell(" ".join(words[:3]), why)
-
-    sys.addaudithook(hear)
-
-
-def _words(executable: Any, command: Any) -> list[str]:
-    try:
-        given = [command] if isinstance(command, str | bytes | os.PathLike) else list(command)
-        words = [os.fsdecode(word) for word in given]
-        return [os.fsdecode(executable), *words[1:]] if executable is not None else words
-    except TypeError:  # it will not start either
-        return []
-
-
-def _why(words: Sequence[str]) -> str | None:
-    if not words or not os.path.basename(words[0]).startswith("python"):
-        return None
-    for word in words[1:]:
-        if not word.startswith("-"):
-            break
-        if word in _APART:
-            return f"{_APART[word]} keeps it apart"
-    return None
+    def _note_unseen(self, words: Sequence[str]) -> None:
+        if words and os.path.basename(words[0]).startswith("python"):
+            options = takewhile(lambda word: word.startswith("-"), words[1:])
+            apart = next((option for option in options if option in _APART), None)
+            if apart is not None:
+                self._tell_unseen(" ".join(words[:3]), f"the option {apart} keeps it apart")

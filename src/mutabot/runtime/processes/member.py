@@ -1,9 +1,8 @@
 """A process below the tests that is part of a campaign: it runs the session of its test process's job.
 
 It finds, mutates and records calls as the test process does. What it sees goes into its own file at once.
-Which test runs is looked up at each call, since a process may outlive the test that started it.
-
-What a process below the tests runs of a job without operations: the program text alone.
+Which test runs is looked up at each call, since a process may outlive the test that started it. Of a job
+without operations it runs the program text alone.
 """
 
 from __future__ import annotations
@@ -13,16 +12,20 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model.event_file import ANYBODY
 from mutabot.model.events import (
     Acted,
     Began,
+    Called,
     Did,
     Event,
     Found,
+    Noted,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -43,7 +46,10 @@ from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.session_text import SessionText
 
 if TYPE_CHECKING:
+    from mutabot.model import Call
+    from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import Sink
+    from mutabot.runtime.session import Session  # of no use to a job that has nothing to do with calls
 
 
 def is_of_text_alone(job: Job) -> bool:
@@ -62,12 +68,12 @@ class TextOnly:
         text: the program text, if it is instrumented.
         test: node id of the running test.
         meter: what the running test has used.
-        commands, sites, branch: of calls there are none.
+        commands, sites, is_fork: of calls there are none.
     """
 
     commands = 0
     sites: tuple[SiteSeen, ...] = ()
-    branch: str | None = None
+    is_fork = False
 
     def __init__(self, job: Job, pipe: Sink) -> None:
         self.job, self.pipe = job, pipe
@@ -84,7 +90,7 @@ class TextOnly:
         self.test = test
         self.meter = Meter(self.job.budgets.get(test, Budget()))
         if self.text is not None:
-            self.text.start_test(test, None, {})
+            self.text.start_test(test)
 
     def look_back(self, *, at_all: bool = False) -> None:
         """No mutant has handed out anything."""
@@ -97,10 +103,6 @@ class TextOnly:
     def _acted(self) -> None:
         self.pipe.send(Acted(self.test))
 
-
-if TYPE_CHECKING:  # of no use to a job that has nothing to do with calls
-    from mutabot.runtime.processes.members import CallsTold
-    from mutabot.runtime.session import Session
 
 #: the member that this process is; None in all others
 _member: Member | None = None
@@ -145,7 +147,7 @@ class Member:
         command = tuple(getattr(sys, "orig_argv", sys.argv))
         self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
         self.session = session or _session(job, self)
-        self._calls: CallsTold | None = None
+        self._targets: set[str] = set()
         self._told = Evidence()
         self._places: set[int] = set()
         self._exceeded = False
@@ -167,7 +169,7 @@ class Member:
             self.file.send(site)
         self._told = _copy_of(session.evidence)
         self._attend()
-        session.pipe, session.branch = self, None  # it tells its own sites, also below a branch
+        session.pipe, session.is_fork = self, False  # it tells its own sites, also below a fork
         if session.text is not None:
             session.text.pipe = self
         self._watch_text()
@@ -176,12 +178,31 @@ class Member:
         session = self.session
         watch_forks(self._folder, session)
         if not isinstance(session, TextOnly):
-            from mutabot.runtime.processes.members import CallsTold  # noqa: PLC0415  # see above
-
-            self._calls = CallsTold(session, self.file, self.poll)
-            session.passing.turn = self.turn
+            self._watch_calls(session)
         atexit.register(self.end)
         self._watch_exits()
+
+    def _watch_calls(self, session: Session) -> None:
+        """Write down what the session sees of calls."""
+
+        def hit(site: int, written: Any, read: Any, answer: Any) -> None:
+            self.file.send(Called(site, written, read, answer, time.monotonic()))
+
+        def is_over(call: Call, read: Mapping[str, Value]) -> None:
+            self.poll()
+
+        def heard(hear: Callable[[str, Any], None], name: str, message: Any) -> None:
+            before = session.evidence.said
+            hear(name, message)
+            if session.evidence.said != before:
+                self.poll()
+
+        session.recorder.on_hit, session.passing.on_end, session.passing.turn = hit, is_over, self.turn
+        session.on_refused = lambda site, number: self.file.send(Noted(site, number))
+        session.on_live = lambda site: self.file.send(Noted(site))
+        for targets in session.interception.kinds:
+            if targets.on_heard is not None:
+                targets.on_heard = partial(heard, targets.on_heard)
 
     def turn(self) -> None:
         """Look whether another test has begun."""
@@ -215,12 +236,23 @@ class Member:
         if now.hits != before.hits or now != before:
             self._told = _copy_of(now)
             self.file.send(self._did(before, now))
-        if self._calls is not None:
-            self._calls.tell_found()
+        if not isinstance(session, TextOnly):
+            self._tell_found(session)
         meter = session.meter
         if meter is not None and meter.exceeded is not None and not self._exceeded:
             self._exceeded = True
             self._use()
+
+    def _tell_found(self, session: Session) -> None:
+        """Tell of targets that were found since the last time."""
+        targets = session.interception.found - self._targets
+        if not targets:
+            return
+        self._targets |= targets
+        for operation in session.job.vocabulary.operations:
+            if operation.target in targets:
+                session.inspection.check_target(operation, session.interception)
+        self.file.send(Found(targets=tuple(sorted(targets))))
 
     def _did(self, before: Evidence, now: Evidence) -> Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
@@ -329,7 +361,7 @@ class Member:
 def _session(job: Job, pipe: Member) -> Session | TextOnly:
     text = job.instrumentation
     if text is not None and not (text.active or text.record):
-        text = None  # a trunk's processes are the original, and fork for nobody
+        text = None  # those below a fork parent are the original, and fork for nobody
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
     if is_of_text_alone(job):
         return TextOnly(job, pipe)

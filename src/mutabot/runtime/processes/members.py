@@ -1,26 +1,17 @@
-"""The test process's side: what it gives to processes below it, and what it makes of what they tell.
-
-What a process below the tests tells of calls, at once.
-"""
+"""The test process's side: what it gives to processes below it, and what it makes of what they tell."""
 
 from __future__ import annotations
 
 import os
-import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
-from functools import partial
-from typing import Any
 
 from mutabot.extensions import brought
-from mutabot.model import Call
 from mutabot.model.event_file import FOLDER
 from mutabot.model.events import (
     Began,
-    Called,
     Event,
     Found,
-    Noted,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -31,9 +22,7 @@ from mutabot.model.events import (
 )
 from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
 from mutabot.model.job import Job
-from mutabot.model.quantity import Value
-from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.processes.environment import Exits, Now, carry, watch_unseen, write_wake
+from mutabot.runtime.processes.environment import Now, ProcessWatch, carry, write_wake
 from mutabot.runtime.session import Session
 
 #: what processes of interest load
@@ -59,15 +48,12 @@ class Members:
         self._session = session
         self._now = Now(self.folder, is_host=True)
         self._children = Children(home, session.job.key)
-        self._exits = Exits()
         self._present: list[ChildRecord] = []
         self._texts: list[TextsSeen] = []
         self._unseen: set[str] = set()
         self._acted = has_acted
         carry(self.folder)
-        self._exits.watch()
-        if session.job.inspect:
-            watch_unseen(self._say_unseen)
+        self._watch = ProcessWatch(self._say_unseen)
 
     def start_test(self, test: str) -> None:
         """A test begins: some may be there from before."""
@@ -117,8 +103,8 @@ class Members:
             session.job,
             session.recorder.index_of,
             self._acted,
-            self._exits.codes,
-            self._exits.signalled,
+            self._watch.codes,
+            self._watch.signalled,
         )
 
     def _take_all(self) -> None:
@@ -128,12 +114,12 @@ class Members:
     def _take(self, event: Event) -> None:
         """What concerns the session, and no test alone."""
         match event:
-            case Began(unable=why) if why is not None and self._session.job.inspect:
+            case Began(unable=why) if why is not None:
                 self._say_unseen(" ".join(event.command[:3]), why)
             case TextsSeen():
                 self._texts.append(event)
             case Signalled():
-                self._exits.signalled.add(event.pid)
+                self._watch.signalled.add(event.pid)
             case Found():
                 self._session.interception.found_elsewhere(event.targets)
                 self._session.inspection.elsewhere.update(event.modules)
@@ -154,7 +140,7 @@ class Members:
         return replace(end, recording=recording.text([*recorder.told(), *found])) if found else end
 
     def _say_unseen(self, name: str, why: str) -> None:
-        if name in self._unseen:
+        if name in self._unseen or not self._session.job.inspect:
             return
         self._unseen.add(name)
         text = f"nothing in this process is seen or mutated: {why}"
@@ -176,51 +162,3 @@ def _write_wake(folder: str, job: Job) -> None:
 
 def _top(target: str) -> str:
     return target.partition(":")[0].partition(".")[0]
-
-
-class CallsTold:
-    """Writes down what a session sees of calls, from now on.
-
-    Args:
-        session: the session.
-        file: where it is told.
-        poll: tells what the mutant did.
-    """
-
-    def __init__(self, session: Session, file: EventFile, poll: Callable[[], None]) -> None:
-        self._session, self._file, self._poll = session, file, poll
-        self._found: set[str] = set()
-        session.recorder.on_hit = self._hit
-        session.on_refused, session.on_live = self._refused, self._is_live
-        session.passing.on_end = self._after
-        for targets in session.interception.kinds:
-            if targets.on_heard is not None:
-                targets.on_heard = partial(self._heard, targets.on_heard)
-
-    def tell_found(self) -> None:
-        """Tell of targets that were found since the last time."""
-        targets = self._session.interception.found - self._found
-        if targets:
-            self._found |= targets
-            for operation in self._session.job.vocabulary.operations:
-                if operation.target in targets:
-                    self._session.inspection.check_target(operation, self._session.interception)
-            self._file.send(Found(targets=tuple(sorted(targets))))
-
-    def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
-        self._file.send(Called(site, written, read, answer, time.monotonic()))
-
-    def _refused(self, site: int, number: int) -> None:
-        self._file.send(Noted(site, number))
-
-    def _is_live(self, site: int) -> None:
-        self._file.send(Noted(site))
-
-    def _after(self, call: Call, read: Mapping[str, Value]) -> None:
-        self._poll()
-
-    def _heard(self, heard: Callable[[str, Any], None], name: str, message: Any) -> None:
-        before = self._session.evidence.said
-        heard(name, message)
-        if self._session.evidence.said != before:
-            self._poll()

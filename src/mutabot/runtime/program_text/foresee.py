@@ -1,9 +1,9 @@
 """What an expression would give, found out without letting anything happen.
 
-The trunk looks ahead with it: a mutant of the program text needs no process of its own as long as its value
-is the original's. And a mutant tells by it what the original would have given. Operators on plain numbers and
-texts are computed, and a few functions; what they work on are constants, names, and stored attributes and
-items. All else is left to a real evaluation.
+The fork parent looks ahead with it: a mutant of the program text needs no process of its own as long as its
+value is the original's. And a mutant tells by it what the original would have given. Operators on plain
+numbers and texts are computed, and a few functions; what they work on are constants, names, and stored
+attributes and items. All else is left to a real evaluation.
 """
 
 from __future__ import annotations
@@ -151,40 +151,19 @@ class Forms:
     original: Form | None
     alternatives: tuple[Form | None, ...]
 
-    def differing(
-        self, indexes: frozenset[int], frame: FrameType, standing: int | None = None
-    ) -> list[frozenset[int]]:
-        """Of these alternatives, those that would not give what is given now, or may not.
-
-        Those that give one value stand together; of which that is not known stand alone.
-
-        Args:
-            frame: where the expression is about to be evaluated.
-            standing: the alternative that stands for the original now, if one does.
-        """
+    def differing(self, indexes: frozenset[int], frame: FrameType) -> frozenset[int]:
+        """Of these alternatives, those that would not give what the original gives in a frame, or may not."""
         try:
-            given = value_of(self.original if standing is None else self.alternatives[standing], frame)
+            given = value_of(self.original, frame)
         except Exception:  # whatever it is: a real evaluation will tell
-            return alone(indexes)
-        unknown: set[int] = set()
-        alike: list[tuple[Any, set[int]]] = [(given, set())]
-        for index in sorted(indexes):
-            try:
-                value = value_of(self.alternatives[index], frame)
-            except Exception:  # as above; what raises differs from what did not
-                unknown.add(index)
-                continue
-            found = next((group for known, group in alike if is_identical(known, value)), None)
-            if found is None:
-                alike.append((value, {index}))
-            else:
-                found.add(index)
-        return [*(frozenset(group) for _, group in alike[1:]), *alone(unknown)]
+            return indexes
+        return frozenset(index for index in indexes if not self._gives(index, given, frame))
 
-
-def alone(indexes: Iterable[int]) -> list[frozenset[int]]:
-    """Alternatives of which nobody knows which ones are alike."""
-    return [frozenset((index,)) for index in sorted(indexes)]
+    def _gives(self, index: int, given: Any, frame: FrameType) -> bool:
+        try:
+            return is_identical(given, value_of(self.alternatives[index], frame))
+        except Exception:  # as above; what raises differs from what did not
+            return False
 
 
 def form_of(tree: ast.expr) -> Form | None:

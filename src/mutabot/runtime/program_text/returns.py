@@ -18,7 +18,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import Any, TypeVar
+from typing import Any
 
 from mutabot.model import Role
 from mutabot.runtime.interception.trace import Locator
@@ -33,7 +33,6 @@ _TRANSLATED = ("jit", "vectorize", "kernel", "cfunc", "stencil")
 _LIBRARIES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
-_Node = TypeVar("_Node", bound=ast.AST)
 
 
 class Returns:
@@ -78,8 +77,10 @@ class Returns:
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Put notes into the functions of a program file."""
         for function in _functions(tree):
-            if not _is_generator(function) and not is_translated(function):
-                _add_notes(function)
+            own = list(_own_nodes(function))
+            is_generator = any(isinstance(node, ast.Yield | ast.YieldFrom) for node in own)
+            if not is_generator and not is_translated(function):
+                _add_notes(function, own)
         self._own.add(path)
 
     def give_up(self, path: str, error: Exception) -> None:
@@ -124,7 +125,7 @@ class Returns:
 
     def _note(self, function: FrameType, value: Callable[[], Any]) -> None:
         if len(self.entries) >= LIMIT:
-            self.truncated = True
+            self.truncated, self.is_on = True, False
             return
         try:
             self.entries.append((function.f_code.co_qualname, value()))
@@ -172,32 +173,27 @@ def _own_nodes(function: Function) -> Iterator[ast.AST]:
             stack.extend(ast.iter_child_nodes(node))
 
 
-def _is_generator(function: Function) -> bool:
-    return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in _own_nodes(function))
-
-
 def is_translated(function: Function) -> bool:
     """Whether a decorator may translate its bytecode, in which notes would have no meaning."""
     names = [ast.unparse(decorator).lower() for decorator in function.decorator_list]
     return any(word in name for name in names for word in _TRANSLATED)
 
 
-def _add_notes(function: Function) -> None:
-    for node in _own_nodes(function):
+def _add_notes(function: Function, own: list[ast.AST]) -> None:
+    for node in own:
         if isinstance(node, ast.Return) and node.value is not None:
-            note = ast.Call(ast.Name(RETURNED, ast.Load()), [node.value], [])
-            node.value = _at(note, node)
+            node.value = _call(RETURNED, [node.value], node)
     has_text = ast.get_docstring(function, clean=False) is not None
     head, body = function.body[:has_text], function.body[has_text:]
     if body:
-        tells = ast.Expr(ast.Call(ast.Name(RAISED, ast.Load()), [], []))
-        handler = ast.ExceptHandler(None, None, [tells, ast.Raise()])
-        function.body = [*head, _at(ast.Try(body, [handler], [], []), body[0])]
+        place = body[0]
+        tells = ast.copy_location(ast.Expr(_call(RAISED, [], place)), place)
+        again = ast.copy_location(ast.Raise(), place)
+        handler = ast.copy_location(ast.ExceptHandler(None, None, [tells, again]), place)
+        function.body = [*head, ast.copy_location(ast.Try(body, [handler], [], []), place)]
 
 
-def _at(made: _Node, place: ast.expr | ast.stmt) -> _Node:
-    """New nodes at the position of what they stand for."""
-    for node in ast.walk(made):
-        if isinstance(node, ast.expr | ast.stmt | ast.ExceptHandler) and not hasattr(node, "lineno"):
-            ast.copy_location(node, place)
-    return made
+def _call(name: str, arguments: list[ast.expr], place: ast.stmt) -> ast.Call:
+    """A call at the position of what it stands for."""
+    function = ast.copy_location(ast.Name(name, ast.Load()), place)
+    return ast.copy_location(ast.Call(function, arguments, []), place)

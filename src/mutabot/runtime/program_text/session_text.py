@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
@@ -12,8 +12,7 @@ from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text.import_hook import ImportHook
 
 if TYPE_CHECKING:  # not every process makes calls, or forks
-    from mutabot.model import Call
-    from mutabot.runtime.isolation.fork_parent import Bunch
+    from mutabot.model import Call, Choice
 
 #: hits, and hits at which something changed, by place
 _Counts = dict[int, tuple[int, int]]
@@ -61,30 +60,21 @@ class SessionText:
         """Whether an alternative is active."""
         return bool(self.hook.alternatives.active)
 
-    def start_test(
-        self,
-        test: str,
-        branch: Callable[[int, Sequence[frozenset[int]]], None] | None,
-        live: Mapping[int, frozenset[int]],
-    ) -> None:
-        """A test begins. In a trunk, ``branch`` is told a place and which of its ``live`` alternatives are
-        about to change something.
-        """
+    def start_test(self, test: str) -> None:
+        """A test begins."""
         if not self._begun:
             self._note_early()
         self._test, self._refusals, self._unknown = test, (), False
         if self.hook.sightings is not None:
             self.hook.sightings.start()
-            return
-        self.hook.alternatives.start()
-        if branch is not None:
-            self.watch(branch, live)
+        else:
+            self.hook.alternatives.start()
 
     def watch(
-        self, branch: Callable[[int, Sequence[frozenset[int]]], None], live: Mapping[int, frozenset[int]]
+        self, on_place: Callable[[int, frozenset[int]], None], live: Mapping[int, frozenset[int]]
     ) -> None:
-        """In a trunk: tell ``branch`` a place and which of its ``live`` alternatives are about to differ."""
-        self.hook.alternatives.on_place = branch
+        """In a fork parent: tell ``on_place`` which of the ``live`` alternatives of a place are to differ."""
+        self.hook.alternatives.on_place = on_place
         self.hook.alternatives.watch(live)
 
     def end_test(self) -> None:
@@ -104,15 +94,10 @@ class SessionText:
             seen = [*self.hook.sightings.seen(), *(seen for one in others for seen in one.sightings)]
             self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
 
-    def become(self, bunch: Bunch) -> None:
-        """In a branch that was just forked: let the alternatives of its first mutant stand in the text.
-
-        Those of the others are watched: they part as soon as they differ from it.
-        """
-        alternatives = self.hook.alternatives
-        alternatives.on_place = bunch.part
-        alternatives.watch(bunch.watched)
-        alternatives.activate(*bunch.choices[bunch.first.id])
+    def become(self, choices: Iterable[Choice]) -> None:
+        """In a process that was just forked: let these alternatives stand in the text, and watch none."""
+        self.hook.alternatives.on_place = None
+        self.hook.alternatives.activate(*choices)
 
     @property
     def hits(self) -> Mapping[int, int]:

@@ -14,15 +14,14 @@ import enum
 import numbers
 import sys
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cache
 from types import BuiltinFunctionType, CodeType, FrameType, FunctionType, MethodType, ModuleType
 from typing import Any, NoReturn
 
 from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice
 from mutabot.model.path import class_name
-from mutabot.runtime.observation.probes import opaque
-from mutabot.runtime.program_text.foresee import Forms, alone, locals_of, value_of
+from mutabot.runtime.program_text.foresee import Forms, locals_of, value_of
 
 
 @cache
@@ -95,8 +94,8 @@ class Alternatives:
         examples: value of the original and of the alternative when they first differed, by place; of what
             is no plain value, its type.
         on_place: told the number of a watched place, and which of its watched alternatives are about to
-            differ for the first time from what stands there, or may be, those of one value together; it may
-            activate one of them, which then stands there at once.
+            differ for the first time from the original, or may be; it may activate one of them, which then
+            stands there at once.
         forms: gives a place as trees that can be looked ahead of; None for statements.
         on_first: told the number of a place that is on when it is first evaluated since ``start``.
         on_act: told the number of an active place when its alternative is known to change something, or
@@ -111,7 +110,7 @@ class Alternatives:
         self.idle: dict[int, int] = {}
         self.examples: dict[int, tuple[Any, Any]] = {}
         self._told: set[int] = set()
-        self.on_place: Callable[[int, Sequence[frozenset[int]]], None] | None = None
+        self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
         self._forms: dict[int, Forms | None] = {}
         self.on_act: Callable[[int], None] | None = None
@@ -154,9 +153,8 @@ class Alternatives:
 
     def activate(self, *choices: Choice) -> None:
         """Make these alternatives, and no others, stand for the original."""
-        watched = self.watched
         self.active = {choice.place: choice.index for choice in choices}
-        self._set(watched)
+        self._set({})
 
     def watch(self, live: Mapping[int, frozenset[int]]) -> None:
         """Tell each of these alternatives, by place, when it is about to change something, and no other.
@@ -164,11 +162,6 @@ class Alternatives:
         What cannot be foreseen is told when it is reached; negative indexes always are.
         """
         self._set(live)
-
-    @property
-    def watched(self) -> dict[int, frozenset[int]]:
-        """Alternatives that are yet to be told, by place."""
-        return {switch.place: switch.watched for switch in self.switches[1:] if switch and switch.watched}
 
     def reached(self, switch: Switch, frame: FrameType) -> bool:
         """A place that is on is evaluated; whether an alternative stands for it."""
@@ -187,7 +180,7 @@ class Alternatives:
     def _look_ahead(self, switch: Switch, frame: FrameType) -> None:
         place = switch.place
         due = self._differing(switch, frame)
-        switch.watched = switch.watched.difference(*due)
+        switch.watched -= due
         if not switch.watched and switch.index is None:
             self.switches[place] = False
         if due and self.on_place is not None:
@@ -210,19 +203,13 @@ class Alternatives:
             self._forms[place] = self.forms(place)
         return self._forms[place]
 
-    def _differing(self, switch: Switch, frame: FrameType) -> list[frozenset[int]]:
-        """The watched alternatives that differ from what stands there, or may; equal ones together."""
-        place = switch.place
-        forms = self._forms_of(place)
+    def _differing(self, switch: Switch, frame: FrameType) -> frozenset[int]:
+        """The watched alternatives that differ from the original, or may."""
+        forms = self._forms_of(switch.place)
+        if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
+            return switch.watched  # another thread may change what an evaluation depends on
         unforeseeable = frozenset(index for index in switch.watched if index < 0)
-        if forms is None or self.hits[place] > _LOOKS or threading.active_count() > 1:
-            unforeseeable = switch.watched  # another thread may change what an evaluation depends on
-        elif unforeseeable != switch.watched:
-            return [
-                *alone(unforeseeable),
-                *forms.differing(switch.watched - unforeseeable, frame, self.active.get(place)),
-            ]
-        return alone(unforeseeable)
+        return unforeseeable | forms.differing(switch.watched - unforeseeable, frame)
 
     def _control(self, place: int, index: int) -> None:
         """The controls, which every place knows: nothing happens, or it raises."""
@@ -269,6 +256,8 @@ def _plain(value: Any) -> Any:
         return value
     if isinstance(value, tuple | list) and len(value) <= _SHOWN:
         return tuple(_plain(item) for item in value)
+    from mutabot.runtime.observation.probes import opaque  # noqa: PLC0415  # slow, and of no use to most processes
+
     return opaque(value)
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from mutabot.model import ANY
 from mutabot.model.path import class_name
-from mutabot.model.signature import described_in, spell_signature, takes_anything
+from mutabot.model.signature import parse_signature, takes_anything
 from mutabot.model.watched import Call
 from mutabot.runtime.targets.target import NotFoundError, resolve
 
@@ -216,3 +216,41 @@ def _raised_by(function: Any) -> Iterator[str]:
             raised = functools.reduce(lambda found, name: getattr(found, name, None), rest, names.get(first))
             if isinstance(raised, type) and issubclass(raised, BaseException):
                 yield class_name(raised)
+
+
+def spell_signature(signature: Signature) -> str:
+    """The text that is read as this signature, bar annotations. Defaults that are no literals are ``…``."""
+    parameters = [
+        parameter.replace(annotation=inspect.Parameter.empty, default=_spelt(parameter.default))
+        for parameter in signature.parameters.values()
+        if parameter.name not in ("self", "cls")
+    ]
+    return str(inspect.Signature(parameters))
+
+
+def described_in(documentation: str | None, name: str) -> inspect.Signature | None:
+    """The signature that the first line of a native callable's documentation gives, or None."""
+    first = (documentation or "").strip().partition("\n")[0].strip()
+    if not first.startswith(f"{name}("):
+        return None
+    try:
+        return parse_signature(first.removeprefix(name).rstrip(":."))
+    except ValueError:
+        return None
+
+
+class _Unknown:
+    """Prints itself as an ellipsis."""
+
+    def __repr__(self) -> str:
+        return "…"
+
+
+def _spelt(default: Any) -> Any:
+    if default is inspect.Parameter.empty:
+        return default
+    try:
+        ast.literal_eval(repr(default))
+    except Exception:  # a default may be any object
+        return _Unknown()
+    return _Unknown() if default is ... else default

@@ -1,4 +1,4 @@
-"""The conductor: makes pytest run a job, itself or in copies of its process."""
+"""Pytest's hooks for a job: they collect its tests, and run them in this process or in copies of it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 
 from mutabot import extensions
 from mutabot.frozen import compile_all
-from mutabot.model import Role, process_time
+from mutabot.model import Mutant, Role, process_time
 from mutabot.model.events import SessionEnd, TestEnd
 from mutabot.model.job import Branching, Job, read_job
 from mutabot.operators.registry import preload
@@ -22,30 +22,30 @@ from mutabot.runtime import seeds
 from mutabot.runtime.event_file import EventFile, Held
 from mutabot.runtime.evidence import limit_memory
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.isolation.files import Apart, PrivateFiles
-from mutabot.runtime.isolation.fork_parent import FAILED as BRANCH_FAILED
-from mutabot.runtime.isolation.fork_parent import Trunk
+from mutabot.runtime.isolation.files import Isolation, PrivateFiles
+from mutabot.runtime.isolation.fork_parent import ForkParent
 from mutabot.runtime.isolation.forkable import track_event_loops
-from mutabot.runtime.isolation.lifeline import die_with_parent, nobody_listens
+from mutabot.runtime.isolation.forked_run import ForkedRun
+from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
 from mutabot.runtime.observation.compared import Assertions, Comparisons
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.program_text.returns import Returns
-from mutabot.runtime.running import Running, is_no_program
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import prepare
 from mutabot.runtime.test_end import classify
+from mutabot.runtime.test_hooks import TestHooks, is_no_program
 
 if TYPE_CHECKING:
-    from mutabot.runtime.isolation.copies import Commission, CopyServer
+    from mutabot.runtime.isolation.fork_server import ForkServer
 
 
 #: where a process keeps what it prints, in its home
 LOG = "log.txt"
 
 
-class Conductor:
+class SessionHooks:
     """Pytest's hooks for one job: the collection of its tests, and the session around them.
 
     Args:
@@ -54,17 +54,19 @@ class Conductor:
         server: forks a copy of this process for each job that comes; None if it runs its job itself.
 
     Attributes:
-        running: the hooks for each of its tests.
+        tests: the hooks for each of its tests.
+        config: pytest's configuration; None until it reads the first of the user's code.
     """
 
-    def __init__(self, job: Job, pipe: EventFile, server: CopyServer | None = None) -> None:
+    def __init__(self, job: Job, pipe: EventFile, server: ForkServer | None = None) -> None:
         self.locator = Locator(job.root, job.program, job.oracle)
+        self.config: pytest.Config | None = None
         self._held = Held()
         self.session = Session(job, pipe if server is None else self._held, self.locator)
-        self.running = Running(self.session, self.locator)
+        self.tests = TestHooks(self.session, self.locator)
         self._server = server
         self._collected: tuple[str, ...] = ()
-        self._errors = self.running.branch.errors
+        self._errors: list[str] = []
         self._not_private: str | None = None
         self._files: PrivateFiles | None = None
 
@@ -74,11 +76,11 @@ class Conductor:
         return self.session.job
 
     @classmethod
-    def from_files(cls, job_file: str, descriptor: int) -> Conductor:
+    def from_files(cls, job_file: str, descriptor: int) -> SessionHooks:
         """Read the job, set the limits of the process and put the interception in place."""
         die_with_parent()
         if nobody_listens(descriptor):  # the controller died before the kernel was asked
-            os._exit(BRANCH_FAILED)
+            os._exit(ALONE)
         home = os.path.dirname(job_file)
         job = read_job(home)
         extensions.use(job.extensions)
@@ -89,78 +91,83 @@ class Conductor:
         seeds.seed_all(seeds.derive(job.seed, "import"))
         pipe = EventFile.of_session(home, job.key, descriptor)
         if job.serving is not None:
-            from mutabot.runtime.isolation.copies import CopyServer  # noqa: PLC0415  # of no use to other jobs
+            from mutabot.runtime.isolation.fork_server import ForkServer  # noqa: PLC0415  # of no use to others
 
             preload()
-            conductor = cls(
-                job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG), job.private_files)
-            )
+            hooks = cls(job, pipe, ForkServer(job.serving, pipe, LOG, home, job.private_files))
         else:
-            conductor = cls(job, pipe)
+            hooks = cls(job, pipe)
             if job.pictures is not None:  # before its folder is hidden from this process
-                conductor.session.recording.film(job.pictures)
-            conductor._make_private(job, home)
-        conductor.session.returns = Returns(conductor.locator)
-        conductor.session.install()
-        conductor.look_at_checks()
-        conductor.record_units()
+                hooks.session.recording.film(job.pictures)
+            hooks._make_private(job, home)
+        hooks.session.returns = Returns(hooks.locator)
+        hooks.session.install()
+        hooks.look_at_checks()
+        hooks.record_units()
         if job.serving is None:
-            conductor._begin(home)
-        return conductor
+            hooks._begin(home)
+        return hooks
 
     def _make_private(self, job: Job, home: str) -> None:
-        if job.private_files:
-            root = os.path.realpath(job.root)
-            files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
-            self._not_private = files.make()
-            self._files = files if self._not_private is None else None
-            if self._files is not None:
-                # it removes old folders of pytest's, which are there again for the next process
-                _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
-            die_with_parent()  # a process that changes its rights loses that wish
+        if not job.private_files:
+            self._not_private = "private_files is switched off"
+            return
+        root = os.path.realpath(job.root)
+        files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
+        self._not_private = files.make()
+        if self._not_private is None:
+            self._files = files
+            # it removes old folders of pytest's, which are there again for the next process
+            _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
+        die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
-        has_nodes = prepare(self.job.root, home, self.job.vocabulary)
-        members = self.running.members = Members(home, self.session)
+        job = self.job
+        has_nodes = prepare(job.root, home, job.vocabulary)
+        members = self.tests.members = Members(home, self.session)
         watch_forks(members.folder, self.session)
-        if self.job.mutant is not None:
-            self.running.branch.left_out.become(self.job, [self.job.mutant.id])
-        if self.job.branching is not None:
-            preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
-            self.grow(self.job.branching, home, members, has_nodes=has_nodes)
+        if job.mutant is not None:
+            self.tests.left_out = job.left_out(job.mutant.id)
+        if job.branching is not None:
+            preload({mutant.operator for mutant in job.branching.mutants})  # and not in every fork
+            self._be_fork_parent(job.branching, home, members, has_nodes=has_nodes)
 
-    def grow(self, branching: Branching, home: str, members: Members, *, has_nodes: bool) -> None:
-        """Be a trunk: fork a branch for every mutant."""
+    def _be_fork_parent(self, branching: Branching, home: str, members: Members, *, has_nodes: bool) -> None:
         compile_all()
         log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
         assert isinstance(pipe, EventFile)
-        file = os.path.join(home, process_time.FILE)
+        stack = os.path.join(home, process_time.FILE)
         track_event_loops()
-        why = self._not_private or (None if self._files is not None else "private_files is switched off")
-        apart = Apart(
-            (log.st_dev, log.st_ino), home, self._files, f"its files are not private: {why}" if why else None
-        )
-        branch = self.running.branch
-        branch.expect()
+        parent = ForkParent(
+            branching, self.job.tests or (), pipe,
+            Isolation((log.st_dev, log.st_ino), home, self._files, self._not_private), self._become,
+            lambda pid: process_time.ask(pid, stack, self.job.root), has_nodes, members.have_begun,
+        )  # fmt: skip
+        self.session.grow(parent)
 
-        def where_is(pid: int) -> str | None:
-            return process_time.ask(pid, file, self.job.root)
-
-        trunk = Trunk(
-            branching, self.job.tests or (), pipe, apart, branch, where_is, has_nodes, members.have_begun
-        )
-        self.session.grow(trunk)
+    def _become(self, mutant: Mutant, folder: str) -> None:
+        """In a process that was just forked: go on as this mutant."""
+        assert self.session.fork_parent is not None
+        self.tests.start_clocks()
+        self.tests.left_out = self.job.left_out(mutant.id)
+        if self.config is not None:
+            # nobody reads a fork's traceback, and to lay one out takes longer than most forks
+            self.config.option.tbstyle = "value"
+            _keep_cache_in(self.config, folder)
+        fork = ForkedRun(self.session, self.session.fork_parent, mutant, folder)
+        self.tests.fork = fork
+        self.session.become(mutant, fork.choices)
 
     def look_at_checks(self) -> None:
         """Note what tests check."""
-        looks, root = self.running.looks, self.job.root
+        looks, root = self.tests.looks, self.job.root
         Assertions(root, self._is_of_tests, looks).install()
         Comparisons(root, looks).install()
         self.session.call_sites.hook_pytest()
 
     def record_units(self) -> None:
         """Note what is executed."""
-        self.running.units.install()
+        self.tests.units.install()
 
     def _is_of_tests(self, path: str) -> bool:
         """Whether a file is the project's own, and not the program's."""
@@ -214,7 +221,6 @@ class Conductor:
             return
         below = (f"{node}::", f"{node}/") if node not in ("", ".") else ("",)
         tests = [test for test in self.job.tests or () if test.startswith(below)]
-        branch = self.running.branch
         for test in tests[:1] if self.job.stop_at_kill else tests:
             file = os.path.join(self.job.root, test.partition("::")[0])
             ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
@@ -224,8 +230,8 @@ class Conductor:
                 invalid=evidence.invalid or is_no_program(evidence, ending),
                 hits=evidence.hits, acted=evidence.acted, example=evidence.example,
             )  # fmt: skip
-            if branch.is_one:
-                branch.end_test(end)
+            if self.tests.fork is not None:
+                self.tests.fork.end_test(end)
             else:
                 self.session.pipe.send(end)
 
@@ -237,9 +243,9 @@ class Conductor:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
         """All tests are collected: run them, or fork a copy of this process for every job."""
-        commission = self._server.serve() if self._server is not None else None
-        if commission is not None:
-            self._take_on(session, commission)
+        request = self._server.serve() if self._server is not None else None
+        if request is not None:
+            self._take_on(session, *request)
         if self._server is not None:
             session.items.clear()
             return (yield)
@@ -249,39 +255,42 @@ class Conductor:
         drop_idle_plugins(session.config)
         return result
 
-    def _take_on(self, session: pytest.Session, commission: Commission) -> None:
-        """Become the session of a job."""
-        job = read_job(commission.home)
+    def _take_on(self, session: pytest.Session, home: str, descriptor: int) -> None:
+        """In a copy of a server: become the session of a job."""
         self._server = None
-        self._make_private(job, commission.home)
-        pipe = EventFile.of_session(commission.home, job.key, commission.descriptor)
+        job = read_job(home)
+        self._make_private(job, home)
+        pipe = EventFile.of_session(home, job.key, descriptor)
         self.session.take_on(job, pipe)
         for event in self._held.events:
             pipe.send(event)
         self._select(session.items)
-        cache = getattr(session.config, "cache", None)
-        if cache is not None:  # what one job keeps there, others must not find
-            cache._cachedir = Path(commission.home, "cache")
-        _say_where_on_signal(commission.home)
-        self._begin(commission.home)
+        _keep_cache_in(session.config, home)
+        _say_where_on_signal(home)
+        self._begin(home)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
+        """In place of running a test that is left out: take down what ends with it."""
+        if node_id(item) not in self.tests.left_out:
+            return None
+        item.session._setupstate.teardown_exact(nextitem)
+        return True
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Everything has run."""
-        if self._server is None:
-            self._say_goodbye(int(exitstatus))
-
-    def _say_goodbye(self, status: int) -> None:
-        """Say what is left to say, and goodbye."""
-        branch = self.running.branch
-        if branch.is_one:
-            branch.finish()
+        """Everything has run: tell what is left to tell."""
+        if self._server is not None:
             return
-        members = self.running.members
+        if self.tests.fork is not None:
+            self.tests.fork.finish(self._errors)
+            return
+        members = self.tests.members
         self.session.finish(members.texts_seen() if members is not None else ())
         if members is not None and members.doubt is not None:
             self._errors.append(members.doubt)
-        self.session.pipe.send(SessionEnd(status, self._collected, tuple(self._errors), self._not_private))
+        not_private = self._not_private if self.job.private_files else None
+        self.session.pipe.send(SessionEnd(int(exitstatus), self._collected, tuple(self._errors), not_private))
 
 
 def drop_idle_plugins(config: pytest.Config) -> None:
@@ -291,8 +300,15 @@ def drop_idle_plugins(config: pytest.Config) -> None:
         config.pluginmanager.unregister(plugin)
 
 
+def _keep_cache_in(config: pytest.Config, home: str) -> None:
+    """What one process keeps in pytest's cache, others must not find."""
+    cache = getattr(config, "cache", None)
+    if cache is not None:
+        cache._cachedir = Path(home, "cache")
+
+
 def _say_where_on_signal(home: str) -> None:
-    """Let this process, and its branches, write their stack into their home on ``stack.SIGNAL``."""
+    """Let this process, and its forks, write their stack into their home on ``stack.SIGNAL``."""
     flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
     descriptor = os.open(os.path.join(home, process_time.FILE), flags, 0o600)
     faulthandler.register(process_time.SIGNAL, file=descriptor, all_threads=True)

@@ -1,7 +1,4 @@
-"""Pytest's hooks for a job's tests, one after the other: what goes around each, and how each has ended.
-
-Addresses at which the tests wait: two processes cannot have the same one at the same time.
-"""
+"""Pytest's hooks around each test of a job: they start its measurements and tell how it ended."""
 
 from __future__ import annotations
 
@@ -22,7 +19,7 @@ from mutabot.runtime import seeds
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.executed import ExecutedUnits
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.isolation.fork import BranchOfSession
+from mutabot.runtime.isolation.forked_run import ForkedRun
 from mutabot.runtime.observation.checks import Looks
 from mutabot.runtime.observation.probes import Reading
 from mutabot.runtime.plugins import drop_idle_watchdog, watched, watched_by_faulthandler
@@ -39,38 +36,11 @@ from mutabot.runtime.test_end import (
     unexpected_pass,
 )
 
-
-class FixedAddresses:
-    """Those of one process, seen by an audit event before the system is asked for an address.
-
-    Attributes:
-        taken: what the running test waits at, in words; None if the system chooses what nobody else has.
-    """
-
-    def __init__(self) -> None:
-        self.taken: str | None = None
-        self._is_on = False
-
-    def start_test(self) -> None:
-        """A test begins."""
-        self.taken = None
-        if not self._is_on:
-            self._is_on = True
-            sys.addaudithook(self._hear)
-
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        if event != "socket.bind":
-            return
-        address = arguments[1]
-        if not (isinstance(address, tuple) and len(address) > 1 and address[1] == 0):
-            self.taken = self.taken or f"waits at the address {address!r}"
-
-
 #: parts that are looked at in what a fixture gives
 _MOST = 1000
 
 
-class Running:
+class TestHooks:
     """The running test.
 
     Args:
@@ -78,20 +48,25 @@ class Running:
         locator: whose file is whose.
 
     Attributes:
-        branch: what to do if this process turns out to be a branch.
-        members: processes below the tests; None as long as no job is known.
+        members: processes below the test process; None as long as no job is known. A fork has its own.
+        fork: what this process does if it was forked to be a mutant; None in all others.
+        left_out: tests that are not run, since they do not reach the mutant and one before has.
         looks: the checks that the test makes.
         units: what is executed.
     """
 
+    __test__ = False  # not a test class, whatever pytest may think of the name
+
     def __init__(self, session: Session, locator: Locator) -> None:
         self.session = session
         self.locator = locator
-        self.branch = BranchOfSession(session, self.start_clocks)
         self.members: Members | None = None
-        self.addresses = FixedAddresses()
+        self.fork: ForkedRun | None = None
+        self.left_out: frozenset[str] = frozenset()
         self.looks = Looks()
         self.units = ExecutedUnits(session.job.root)
+        self._address: str | None = None
+        self._hears = False
         self._ending: Ending | None = None
         self._expected: Ending | None = None
         self._outcome = PASSED
@@ -101,54 +76,67 @@ class Running:
         self._used = TimeUsed.from_now()
 
     def start_clocks(self) -> None:
-        """What the test takes is counted from now on."""
+        """Count from now on what the test takes."""
         self._started = (perf_counter(), process_time())
         self._used = TimeUsed.from_now([os.getpid()])
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """One test, its fixtures included."""
-        self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
-        self.looks.clear()
-        self._logged = None
+        session, test = self.session, node_id(item)
         self.units.start_test()
-        self.branch.start_test()
-        if self.branch.left_out.is_next(node_id(item)):
+        if self.fork is not None:
+            self.fork.start_test()
+        if test in self.left_out:
             return (yield)
-        self.session.pipe.send(TestStart(node_id(item)))
-        limit = watched_by_faulthandler(item)
-        if limit is not None:
-            self.session.pipe.send(limit)
-        job = self.session.job
-        seeds.seed_all(seeds.derive(job.seed, job.round, node_id(item)))
-        if self.session.trunk is not None:
-            self.session.trunk.begin_test(node_id(item))
-        self.addresses.start_test()
-        self.start_clocks()
-        if (members := self._members) is not None:
-            members.start_test(node_id(item))
-        self.session.start_test(node_id(item), partial(objects_of_fixtures, item))
+        self._start(item, test)
         result = yield
-        end = self._test_end(node_id(item))
-        if (members := self._members) is not None:
+        end = self._test_end(test)
+        members = self.members if self.fork is None else self.fork.members
+        if members is not None:
             end = members.merged(end)
-        self.branch.end_test(end)
-        self.session.end_test()
-        if not self.branch.is_one:
-            self.session.pipe.send(end)
-        if job.stop_at_kill and end.is_decided:
+        if self.fork is not None:  # which may have begun in this test
+            self.fork.end_test(end)
+        session.end_test()
+        if self.fork is None:
+            session.pipe.send(end)
+        if session.job.stop_at_kill and end.is_decided:
             item.session.shouldstop = "the mutant's verdict is known"
         return result
 
-    @property
-    def _members(self) -> Members | None:
-        """The processes below this one; those of a trunk are none of its branches'."""
-        return self.branch.members if self.branch.is_one else self.members
+    def _start(self, item: pytest.Item, test: str) -> None:
+        self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
+        self._address = self._logged = None
+        self.looks.clear()
+        if not self._hears:
+            self._hears = True
+            sys.addaudithook(self._hear)
+        session = self.session
+        session.pipe.send(TestStart(test))
+        limit = watched_by_faulthandler(item)
+        if limit is not None:
+            session.pipe.send(limit)
+        seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
+        if session.fork_parent is not None:
+            session.fork_parent.begin_test(test)
+        self.start_clocks()
+        members = self.members if self.fork is None else self.fork.members
+        if members is not None:
+            members.start_test(test)
+        session.start_test(test, partial(objects_of_fixtures, item))
+
+    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """Note a fixed address that the test waits at: two processes cannot have it at the same time."""
+        if event == "socket.bind" and self._address is None:
+            address = arguments[1]
+            is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
+            if not is_chosen:  # by the system, which gives one that nobody else has
+                self._address = f"waits at the address {address!r}"
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """The fixtures of a test are next."""
-        if self.session.trunk is not None:
+        if self.session.fork_parent is not None:
             drop_idle_watchdog(item)
         if self.session.placed.fatal is not None:
             raise self.session.placed.fatal
@@ -204,7 +192,7 @@ class Running:
 
     def _executed(self, evidence: Evidence) -> Executed:
         """What was executed: in a test that a mutant neither reached nor failed, in that test alone."""
-        is_mutant = self.session.job.mutant is not None or self.branch.is_one
+        is_mutant = self.session.job.mutant is not None or self.fork is not None
         return self.units.of_test(alone=is_mutant and not evidence.hits and self._outcome != FAILED)
 
     def _note_failure(self, ending: Ending) -> None:
@@ -275,7 +263,7 @@ class Running:
             prepared=returns.prepared if returns is not None else 0,
             probes=self._reading.values,
             unread=self._reading.unread,
-            exclusive=self.addresses.taken,
+            exclusive=self._address,
             moments=tuple(session.along.entries) if self.session.job.record else (),
             reading=session.rehearsal.seconds,
             not_along=session.rehearsal.why_not,
