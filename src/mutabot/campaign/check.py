@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterator, Sequence
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.choice import try_controls
-from mutabot.campaign.engines.engine import Remainder
+from mutabot.campaign.engines.engine import try_controls
+from mutabot.campaign.engines.fork_parent import Unhandled
 from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.opened import OpenedFiles
@@ -34,8 +34,8 @@ def check(request: Request, progress: Progress) -> CheckReport:
             campaign, _ = begin(request, opened, progress)
         plan = plan_of(request, campaign.baseline)
         mutants = selected(campaign, plan).mutants
-        controls, remainder = try_controls(campaign, mutants)
-    report = _report(campaign, plan, mutants, controls, remainder)
+        controls, unhandled = try_controls(campaign, mutants)
+    report = _report(campaign, plan, mutants, controls, unhandled)
     for name, preview in previews.items():
         lines, data = preview.check(watch.opened)
         report = CheckReport([*report.lines, *lines], {name: data, **report.data})
@@ -54,7 +54,7 @@ def _previews(configuration: Configuration) -> Iterator[tuple[str, Preview]]:
 
 
 def _report(
-    campaign: Campaign, plan: Plan, mutants: list[Mutant], controls: int, remainder: Remainder
+    campaign: Campaign, plan: Plan, mutants: list[Mutant], controls: int, unhandled: Unhandled
 ) -> CheckReport:
     request, baseline = campaign.request, campaign.baseline
     tests = sorted({test for round in range(request.rounds) for test in baseline.ran(round)})
@@ -82,9 +82,9 @@ def _report(
     nowhere = dict(_nowhere(plan, request.families))
     lines += [f"nowhere   {name}: {why}" for name, why in nowhere.items()]
     lines += [f"note      {remark}" for remark in baseline.remarks]
-    lines += [f"replay    {test}: {why}" for test, why in remainder.reasons.items()]
+    lines += [f"replay    {test}: {why}" for test, why in unhandled.reasons.items()]
     data = {
-        "replay": dict(remainder.reasons),
+        "replay": dict(unhandled.reasons),
         "tests": tests,
         "sites": [place.key for place in baseline.places],
         "mutants": len(mutants),

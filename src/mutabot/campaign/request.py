@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, Self
 
+from mutabot.errors import UsageError, unknown_name_text
 from mutabot.execution.interruption import Pause
 from mutabot.execution.task import Executor
 from mutabot.extensions import told_to_processes
@@ -21,6 +22,9 @@ from mutabot.model import Moment, Vocabulary
 from mutabot.model.job import Job
 from mutabot.settings.configuration import Configuration
 from mutabot.settings.options import Sample, Shard
+
+AUTO, BRANCH, REPLAY = "auto", "branch", "replay"
+ENGINES = (BRANCH, REPLAY)
 
 
 class Preview(Protocol):
@@ -124,6 +128,25 @@ class Request:
     other_journal: Path | None = None
     budget: float | None = None
     pause: Pause | None = None
+
+    @property
+    def engines(self) -> tuple[str, ...]:
+        """The engines that it may use, in the order in which they are asked. Raises UsageError if none."""
+        found = tuple(name for name in ENGINES if self.engine in (AUTO, name))
+        if not found:
+            raise UsageError(unknown_name_text("engine", self.engine, (AUTO, *ENGINES)))
+        return found
+
+    @property
+    def forks(self) -> bool:
+        """Whether mutants are forked where they can be."""
+        return BRANCH in self.engines
+
+    @property
+    def repetitions(self) -> int:
+        """How often the baseline runs each round. With forks, their parent is one more run of the
+        original."""
+        return max(1 if self.forks else 2, self.baseline or 0)
 
     @property
     def root(self) -> Path:

@@ -19,13 +19,12 @@ from mutabot import __version__, extensions
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_ranges, refuse_unfit, refuse_unhooked
-from mutabot.campaign.budget import OUT_OF_TIME, run_within
-from mutabot.campaign.campaign import Campaign, Sink, on_this_machine
-from mutabot.campaign.engines.choice import first_engine, repetitions_for, run_mutants
-from mutabot.campaign.engines.confirmation import confirm, decide, earlier_decision
-from mutabot.campaign.engines.repeats import look_again, refuse_flaky
+from mutabot.campaign.budget import OUT_OF_TIME, run_planned
+from mutabot.campaign.campaign import Campaign, OutcomeWriter, on_this_machine
+from mutabot.campaign.engines.confirmation import decide, earlier_decision
+from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import Evidence, recorded, without_recording
-from mutabot.campaign.faults.demanded import apart, demanded_of
+from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, note_outdated, reaching, summaries
 from mutabot.campaign.request import Progress, Request
@@ -33,7 +32,6 @@ from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import Reused, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot, State
-from mutabot.campaign.search import run_ladders
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.since.since import Revision, altered_since, only_altered, open_others
@@ -85,10 +83,7 @@ def begin(
     """
     refuse_typos(request)
     refuse_unhooked(request.vocabulary)
-    baseline, results = take_baseline(
-        request, executor, progress, prepared=prepare(request.project),
-        repetitions=repetitions_for(request), may_share=first_engine(request).may_share,
-    )  # fmt: skip
+    baseline, results = take_baseline(request, executor, progress, prepared=prepare(request.project))
     refuse_unfit(baseline, request.vocabulary)
     note_ranges(baseline, request.vocabulary, progress)
     return Campaign(request, baseline, executor, progress, evidence), results
@@ -196,9 +191,7 @@ def _run(
     if request.fresh:
         journal.forget(mutant.id for mutant in part.mutants)
     if evidence is not None:
-        evidence.begin(
-            [(one.task.key.round, one.task.key.repetition, one.ends) for one in results], whole.mutants
-        )
+        evidence.begin([(*one.task.key, one.ends) for one in results], whole.mutants)
     journal.set_meta(OPERATORS, summaries(plan.mutants))
     journal.set_meta(DRAWS, drawing(plan.mutants))
     journal.set_meta(REACHING, to_data(reaching(baseline, plan.mutants)))
@@ -211,7 +204,7 @@ def _run(
     edited = after.edited_programs(before)
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
-        is_whole = _run_all(campaign, part, Sink(journal), Reused(), started)
+        is_whole = _run_all(campaign, part, OutcomeWriter(journal), Reused(), started)
         return _end(journal, part, request, progress, is_whole=is_whole)
     state = State.now(request, before, after, watch.opened)
     dependencies = Dependencies(request, baseline, _collected(results), state)
@@ -222,9 +215,9 @@ def _run(
     if revision is not None:
         altered = altered_since(revision, campaign, _collected(results), dependencies, part.mutants)
         part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
-    sink = Sink(journal, _key_of(journal, dependencies, plan))
+    writer = OutcomeWriter(journal, _key_of(journal, dependencies, plan))
     try:
-        is_whole = _run_all(campaign, part, sink, found, started)
+        is_whole = _run_all(campaign, part, writer, found, started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole)
@@ -240,7 +233,7 @@ def _end(journal: Journal, part: Plan, request: Request, progress: Progress, *, 
         progress.note(f"nor can it hold {len(journal.unstored) - _UNSTORED} more rows")
     if not is_whole:
         return OUT_OF_TIME
-    alone, _ = apart(part.mutants)  # of ladders, not every mutant is run
+    alone, _ = split_ladders(part.mutants)  # of ladders, not every mutant is run
     is_known = all(known.get(mutant.id, 0) >= request.rounds for mutant in alone)
     return "complete" if is_known and not journal.unstored else INCOMPLETE
 
@@ -264,27 +257,12 @@ def _remember(journal: Journal, opened: Executor) -> None:
             journal.set_meta(REMARKS, list(opened.remarks))
 
 
-def _run_all(campaign: Campaign, plan: Plan, sink: Sink, found: Reused, started: float) -> bool:
-    """All that is not known, as far as there is time for it; returns whether that is all."""
-    request = campaign.request
-    if request.budget is not None:
-        is_whole = run_within(campaign, plan.mutants, sink, found, started + request.budget)
-    else:
-        _run_mutants(campaign, plan, sink, found.done)
-        is_whole = True
+def _run_all(campaign: Campaign, plan: Plan, writer: OutcomeWriter, found: Reused, started: float) -> bool:
+    """Run all that is not known, as far as there is time for it. Returns whether that is all."""
+    is_whole = run_planned(campaign, plan.mutants, writer, found, started)
     if is_whole:
-        look_again(campaign.whole, plan.mutants, sink, request.clock() - started)
+        rerun(campaign.whole, plan.mutants, writer, campaign.request.clock() - started)
     return is_whole
-
-
-def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[str, int]] = ()) -> None:
-    """Every mutant in all rounds, but of ladders what it takes to find their thresholds."""
-    alone, ladders = apart(plan.mutants)
-    run_mutants(campaign, alone, sink, done)
-    confirm(campaign, alone, sink, done)
-    request = campaign.request
-    always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
-    run_ladders(campaign.whole, ladders, sink, done, always)
 
 
 def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
@@ -372,8 +350,9 @@ def _write_beginning(
             "mutabot had not written, or they were damaged: nothing of them is reused"
         )
     for result in results:
+        round, repetition = result.task.key
         for end in result.ends:
-            journal.add_test(result.task.key.round, result.task.key.repetition, without_recording(end))
+            journal.add_test(round, repetition, without_recording(end))
     known = [mutant for mutant, _ in journal.known()]
     carried = carry(known, request, plan.mutants, whole.mutants)
     paths = {file: request.root / file for file in {m.site.span.file for m in (*plan.mutants, *carried)}}
@@ -413,7 +392,7 @@ def _meta(request: Request) -> dict[str, Any]:
         "root": str(request.root),
         "seed": request.seed,
         "rounds": request.rounds,
-        "engine": first_engine(request).name,
+        "engine": request.engines[0],
         "jobs": request.jobs,
         "families": list(request.families),
         "every_test": request.every_test,

@@ -18,8 +18,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
-from mutabot.campaign.campaign import Campaign, Sink
-from mutabot.campaign.engines.choice import run_trials
+from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.faults.demanded import Ladder
 from mutabot.model import Outcome
 from mutabot.model.graded import Seen, bracket_of, seen
@@ -143,7 +143,7 @@ def _outward(row: Mapping[Step, Seen], start: Step, way: int, size: int) -> Step
 def run_ladders(
     campaign: Campaign,
     ladders: Sequence[Ladder],
-    sink: Sink,
+    writer: OutcomeWriter,
     done: Collection[tuple[str, int]] = (),
     always: Mapping[str, Collection[float]] | None = None,
 ) -> None:
@@ -157,7 +157,7 @@ def run_ladders(
     if not ladders:
         return
     kept = {
-        (one.mutant, one.round): one for one in sink.journal.outcomes() if (one.mutant, one.round) in done
+        (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
     }
     sizes = always or {}
     searches = {
@@ -184,7 +184,7 @@ def run_ladders(
         ]:
             found.clear()
             new = [(mutant, round) for *_, mutant, round in trials if (mutant.id, round) not in kept]
-            run_trials(campaign, new, sink, found.append)
+            run_trials(campaign, new, writer, found.append)
             ended = {**kept, **{(one.mutant, one.round): one for one in found}}
             for search, step, mutant, round in trials:
                 outcome = ended.get((mutant.id, round))

@@ -14,7 +14,7 @@ from mutabot.errors import MutabotError
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.event_file import OWN_FAULT
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import Figure, added
+from mutabot.model.outcome import Figure, added, in_words
 
 #: tests of a survivor whose checks are kept
 _MOST_LOOKED = 20
@@ -96,12 +96,15 @@ class Run:
 def judged(campaign: Campaign, run: Run) -> Outcome:
     """The outcome of a run, whose recordings are kept as far as they differ from the original's.
 
-    What goes wrong while it is judged is an error of this mutant, and not the end of the campaign.
+    What goes wrong while it is judged is an error of this mutant, and not the end of the campaign. An outcome
+    with ``beside`` was ended by a limit of wall clock on a busy machine: it is to be run once more alone.
     """
     try:
-        return _judged(campaign, run)
+        outcome = _judged(campaign, run)
     except Exception as error:
         return not_judged(run.mutant, run.round, error, run.engine)
+    beside = f"{in_words(outcome)}; {run.hindered}" if run.hindered is not None else None
+    return replace(outcome, beside=beside)
 
 
 def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:

@@ -27,11 +27,9 @@ from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
-from mutabot.frozen import frozen
 from mutabot.model import Instrumentation, Probe, ProgramText, Span, Vocabulary
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.events import Event, Problem, Remark, TestEnd
-from mutabot.model.job import Job
 from mutabot.model.mutant import Place
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
@@ -149,21 +147,12 @@ def _why_not(probe: Probe, end: TestEnd) -> str | None:
     return None if is_read(probe, end.probes) else _NOTHING
 
 
-REPETITIONS = 2
 _KNOWN_LATER = (
     "at {} sites some tests call an operation and others what nothing tells to be one: it counts there "
     "as one, and the tests are recorded again"
 )
 #: pytest's exit code where tests failed
 _FAILED = 1
-
-
-@frozen
-class _SuiteRun:
-    """Which run of the suite: the key of its task."""
-
-    round: int
-    repetition: int
 
 
 @dataclass(slots=True)
@@ -186,15 +175,16 @@ class _Suite:
     def run(self, tasks: Iterable[Task]) -> None:
         """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
         for result in _told_as_they_come(self.executor.events(tasks), self.progress, self.remarks):
-            run: _SuiteRun = result.task.key
-            self.results[run.round, run.repetition] = result
+            round, repetition = result.task.key
+            self.results[round, repetition] = result
             _refuse(result, self.request.arguments)
-            which = f"round {run.round + 1}, run {run.repetition + 1}"
+            which = f"round {round + 1}, run {repetition + 1}"
             self.progress.advance(f"baseline, {which}: {_counts(result)}")
 
-    def job(self, round: int, **details: Any) -> Job:
-        """A run of the original in a round."""
-        return self.request.job(round, record=True, known=tuple(self.known.items()), **details)
+    def task(self, round: int, repetition: int, **details: Any) -> Task:
+        """A run of the original in a round. With forks, imports and collection are done once for all runs."""
+        job = self.request.job(round, record=True, known=tuple(self.known.items()), **details)
+        return Task((round, repetition), job, startup=300.0, may_share=self.request.forks)
 
     def learns(self) -> bool:
         """Whether the runs so far tell of operations where they did not know of them in all tests."""
@@ -218,21 +208,20 @@ def take_baseline(
     progress: Progress,
     *,
     prepared: Mapping[str, Preparation] | None = None,
-    repetitions: int = REPETITIONS,
-    may_share: bool = False,
+    repetitions: int | None = None,
 ) -> tuple[Baseline, list[Result]]:
     """Run the suite on the original and look at what it does.
 
-    ``prepared`` is what providers of faults want to know, by their names. With one repetition the second run
-    is left to the trunks of the branch engine. ``may_share``: whether imports and collection may be done once
-    for all runs.
+    ``prepared`` is what providers of faults want to know, by their names. ``repetitions``: how often each
+    round is run; as often as the request says, if it is not given. With one, the second run is left to the
+    fork parents.
 
     Returns the baseline and the raw results, first repetitions first.
 
     Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
     tests, BaselineError when tests fail.
     """
-    prepared = prepared or {}
+    prepared, repetitions = prepared or {}, repetitions or request.repetitions
     for note in (note for one in prepared.values() for note in one.notes):
         progress.note(note)
     texts = tuple(text for one in prepared.values() for text in one.texts)
@@ -241,20 +230,17 @@ def take_baseline(
             progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
     progress.stage("baseline", request.rounds * repetitions)
     suite = _Suite(request, executor, progress)
-    suite.run(_tasks(suite, texts, may_share))
+    suite.run(_tasks(suite, texts))
     if suite.learns():
         progress.note(_KNOWN_LATER.format(len(suite.known)))
         suite.remarks.clear()
-        suite.run(_tasks(suite, texts, may_share))
+        suite.run(_tasks(suite, texts))
     strides = suite.strides()
     if repetitions > 1:
-        suite.run(_again(suite, repetitions, strides, may_share))
+        suite.run(_again(suite, repetitions, strides))
     else:  # was it chance, or the round's seed?
         failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
-        suite.run(
-            Task(_SuiteRun(round, 1), suite.job(round), startup=300.0, may_share=may_share)
-            for round in failing
-        )
+        suite.run(suite.task(round, 1) for round in failing)
     baseline = _read(suite, prepared, strides)
     results = suite.results
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
@@ -334,22 +320,18 @@ def _told_as_they_come(
             progress.note(str(event[1]))
 
 
-def _tasks(suite: _Suite, texts: tuple[ProgramText, ...], may_share: bool) -> Iterator[Task]:
+def _tasks(suite: _Suite, texts: tuple[ProgramText, ...]) -> Iterator[Task]:
     """The first run of each round."""
     recording = Instrumentation(texts, record=True) if texts else None
     for round in range(suite.request.rounds):
-        job = suite.job(round, inspect=round == 0, instrumentation=recording)
-        yield Task(_SuiteRun(round, 0), job, startup=300.0, may_share=may_share)
+        yield suite.task(round, 0, inspect=round == 0, instrumentation=recording)
 
 
-def _again(
-    suite: _Suite, repetitions: int, strides: Mapping[tuple[int, str], int], may_share: bool
-) -> Iterator[Task]:
+def _again(suite: _Suite, repetitions: int, strides: Mapping[tuple[int, str], int]) -> Iterator[Task]:
     """Further runs, of the text as it stands: neither looking at it nor probes may change anything."""
     for repetition in range(1, repetitions):
         for round in range(suite.request.rounds):
-            job = suite.job(round, moments=moments_in(strides, round))
-            yield Task(_SuiteRun(round, repetition), job, startup=300.0, may_share=may_share)
+            yield suite.task(round, repetition, moments=moments_in(strides, round))
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:

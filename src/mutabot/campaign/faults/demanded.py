@@ -24,7 +24,7 @@ class Ladder:
     mutants: tuple[Mutant, ...]
 
 
-def apart(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[Ladder]]:
+def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[Ladder]]:
     """The mutants that stand alone, and the ladders."""
     alone: list[Mutant] = []
     found: dict[str, list[Mutant]] = {}
@@ -48,7 +48,7 @@ def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]
     demands, families = project.demands, project.families
     if not demands:
         return [*planted]
-    ladders = apart(one.mutant for one in planted if one.reason is None)[1]
+    ladders = split_ladders(one.mutant for one in planted if one.reason is None)[1]
     wanted = _wanted(ladders, demands, project.vocabulary)
     found = [
         one
@@ -67,7 +67,7 @@ def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]
 
 def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
     """These mutants with an order by which those with sizes come last, ladder by ladder."""
-    _, ladders = apart(one.mutant for one in planted if one.reason is None)
+    _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
     steps = [mutant.id for ladder in ladders for mutant in ladder.mutants]
     order = {mutant: (1, number) for number, mutant in enumerate(steps)}
     return [
