@@ -21,7 +21,7 @@ from mutabot.campaign.baseline.baseline import (
     places_of,
     refused_of,
 )
-from mutabot.campaign.comparison import moments_in, note_moments, strides_of
+from mutabot.campaign.comparison import moments_in, strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
@@ -274,7 +274,9 @@ def _read(
             "one after the other, and what one leaves, others may find. User namespaces would allow it, in a "
             "container --cap-add SYS_ADMIN --security-opt apparmor=unconfined"
         )
-    note_moments(ends, progress)
+    not_along = next((end.not_along for end in ends if end.not_along), None)
+    if not_along is not None:
+        progress.note(f"the probes are read at the ends of tests only, not along the way: {not_along}")
     return baseline
 
 
