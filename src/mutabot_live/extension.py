@@ -9,7 +9,7 @@ EXTENSION = Extension(
     commands={
         "live": Described(
             "mutabot_live.command:live",
-            "Run the campaign and show its report in a browser while it fills, with pause and stop.",
+            "Run the campaign and show its report in a browser while it fills, with a button to stop.",
         )
     },
 )

@@ -95,4 +95,4 @@ def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:
         more = f" and {len(processes) - 1} more" if len(processes) > 1 else ""
         tell(f"tests leave processes running, which are ended with them: {processes[0]}{more}")
 
-    return Workers(request.root, request.arguments, request.jobs, unshared, request.pause, left)
+    return Workers(request.root, request.arguments, request.jobs, unshared, left)

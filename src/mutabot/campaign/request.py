@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from mutabot.errors import UsageError, unknown_name_text
-from mutabot.execution.interruption import Pause
 from mutabot.execution.task import Executor
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
@@ -100,7 +99,6 @@ class Request:
         since: the revision of git from which on changes are looked at; None for no such comparison.
         other_journal: a journal, or the folder of a project, to take outcomes over from beside the own one.
         budget: seconds that the campaign may take; None for no limit.
-        pause: by what the campaign can be paused; None if it cannot.
     """
 
     configuration: Configuration
@@ -127,7 +125,6 @@ class Request:
     since: str | None = None
     other_journal: Path | None = None
     budget: float | None = None
-    pause: Pause | None = None
 
     @property
     def engines(self) -> tuple[str, ...]:
@@ -176,8 +173,8 @@ class Request:
         return self.root / HOME / self.journal
 
     def clock(self) -> float:
-        """Seconds since some moment, bar those of pauses: what the campaign may spend is counted by these."""
-        return time.monotonic() if self.pause is None else self.pause.clock()
+        """Seconds since some moment: what the campaign may spend is counted by these."""
+        return time.monotonic()
 
     def job(self, round: int, **details: Any) -> Job:
         """A job of this campaign in a round."""

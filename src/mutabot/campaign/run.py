@@ -18,7 +18,7 @@ from typing import Any
 from mutabot import __version__, extensions
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.baseline.unfit import note_ranges, refuse_unfit, refuse_unhooked
+from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.budget import OUT_OF_TIME, run_planned
 from mutabot.campaign.campaign import Campaign, OutcomeWriter, on_this_machine
 from mutabot.campaign.engines.confirmation import decide, earlier_decision
@@ -63,7 +63,7 @@ def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
 
     Raises UsageError if the system allows too few open files.
     """
-    provide(request.jobs, served=request.pause is not None)
+    provide(request.jobs)
     with (
         interruptions_kept(),
         at_work(request.journal_path.parent),
@@ -85,7 +85,7 @@ def begin(
     refuse_unhooked(request.vocabulary)
     baseline, results = take_baseline(request, executor, progress, prepared=prepare(request.project))
     refuse_unfit(baseline, request.vocabulary)
-    note_ranges(baseline, request.vocabulary, progress)
+    note_fit(baseline, request.vocabulary, progress)
     return Campaign(request, baseline, executor, progress, evidence), results
 
 

@@ -292,38 +292,32 @@ def usual_environment() -> dict[str, str]:
     }
 
 
-#: for Python, the journal and what is recorded; for pytest with its plug-ins, and the program under test
-_ALWAYS = 128
+#: for Python, the journal and what is recorded; for pytest with its plug-ins, the program under test, a page
+_ALWAYS = 256
 #: for each of ``-j``: a pipe and the process itself, for up to four in its place, and as much to begin them
 _EACH = 16
-#: for a page: its connections, and what is read to answer them
-_PAGE = 128
 
 
-def needed(jobs: int, *, served: bool) -> int:
+def needed(jobs: int) -> int:
     """How many files a campaign may have open at a time."""
-    return _ALWAYS + _EACH * jobs + (_PAGE if served else 0)
+    return _ALWAYS + _EACH * jobs
 
 
-def provide(jobs: int, *, served: bool) -> None:
-    """Raise this process's limit, and with it that of all it starts, if it is too low.
+def provide(jobs: int) -> None:
+    """Raise this process's limit of open files, and with it that of all it starts, if it is too low.
 
     Raises UsageError if the system does not allow that.
     """
-    wanted = needed(jobs, served=served)
+    wanted = needed(jobs)
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if _is_enough(soft, wanted):
+    if soft == resource.RLIM_INFINITY or soft >= wanted:
         return
-    if _is_enough(hard, wanted):
+    if hard == resource.RLIM_INFINITY or hard >= wanted:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
         return
-    fewer = (hard - needed(0, served=served)) // _EACH
+    fewer = (hard - _ALWAYS) // _EACH
     advice = f", or use -j {fewer}" if fewer > 0 else ""
     raise UsageError(
-        f"-j {jobs}{' with a page' if served else ''} needs {wanted} open files at a time, but the system "
-        f"allows {hard} (RLIMIT_NOFILE): raise that limit (`ulimit -Hn {wanted}` as root){advice}"
+        f"-j {jobs} needs {wanted} open files at a time, but the system allows {hard} (RLIMIT_NOFILE): raise "
+        f"that limit (`ulimit -Hn {wanted}` as root){advice}"
     )
-
-
-def _is_enough(limit: int, wanted: int) -> bool:
-    return limit == resource.RLIM_INFINITY or limit >= wanted
