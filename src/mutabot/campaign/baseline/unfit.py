@@ -54,7 +54,7 @@ def refuse_unfit(baseline: Baseline, vocabulary: Vocabulary) -> None:
 
 
 def note_fit(baseline: Baseline, vocabulary: Vocabulary, progress: Progress) -> None:
-    """Tell which probes some tests cannot read, that a clock never ticks, and values that are out of range."""
+    """Tell which probes some tests cannot read, that a clock never ticks, and values out of range."""
     ends = _with_calls(baseline)
     for probe in vocabulary.probes:
         blind = {end.test: why for end in ends if (why := _why_not(probe, end)) is not None}
