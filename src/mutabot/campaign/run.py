@@ -1,4 +1,4 @@
-"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there from the start."""
+"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there at once."""
 
 from __future__ import annotations
 
@@ -78,8 +78,8 @@ def begin(
 ) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
 
-    Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary, and
-    SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
+    Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary,
+    and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
     """
     refuse_typos(request)
     refuse_unhooked(request.vocabulary)

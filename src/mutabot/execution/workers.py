@@ -31,9 +31,17 @@ from types import TracebackType
 from typing import Protocol
 
 from mutabot.errors import JournalError
-from mutabot.execution.forkserver import LOOKS, Copy, ForkServer
 from mutabot.execution.interruption import interruptible
-from mutabot.execution.processes import EventStream, Home, Spawned, compile_us, refuse_full_disk
+from mutabot.execution.processes import (
+    LOOKS,
+    Copy,
+    EventStream,
+    ForkServer,
+    Home,
+    Spawned,
+    compile_us,
+    refuse_full_disk,
+)
 from mutabot.execution.remains import by_mark, claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.task import Result, Task
 from mutabot.model import process_time

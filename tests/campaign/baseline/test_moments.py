@@ -10,7 +10,7 @@ import pytest
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.comparison import Event, Observation, compare, strides_of
 from mutabot.campaign.run import run_campaign
-from mutabot.execution.forkserver import _template
+from mutabot.execution.processes import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary
 from mutabot.model.events import TestEnd
 from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_branches, outcomes, request_for, write_project
