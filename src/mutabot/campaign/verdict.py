@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -141,7 +141,10 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
     verdict, end, message = _ruling(run, baseline.exits[run.round])
     aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
     if aside:
-        verdict, message = Verdict.UNSTABLE, _let_through_without(aside)
+        more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
+        others = f"{aside[0]}{more}, set aside in this round, might not"
+        verdict = Verdict.UNSTABLE
+        message = f"the tests that can be relied on let it through; {others}"
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
     died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
@@ -195,12 +198,6 @@ def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
     return tuple(sorted(found, key=lambda one: not one.acted)[:_MOST_LOOKED])
 
 
-def _let_through_without(aside: Sequence[str]) -> str:
-    more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
-    others = f"{aside[0]}{more}, set aside in this round, might not"
-    return f"the tests that can be relied on let it through; {others}"
-
-
 def _ruling(run: Run, usual: int) -> Ruling:
     """Verdict, the test that decided it, and the reason in words; ``usual``: the suite's exit code."""
     if run.problem is not None:
@@ -232,7 +229,11 @@ def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool
         return Verdict.REFUSED, refused, refused.refused
     if run.exit_code not in (None, usual) and not any(end.outcome == "failed" for end in run.ends):
         return _ruling_on_exit(run.exit_code, usual, acted)
-    return _ruling_on_survivor(run, acted)
+    if acted:
+        return Verdict.SURVIVED, None, None
+    if any(end.hits for end in run.ends):
+        return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
+    return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
 
 
 def _before_death(run: Run) -> list[TestEnd]:
@@ -276,14 +277,6 @@ def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
     if not acted:
         return Verdict.UNSTABLE, None, f"{text}, and the mutant has changed nothing"
     return Verdict.KILLED, None, text
-
-
-def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
-    if acted:
-        return Verdict.SURVIVED, None, None
-    if any(end.hits for end in run.ends):
-        return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
-    return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
 
 
 def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:

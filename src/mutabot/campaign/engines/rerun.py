@@ -197,22 +197,17 @@ class _Reruns:
     def repeat_raced(self, seconds: float) -> None:
         """Run what chance decides several times more. What does not always end alike becomes unstable."""
         until = self.campaign.request.clock() + seconds
-        keys = due = sorted(self.doubts.raced(), key=self.doubts.cost)
+        raced = due = self.doubts.raced()
         repeated, changed = set[Key](), 0
         for _ in range(RACES):
-            for key in due:
-                self.found.pop(key, None)
-            self._run(due, until)
-            looked = [key for key in due if key in self.found]
+            looked = self._run(due, until)
             repeated.update(looked)
             due = [key for key in looked if not self._settle(key)]
             changed += len(looked) - len(due)
-        if keys:
-            left = f"; {len(keys) - len(repeated)} were left" if len(repeated) < len(keys) else ""
-            again = len(repeated) - changed
-            self.campaign.progress.note(
-                f"repeats: {again} of {len(repeated)} ends left to chance are always alike{left}"
-            )
+        if raced:
+            left = f"; {len(raced) - len(repeated)} were left" if len(repeated) < len(raced) else ""
+            again = f"{len(repeated) - changed} of {len(repeated)}"
+            self.campaign.progress.note(f"repeats: {again} ends left to chance are always alike{left}")
 
     def repeat_doubted(self, seconds: float, most: float) -> None:
         """Run the kills in doubt once more, and those which that puts in doubt.
@@ -223,9 +218,7 @@ class _Reruns:
         done, repeated, changed = set(self.doubts.raced()), 0, 0
         while due := [key for key in self.doubts.in_doubt() if key not in done]:
             seconds = max(seconds, most) if changed else seconds
-            new = [key for key in due if key not in self.found]
-            self._run(sorted(new, key=self.doubts.cost), began + seconds)
-            looked = [key for key in due if key in self.found]
+            looked = self._run(due, began + seconds)
             if not looked:
                 break
             done.update(looked)
@@ -235,9 +228,8 @@ class _Reruns:
             self.doubts.unreliable.update(self.doubts.outcomes[key].test or "" for key in wrong)
         if repeated or due:
             left = f"; {len(due)} were left, as repeats may take {seconds:.0f} s" if due else ""
-            self.campaign.progress.note(
-                f"repeats: {repeated - changed} of {repeated} kills in doubt come out again{left}"
-            )
+            again = f"{repeated - changed} of {repeated}"
+            self.campaign.progress.note(f"repeats: {again} kills in doubt come out again{left}")
 
     def summary(self) -> Repeats:
         """How many outcomes of each kind were repeated, and how many of these changed."""
@@ -253,16 +245,22 @@ class _Reruns:
         looked = [key for key in keys if key in self.found]
         return Repeated(len(keys), len(looked), sum(map(self._is_changed, looked)))
 
-    def _run(self, keys: Sequence[Key], until: float | None = None) -> None:
-        """Run these in fresh processes. None begins after ``until`` (``Request.clock``)."""
-        clock = self.campaign.request.clock
+    def _run(self, keys: Sequence[Key], until: float | None = None) -> list[Key]:
+        """Run these in fresh processes, cheapest first. Returns those that were run.
+
+        None begins after ``until`` (``Request.clock``).
+        """
+        clock, looked = self.campaign.request.clock, list[Key]()
         if not keys or (until is not None and clock() >= until):
-            return
+            return looked
         self.campaign.progress.stage("second look", len(keys))
-        runs = ((self.doubts.mutants[mutant], round) for mutant, round in keys)
+        cheapest = sorted(keys, key=self.doubts.cost)
+        runs = ((self.doubts.mutants[mutant], round) for mutant, round in cheapest)
         for outcome in replay(self.campaign, takewhile(lambda _: until is None or clock() < until, runs)):
-            self.found[outcome.mutant, outcome.round] = outcome
+            looked.append((outcome.mutant, outcome.round))
+            self.found[looked[-1]] = outcome
             self.campaign.progress.advance(in_words(outcome))
+        return looked
 
     def _is_changed(self, key: Key) -> bool:
         return self.found[key].verdict is not self.doubts.outcomes[key].verdict
