@@ -89,12 +89,8 @@ def end_abandoned(home: Path) -> int:
 
 def end_below(folder: Path) -> int:
     """End all that was started below workers whose folders are in this one; returns how many there were."""
-    marks = os.fsencode(f"{VARIABLE}={folder}/")
-    ended = 0
-    for process in _processes():
-        entries = [entry for entry in _environment(process) if entry.startswith(marks)]
-        ended += sum(_end(process, entry) for entry in entries)
-    return ended
+    below = [(worker, pid) for worker, pids in by_mark().items() for pid in pids if folder in worker.parents]
+    return sum(_end(pid, _mark(worker)) for worker, pid in below)
 
 
 def _mark(folder: Path) -> bytes:

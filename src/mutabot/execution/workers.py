@@ -220,8 +220,7 @@ class Workers:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
         jobs: how many are at work side by side.
-        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
-        on_left: told once what tests had left running, and was ended.
+        tell: told once why tasks do not begin as copies of a fork server, and what tests leave running.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
@@ -238,8 +237,7 @@ class Workers:
         root: Path,
         arguments: Iterable[str],
         jobs: int,
-        on_unshared: Callable[[str], None] = lambda reason: None,
-        on_left: Callable[[list[str]], None] = lambda left: None,
+        tell: Callable[[str], None] = lambda text: None,
     ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
@@ -248,8 +246,7 @@ class Workers:
         self._workers: list[_Worker] = []
         self._waiting = Waiting(self._jobs)
         self._servers: list[ForkServer] = []
-        self._on_unshared = on_unshared
-        self._on_left, self._has_told_left = on_left, False
+        self._tell, self._has_told_left = tell, False
         self._may_share = True
         self._remains: list[str] = []
         self.pool = TokenPool(self._jobs)
@@ -312,7 +309,8 @@ class Workers:
         """Take in what a process left running, which is told once, and what of it cannot be removed."""
         if left and not self._has_told_left:
             self._has_told_left = True
-            self._on_left(left)
+            more = f" and {len(left) - 1} more" if len(left) > 1 else ""
+            self._tell(f"tests leave processes running, which are ended with them: {left[0]}{more}")
         if remains is not None:
             self._remains.append(remains)
 
@@ -364,7 +362,7 @@ class Workers:
         if reason is None:
             return server
         self._may_share = False
-        self._on_unshared(reason)
+        self._tell(f"each run starts anew, imports and collection included: {reason}")
         self._end_server(server)
         return None
 
