@@ -1,4 +1,4 @@
-"""One mutant of a finished campaign, run again beside what its journal says."""
+"""Run one mutant of a finished campaign again, beside what its journal says."""
 
 from __future__ import annotations
 

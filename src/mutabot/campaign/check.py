@@ -1,4 +1,4 @@
-"""Checking a set-up: all that comes before the first mutant, and what is to be said about it."""
+"""Check a set-up: run all that comes before the first mutant, and report what is found."""
 
 from __future__ import annotations
 

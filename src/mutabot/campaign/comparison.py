@@ -119,25 +119,20 @@ _STRIDES = (1, 4, 16, 64)
 _FULL = 100
 
 
-def strides_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[tuple[int, str], int]:
+def strides_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dict[str, int]]:
     """After every how many commands the probes are read, by round and test; tests without are left out."""
     read = [end for end in ends.values() if end.reading is not None]
     if not read or any(end.not_along for end in ends.values()):
         return {}
     seconds = min(end.reading for end in read if end.reading is not None)
-    found = {}
-    for key, end in ends.items():
+    found: dict[int, dict[str, int]] = {}
+    for (round, test), end in ends.items():
         may_take = max(_LEAST, _SHARE * end.cpu)
         possible = [one for one in _STRIDES if one <= end.commands]
         fitting = [one for one in possible if _readings_at(end.commands, one) * seconds <= may_take]
         if fitting:
-            found[key] = fitting[0]
+            found.setdefault(round, {})[test] = fitting[0]
     return found
-
-
-def moments_in(strides: Mapping[tuple[int, str], int], round: int) -> dict[str, int]:
-    """The strides of a round, by test, for its jobs."""
-    return {test: stride for (where, test), stride in strides.items() if where == round}
 
 
 def _readings_at(commands: int, stride: int) -> int:

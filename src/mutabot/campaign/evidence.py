@@ -1,4 +1,4 @@
-"""What is recorded of a campaign: kept where it differs from the original, and what that says."""
+"""Keep what is recorded of mutants where it differs from the original."""
 
 from __future__ import annotations
 

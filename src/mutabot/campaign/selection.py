@@ -1,4 +1,4 @@
-"""Which of the planned mutants to run.
+"""Select which of the planned mutants to run.
 
 Typing mistakes in ``--only`` and ``--skip`` that are seen without a plan are told before the baseline.
 """

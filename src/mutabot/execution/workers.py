@@ -1,20 +1,16 @@
-"""Worker processes: each runs one job in a fresh Python and tells what it does.
+"""Run tasks in worker processes, and tell what they do.
 
-One thread looks after all of them: it waits for events, for exits and for deadlines, and never for one
-worker alone. Workers are process groups of their own, so that ending one ends all it started.
+One thread looks after all workers: it waits for events, for exits and for deadlines, and never for one worker
+alone. Workers are process groups of their own, so that ending one ends all it started.
 
-Workers that only wait, for what may never come, and who may compute in their place.
+A worker that only waits, for what may never come, lends its place to the next task: what a mutant of a
+message does to a program is often just that. One place at a time stays one place. What counts is what the
+tasks of a worker ask for, not what they get, since a process that gets little of a busy machine is not idle.
+As long as processors are short on the machine, whoever uses them, nothing is lent.
 
-A place that such a worker holds is lent to the next task. What a mutant of a message does to a program is
-often just that: it waits. One place at a time stays one place: whoever asks for no neighbours has none.
-
-Nothing is lent where nobody can tell waiting from being kept waiting: a process that gets little of a busy
-machine is not idle. So what counts is what the tasks of a worker ask for, not what they get; and as long as
-processors are short on the machine, whoever uses them, nothing is lent at all.
-
-Of the token pool this is the controller's side: a pipe with one byte per free token, as many tokens as
-processes may compute. A trunk is started with a token that the controller took for it; from then on it takes
-and gives back by itself and says how many it holds, so that the tokens of a trunk that dies are not lost.
+The token pool is a pipe with one byte per free token, as many tokens as processes may compute. A fork parent
+is started with a token that the controller took for it. From then on it takes and gives back by itself and
+says how many it holds, so that the tokens of one that dies are not lost.
 """
 
 from __future__ import annotations

@@ -164,7 +164,7 @@ def test_the_cost_of_a_reading_decides_how_often() -> None:
         return TestEnd("t", "passed", commands=commands, cpu=cpu, reading=reading, not_along=why)
 
     def stride(*ends: TestEnd) -> int | None:
-        return strides_of({(round, "t"): one for round, one in enumerate(ends)}).get((0, "t"))
+        return strides_of({(round, "t"): one for round, one in enumerate(ends)}).get(0, {}).get("t")
 
     assert stride(end(0.0001)) == 1
     assert stride(end(0.0005)) == 4

@@ -229,7 +229,7 @@ class Baseline(Original):
         unstable: tests set aside as flaky, with the reason, by (round, test).
         flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
         exits: per round, the exit code of the suite on the original.
-        strides: after every how many commands probes are read along the way, by (round, test).
+        strides: after every how many commands probes are read along the way, by round and test.
         refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
         written_through: places that return the robot's own memory, to which the program writes.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
@@ -256,7 +256,7 @@ class Baseline(Original):
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
-    strides: Mapping[tuple[int, str], int] = field(default_factory=dict)
+    strides: Mapping[int, Mapping[str, int]] = field(default_factory=dict)
     refused: dict[tuple[int, str], tuple[RefusedAt, ...]] = field(default_factory=dict)
     written_through: set[Place] = field(default_factory=set)
     restless: set[tuple[int, str]] = field(default_factory=set)

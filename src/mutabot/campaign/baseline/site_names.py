@@ -1,4 +1,4 @@
-"""From spans to sites: the text of a call and its number, as the file's language has them; what is written.
+"""Name the sites at spans, and find the expressions of a file through which something is written.
 
 What a name stands for is taken from all assignments of its function, whichever comes first; of an attribute,
 from those of the file. So more may be found than is written, never less of what stands in one file.

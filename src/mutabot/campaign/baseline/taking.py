@@ -1,4 +1,4 @@
-"""Taking the baseline: the runs of the suite on the original, and what they tell.
+"""Take the baseline: run the suite on the original, and read what it tells.
 
 Tests that fail on the original are an error if they do in every round, and are set aside where they do so in
 some. Each is named with its seed and with the command that makes plain pytest draw the seeds of that round.
@@ -21,7 +21,7 @@ from mutabot.campaign.baseline.baseline import (
     places_of,
     refused_of,
 )
-from mutabot.campaign.comparison import moments_in, strides_of
+from mutabot.campaign.comparison import strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
@@ -192,7 +192,7 @@ def take_baseline(
     )
     if repetitions > 1:  # of the text as it stands: neither looking at it nor probes may change anything
         suite.run(
-            suite.task(round, repetition, moments=moments_in(strides, round))
+            suite.task(round, repetition, moments=strides.get(round, {}))
             for repetition in range(1, repetitions)
             for round in range(request.rounds)
         )
@@ -205,7 +205,7 @@ def take_baseline(
 
 
 def _read(
-    suite: _Suite, prepared: Mapping[str, Preparation], strides: Mapping[tuple[int, str], int]
+    suite: _Suite, prepared: Mapping[str, Preparation], strides: Mapping[int, Mapping[str, int]]
 ) -> Baseline:
     """What all runs tell, and what is to be said about it."""
     request, progress = suite.request, suite.progress

@@ -9,7 +9,6 @@ from typing import Any
 from mutabot.campaign.baseline.baseline import Baseline, observation, places_of
 from mutabot.campaign.baseline.site_names import Sources
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.comparison import moments_in
 from mutabot.campaign.verdict import Death, Run, judged, not_judged
 from mutabot.execution.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
@@ -105,7 +104,7 @@ def job_of(
         record=True,
         reaching=campaign.reaching(mutants, round),
         budgets={test: baseline.budget(round, test, factor) for test in tests},
-        moments=moments_in(baseline.strides, round),
+        moments=baseline.strides.get(round, {}),
         refused=baseline.refused_in(round, tests),
         known=baseline.known,
         **details,
