@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
@@ -53,7 +53,7 @@ _FEW, _SHARE = 2, 0.1
 #: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
 SHARE, SECONDS = 0.05, 2.0
 #: the same once a kill has not come out again, and for what is left to chance
-MOST_SHARE, MOST_SECONDS = 0.2, 10.0
+MOST_SHARE, MOST_SECONDS = 0.1, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
 RACES = 3
 #: seconds for a test of the suite without any mutant
@@ -160,9 +160,7 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
     if request.verify:
         reruns.verify(choose(outcomes.values(), request.verify, request.seed))
     if request.repeats:
-        most = max(MOST_SHARE * spent, MOST_SECONDS)
-        reruns.repeat_raced(most)
-        reruns.repeat_doubted(max(SHARE * spent, SECONDS), most)
+        reruns.repeat(max(SHARE * spent, SECONDS), max(MOST_SHARE * spent, MOST_SECONDS))
     journal.set_meta(REPEATS, to_data(reruns.summary()))
 
 
@@ -194,42 +192,33 @@ class _Reruns:
         self.writer.journal.set_meta(VERIFICATION, to_data(result))
         self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree")
 
-    def repeat_raced(self, seconds: float) -> None:
-        """Run what chance decides several times more. What does not always end alike becomes unstable."""
-        until = self.campaign.request.clock() + seconds
-        raced = due = self.doubts.raced()
-        repeated, changed = set[Key](), 0
-        for _ in range(RACES):
-            looked = self._run(due, until)
-            repeated.update(looked)
-            due = [key for key in looked if not self._settle(key)]
-            changed += len(looked) - len(due)
-        if raced:
-            left = f"; {len(raced) - len(repeated)} were left" if len(repeated) < len(raced) else ""
-            again = f"{len(repeated) - changed} of {len(repeated)}"
-            self.campaign.progress.note(f"repeats: {again} ends left to chance are always alike{left}")
-
-    def repeat_doubted(self, seconds: float, most: float) -> None:
-        """Run the kills in doubt once more, and those which that puts in doubt.
+    def repeat(self, seconds: float, most: float) -> None:
+        """Run what is in doubt once more, and what that puts in doubt; what is left to chance several times.
 
         This takes so many ``seconds``, and at ``most`` as many if one does not come out again.
         """
         began = self.campaign.request.clock()
-        done, repeated, changed = set(self.doubts.raced()), 0, 0
-        while due := [key for key in self.doubts.in_doubt() if key not in done]:
-            seconds = max(seconds, most) if changed else seconds
+        raced, repeated, changed = set(self.doubts.raced()), set[Key](), set[Key]()
+        while due := self._due(raced, changed):
+            seconds = max(seconds, most) if changed or raced else seconds
             looked = self._run(due, began + seconds)
             if not looked:
                 break
-            done.update(looked)
-            repeated += len(looked)
-            wrong = [key for key in looked if self._settle(key)]
-            changed += len(wrong)
-            self.doubts.unreliable.update(self.doubts.outcomes[key].test or "" for key in wrong)
+            repeated.update(looked)
+            wrong = {key for key in looked if self._settle(key)}
+            changed |= wrong
+            self.doubts.unreliable.update(self.doubts.outcomes[key].test or "" for key in wrong - raced)
         if repeated or due:
             left = f"; {len(due)} were left, as repeats may take {seconds:.0f} s" if due else ""
-            again = f"{repeated - changed} of {repeated}"
-            self.campaign.progress.note(f"repeats: {again} kills in doubt come out again{left}")
+            kinds = "kills in doubt and ends left to chance" if raced else "kills in doubt"
+            again = f"{len(repeated) - len(changed)} of {len(repeated)}"
+            self.campaign.progress.note(f"repeats: {again} {kinds} come out again{left}")
+
+    def _due(self, raced: Collection[Key], changed: Collection[Key]) -> list[Key]:
+        """What is to be repeated next."""
+        found = dict.fromkeys([*self.doubts.in_doubt(), *raced])
+        times = {key: RACES if key in raced else 1 for key in found}
+        return [key for key in found if key not in changed and self.times[key] < times[key]]
 
     def summary(self) -> Repeats:
         """How many outcomes of each kind were repeated, and how many of these changed."""
