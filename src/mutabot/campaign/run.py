@@ -183,21 +183,19 @@ def _run(
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
-    preview = request.executor.preview(request.configuration) if request.executor is not None else None
-    if preview is not None and (lacking := preview.lacking(watch.opened)) is not None:
-        progress.note(lacking)  # before anything goes where it lacks
+    _note_lacking(request, watch, progress)
     baseline, decided = campaign.baseline, earlier_decision(journal)
     whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
     part = part_of(plan, request.shard, baseline)
     _write_beginning(campaign, journal, results, plan, whole)
     write_shard(journal, request.shard, part)
+    if request.shard is not None:
+        progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
     if request.fresh:
         journal.forget(mutant.id for mutant in part.mutants)
     if evidence is not None:
         evidence.begin([(*one.task.key, one.ends) for one in results], whole.mutants)
-    if request.shard is not None:
-        progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
     for (round, test), reason in baseline.unstable.items():
         progress.note(f"set aside in round {round + 1}: {test} ({reason})")
     refuse_flaky(request, baseline)
@@ -224,11 +222,23 @@ def _run(
         is_whole = _run_all(campaign, part, writer, found, started)
     finally:
         _forget_if_edited(campaign, journal, dependencies, after)
-    # mutants that the program has no longer are forgotten; of other families nothing is known now
+    _tidy(journal, request, whole)
+    return _end(journal, part, campaign, is_whole=is_whole)
+
+
+def _note_lacking(request: Request, watch: OpenedFiles, progress: Progress) -> None:
+    """Name what tests need and will not have where they run, before anything goes there."""
+    preview = request.executor.preview(request.configuration) if request.executor is not None else None
+    lacking = preview.lacking(watch.opened) if preview is not None else None
+    if lacking is not None:
+        progress.note(lacking)
+
+
+def _tidy(journal: Journal, request: Request, whole: Plan) -> None:
+    """Forget mutants that the program has no longer. Of other families nothing is known now."""
     there = {one.id for one, _ in journal.known()} | {one.id for one in whole.mutants}
     rest = {one for one, _ in journal.kept()} - there
     journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
-    return _end(journal, part, campaign, is_whole=is_whole)
 
 
 def _run_all(campaign: Campaign, plan: Plan, writer: OutcomeWriter, found: Reused, started: float) -> bool:

@@ -129,13 +129,8 @@ def run_ladders(
     kept = {
         (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
     }
-    request, sizes = campaign.request, always or {}
-    searches = {}
-    for ladder in ladders:
-        demanded = sizes.get(ladder.id, ())
-        steps = (step for step, one in enumerate(ladder.mutants) if one.magnitude in demanded)
-        size = len(ladder.mutants)
-        searches[ladder.id] = LadderSearch(size, request.rounds, request.seed, frozenset(steps))
+    request = campaign.request
+    searches = _searches(campaign, ladders, always or {})
     found: list[Outcome] = []
 
     def run(known: range) -> None:
@@ -164,3 +159,15 @@ def run_ladders(
         f"thresholds: {len(ladders)} ladders in {len(rounds)} rounds took {runs} runs; all their magnitudes "
         f"would have taken {whole}"
     )
+
+
+def _searches(
+    campaign: Campaign, ladders: Sequence[Ladder], always: Mapping[str, Collection[float]]
+) -> dict[str, LadderSearch]:
+    found = {}
+    for ladder in ladders:
+        demanded = always.get(ladder.id, ())
+        steps = frozenset(step for step, one in enumerate(ladder.mutants) if one.magnitude in demanded)
+        request, size = campaign.request, len(ladder.mutants)
+        found[ladder.id] = LadderSearch(size, request.rounds, request.seed, steps)
+    return found

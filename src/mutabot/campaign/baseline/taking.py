@@ -168,14 +168,10 @@ def take_baseline(
     tests, BaselineError when tests fail.
     """
     prepared, repetitions = prepared or {}, repetitions or request.repetitions
-    for note in (note for one in prepared.values() for note in one.notes):
-        progress.note(note)
-    texts = tuple(text for one in prepared.values() for text in one.texts)
-    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
-        if family not in (*request.families, *OF_CALLS):
-            progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
+    _note_prepared(request, prepared, progress)
     progress.stage("baseline", request.rounds * repetitions)
     suite = _Suite(request, executor, progress)
+    texts = tuple(text for one in prepared.values() for text in one.texts)
     recording = Instrumentation(texts, record=True) if texts else None
 
     def first_runs() -> Iterator[Task]:
@@ -202,6 +198,14 @@ def take_baseline(
     baseline = _read(suite, prepared, strides)
     results = suite.results
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
+
+
+def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progress: Progress) -> None:
+    for note in (note for one in prepared.values() for note in one.notes):
+        progress.note(note)
+    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
+        if family not in (*request.families, *OF_CALLS):
+            progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
 
 
 def _read(
