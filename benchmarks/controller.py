@@ -32,8 +32,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.campaign import Campaign, Sink
-from mutabot.campaign.engines.choice import run_trials
+from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.evidence import Evidence, recorded, without_recording
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
@@ -221,16 +221,17 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
         campaign, results = begin(request, recorder, Silent(), evidence)
         plan = selected(campaign, plan_of(request, campaign.baseline))
         for result in results:
+            round, repetition = result.task.key
             for end in result.ends:
-                journal.add_test(result.task.key.round, result.task.key.repetition, without_recording(end))
+                journal.add_test(round, repetition, without_recording(end))
         if evidence is not None:
-            runs = [(one.task.key.round, one.task.key.repetition, one.ends) for one in results]
+            runs = [(*one.task.key, one.ends) for one in results]
             evidence.begin(runs, plan.mutants)
         state = State.now(request, before, Snapshot.take(root, before), None)
         dependencies = Dependencies(request, campaign.baseline, state)
         recorder.told.clear()
         began = time.monotonic()
-        run_trials(campaign, [(one, 0) for one in plan.mutants], Sink(journal))
+        run_trials(campaign, [(one, 0) for one in plan.mutants], OutcomeWriter(journal))
         took = time.monotonic() - began
         by_hand = {(one.mutant, one.round): one.verdict for one in journal.outcomes()}
         return _play(
@@ -265,7 +266,7 @@ def _play(
         journal.add_parts(dependencies.new_parts())
         return key
 
-    sink = Sink(journal, key_of)
+    sink = OutcomeWriter(journal, key_of)
     profile = cProfile.Profile() if given.profile else None
     if profile is not None:
         profile.enable()

@@ -42,9 +42,8 @@ from rich.table import Table
 
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.engine import Remainder, Trial
-from mutabot.campaign.engines.fork_parent import Trunks
-from mutabot.campaign.engines.fresh import replay
+from mutabot.campaign.engines.fork_parent import ForkParents, Unhandled
+from mutabot.campaign.engines.isolated_run import MutantRun, replay
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected
@@ -203,12 +202,12 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
     return Row(example, engine, len(outcomes), wall, cpu, simulated, peak, bound)
 
 
-def run_pairs(engine: str, campaign: Campaign, trials: list[Trial]) -> Iterator[Outcome]:
+def run_pairs(engine: str, campaign: Campaign, trials: list[MutantRun]) -> Iterator[Outcome]:
     """All outcomes; what a trunk could not do is replayed, as in a campaign."""
     if engine == "branch":
-        left = Remainder()
-        yield from Trunks(campaign, left, engine).run(trials)
-        yield from replay(campaign, left.trials)
+        left = Unhandled()
+        yield from ForkParents(campaign, left).run(trials)
+        yield from replay(campaign, left.runs)
         return
     if engine == "fresh":
         baseline = campaign.baseline

@@ -54,13 +54,12 @@ class Cluster:
 
     Attributes:
         home, link, roster: who runs what.
-        pause: as in ``Request``.
     """
 
     def __init__(
         self, request: Request, settings: ClusterSettings, home: Workers, tell: Callable[[str], None]
     ) -> None:
-        self.home, self.tell, self.pause = home, tell, request.pause
+        self.home, self.tell = home, tell
         self._request, self._settings = request, settings
         self._versions = versions()
         self._ground: Ground | None = None

@@ -101,9 +101,6 @@ class Dispatch:
         return None
 
     def _assign(self) -> None:
-        pause = self._cluster.pause
-        if pause is not None and pause.is_on:
-            return
         busy = {worker for worker, _ in self._running.values()}
         idle = [worker for worker in self._cluster.roster.fit if worker not in busy]
         while idle and (trial := self._due()) is not None:

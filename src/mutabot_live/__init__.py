@@ -1,1 +1,1 @@
-"""The report of a campaign that runs, served to browsers on this machine, with pause and stop."""
+"""The report of a campaign that runs, served to browsers on this machine, with a button to stop."""

@@ -1,6 +1,6 @@
 """``mutabot live``: a campaign with a page.
 
-What it tells goes to the terminal and to browsers, which can pause and stop it.
+What it tells goes to the terminal and to browsers, which can stop it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import signal
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Annotated, Any, Self, Unpack
@@ -22,7 +21,6 @@ from mutabot.cli import options
 from mutabot.cli.campaign import show_end
 from mutabot.cli.output import tell
 from mutabot.cli.request import request_of
-from mutabot.execution.interruption import Pause
 from mutabot.report.terminal.progress import Pace
 from mutabot.report.texts import legible
 
@@ -49,11 +47,11 @@ class Live:
 
     def __init__(self, request: Request, port: int, tell: Callable[[str], None]) -> None:
         self._request, self._tell = request, tell
-        self._feed, self._pause = Feed(), Pause()
-        self._told = _Told(self._feed, self._pause)
+        self._feed = Feed()
+        self._told = _Told(self._feed)
         pages = Pages(request.journal_path, request.root.resolve().name, lambda: self._told.steps)
         self._told.pages = pages
-        commands = {"pause": self._begin_pause, "resume": self._end_pause, "stop": _stop}
+        commands = {"stop": _stop}
         self._server = Server(pages, self._feed, commands, port)
 
     @property
@@ -78,13 +76,12 @@ class Live:
         finally:
             self._feed.close()
             self._server.close()
-            self._pause.__exit__(kind, error, trace)
 
     def run(self, progress: Progress) -> Path:
         """The campaign; like ``run_campaign``."""
         self._told.progress = progress
         try:
-            path = run_campaign(replace(self._request, pause=self._pause), self._told)
+            path = run_campaign(self._request, self._told)
         except BaseException as error:
             self._told.end("interrupted" if isinstance(error, KeyboardInterrupt) else str(error))
             raise
@@ -99,16 +96,6 @@ class Live:
     def _wait(self, until: float | None, seconds: float) -> None:
         while self._feed.is_listened_to(seconds) and (until is None or time.monotonic() < until):
             time.sleep(_TICK)
-
-    def _begin_pause(self) -> None:
-        if not self._told.ended and self._pause.begin():
-            self._told.note("paused from the page: what is at work ends, nothing new begins")
-            self._told.tell()
-
-    def _end_pause(self) -> None:
-        if self._pause.end():
-            self._told.note("going on")
-            self._told.tell()
 
 
 def _stop() -> None:
@@ -130,10 +117,10 @@ class _Told:
 
     pages: Pages
 
-    def __init__(self, feed: Feed, pause: Pause) -> None:
-        self._feed, self._pause = feed, pause
+    def __init__(self, feed: Feed) -> None:
+        self._feed = feed
         self._lock = threading.Lock()
-        self._stage, self._line, self._pace = "", "", Pace(clock=pause.clock)
+        self._stage, self._line, self._pace = "", "", Pace()
         self.progress: Progress | None = None
         self.steps, self.ended = 0, ""
 
@@ -141,7 +128,7 @@ class _Told:
         """A new stage begins."""
         if self.progress is not None:
             self.progress.stage(text, total)
-        self._stage, self._line, self._pace = text, "", Pace(total, self._pause.clock)
+        self._stage, self._line, self._pace = text, "", Pace(total)
         self.steps += 1
         self.tell()
 
@@ -177,7 +164,6 @@ class _Told:
                 "done": pace.done,
                 "total": pace.total,
                 "left": None if pace.left is None else round(pace.left, 1),
-                "paused": self._pause.is_on,
                 "ended": self.ended,
                 "version": self.steps,
                 "every": self.pages.every,
@@ -199,7 +185,7 @@ def live(
     executor: tuple[str, str] | None = None,
     **given: Unpack[options.Running],
 ) -> None:
-    """Run the campaign and show its report in a browser while it fills, with pause and stop."""
+    """Run the campaign and show its report in a browser while it fills, with a button to stop."""
     request = request_of(context.obj, executor=executor, evidence=True, **given)
     with Live(request, port or 0, lambda text: tell([f"mutabot: {text}"])) as served:
         tell([f"mutabot: live at {served.address}"])

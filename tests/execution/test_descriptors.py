@@ -48,14 +48,14 @@ SLOW = [pytest.param((one, "-j", "2"), marks=pytest.mark.whole) for one in ("che
 def test_too_few_are_refused_before_anything_runs(tmp_path: Path, words: tuple[str, ...]) -> None:
     code, err = command(tmp_path, 24, 24, *words)
     assert code == ExitCode.USAGE
-    assert f"-j 2 needs {needed(2, served=False)} open files at a time, but the system allows 24" in err
+    assert f"-j 2 needs {needed(2)} open files at a time, but the system allows 24" in err
     assert not (tmp_path / "tests" / "was_run").exists()
     assert not (tmp_path / ".mutabot" / "crash.txt").exists()
 
 
 @pytest.mark.whole
 def test_fewer_jobs_are_advised_where_they_would_do(tmp_path: Path) -> None:
-    most = needed(3, served=False) + 1
+    most = needed(3) + 1
     code, err = command(tmp_path, 24, most, "run", "-j", "500")
     assert code == ExitCode.USAGE
     advised = re.search(r"or use -j (\d+)", err)
@@ -66,5 +66,5 @@ def test_fewer_jobs_are_advised_where_they_would_do(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("engine", ["branch", REPLAY])
 def test_a_low_limit_is_raised_as_far_as_it_may_be_and_that_is_enough(tmp_path: Path, engine: str) -> None:
-    code, err = command(tmp_path, 24, needed(2, served=False), "run", "-j", "2", "--engine", engine)
+    code, err = command(tmp_path, 24, needed(2), "run", "-j", "2", "--engine", engine)
     assert code == ExitCode.FINE, err

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.run import run_campaign
-from mutabot.execution import forkserver, workers
+from mutabot.execution import workers
 from mutabot.execution import workers as waiting
 from mutabot.execution.interruption import interruptible, interruptions_kept
 from mutabot.journal.journal import Journal
@@ -137,8 +137,8 @@ MOMENTS = {
     "the pool has been made": (waiting.TokenPool, "__init__"),
     "a worker's folder has been made": (workers.Home, "make"),
     "a worker has been started": (workers.Spawned, "__init__"),
-    "a fork server has been started": (forkserver.ForkServer, "__init__"),
-    "a copy has been made": (forkserver.ForkServer, "copy"),
+    "a fork server has been started": (workers.ForkServer, "__init__"),
+    "a copy has been made": (workers.ForkServer, "copy"),
     "a worker is being looked after for the last time": (workers._Worker, "finish"),
     "the journal has been opened": (Journal, "__init__"),
 }

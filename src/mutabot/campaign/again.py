@@ -1,4 +1,4 @@
-"""One mutant of a finished campaign, run again beside what its journal says."""
+"""Run one mutant of a finished campaign again, beside what its journal says."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.repeats import Looker
+from mutabot.campaign.engines.isolated_run import replay
 from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import open_executor, plan_of
@@ -19,6 +19,7 @@ from mutabot.journal.journal import JournalReader
 from mutabot.journal.records import Replayed
 from mutabot.model import Mutant
 from mutabot.model.mutant import Place
+from mutabot.model.outcome import in_words
 
 
 def replay_one(
@@ -31,13 +32,14 @@ def replay_one(
     rounds = sorted(set(rounds))
     first = {(one.mutant, one.round): one for one in journal.outcomes()}
     with anew(request, mutant, rounds[-1], progress) as (campaign, now):
-        looker = Looker(campaign)
         for _ in run_controls(campaign, [now]):
             pass
-        trials = [(now, round) for round in rounds]
-        progress.stage("replay", len(trials))
-        looker.run(trials)
-    return [Replayed(round, first.get((now.id, round)), looker.found[now.id, round]) for round in rounds]
+        progress.stage("replay", len(rounds))
+        second = {}
+        for outcome in replay(campaign, [(now, round) for round in rounds]):
+            second[outcome.round] = outcome
+            progress.advance(in_words(outcome))
+    return [Replayed(round, first.get((now.id, round)), second[round]) for round in rounds]
 
 
 @contextmanager

@@ -1,15 +1,14 @@
 """A campaign under way: what is asked, what is known of the original, who runs tasks, and who is told.
 
-It is made once the baseline is taken, and goes as one to all that give mutants their outcomes. These go into
+It is made once the baseline is taken, and all that give mutants their outcomes work on it. Outcomes go into
 the journal, each with the key of what it depends on.
-
-Worker processes on this machine.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.site_names import Sources
@@ -34,10 +33,9 @@ class Campaign:
         executor: runs tasks.
         progress: is told what is going on.
         evidence: what is recorded; None if nothing is.
-        proven: engines, each with a way into the program that controls have proven: see ``Control.way``.
+        proven: ways of running that controls have proven: an engine and ``Control.way``.
         is_short: whether mutants are run without tests that do not reach them, see ``engines.confirmation``.
         again: outcomes that were found so, and are to be found with the whole suite before they count.
-        sources: names the sites that workers report.
     """
 
     request: Request
@@ -45,13 +43,14 @@ class Campaign:
     executor: Executor
     progress: Progress
     evidence: Evidence | None = None
-    proven: set[tuple[str, tuple[str, str, bool, int]]] = field(default_factory=set)
+    proven: set[tuple[str, str, str, bool]] = field(default_factory=set)
     is_short: bool = False
     again: list[Outcome] = field(default_factory=list)
-    sources: Sources = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "sources", Sources(self.request.root))
+    @cached_property
+    def sources(self) -> Sources:
+        """Names the sites that workers report."""
+        return Sources(self.request.root)
 
     @property
     def whole(self) -> Campaign:
@@ -68,13 +67,9 @@ class Campaign:
         }
 
 
-def _no_key(outcome: Outcome) -> str:
-    return ""
-
-
 @frozen
-class Sink:
-    """The journal of a campaign, for whoever finds outcomes.
+class OutcomeWriter:
+    """Writes outcomes into the journal of a campaign.
 
     Attributes:
         journal: where they go.
@@ -83,7 +78,7 @@ class Sink:
     """
 
     journal: Journal
-    key_of: Callable[[Outcome], str] = _no_key
+    key_of: Callable[[Outcome], str] = lambda outcome: ""
 
     def add_outcome(self, outcome: Outcome) -> None:
         """Add one outcome; a later one of the same mutant and round takes its place."""
@@ -92,12 +87,4 @@ class Sink:
 
 def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:
     """As many processes as the request has ``jobs``. Raises JournalError where it cannot write."""
-
-    def unshared(reason: str) -> None:
-        tell(f"each run starts anew, imports and collection included: {reason}")
-
-    def left(processes: list[str]) -> None:
-        more = f" and {len(processes) - 1} more" if len(processes) > 1 else ""
-        tell(f"tests leave processes running, which are ended with them: {processes[0]}{more}")
-
-    return Workers(request.root, request.arguments, request.jobs, unshared, request.pause, left)
+    return Workers(request.root, request.arguments, request.jobs, tell)

@@ -1,21 +1,19 @@
-"""Comparing how a test ended as a mutant with how it ended as the original.
+"""Compare how a test ended as a mutant with how it ended as the original.
 
-Probes are read along the way of a test too, as often as they cost next to nothing; they are compared at
-moments that mutant and original have in common.
-
-Comparing orientations by the angle between them, and single angles modulo a full turn.
+Orientations are compared by the angle between them, and single angles modulo a full turn. Probes are read
+along the way of a test too, as often as they cost next to nothing. They are compared at the moments that
+mutant and original have in common.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any
 
-from mutabot.campaign.request import Progress
 from mutabot.frozen import frozen
-from mutabot.model import Compared, Operation, Path, Probe, Quantity
+from mutabot.model import Compared, Operation, Pattern, Probe, Quantity
 from mutabot.model.events import TestEnd
 from mutabot.model.outcome import Figure
 from mutabot.model.quantity import is_number, told_apart, value_text
@@ -26,86 +24,41 @@ Command = tuple[str, str | None]
 _PARTS = (("w", "x", "y", "z"), ("x", "y", "z"))
 
 
-@frozen
-class Turned:
-    """Two values of one orientation or angle.
-
-    Attributes:
-        name: the part of the probe.
-        keys: the values it consists of.
-        before, after: as they were read.
-        angle: how far they are apart, in the quantity's unit (radians for a quaternion).
-        unit: that unit.
-    """
-
-    name: str
-    keys: tuple[str, ...]
-    before: Any
-    after: Any
-    angle: float
-    unit: str
+def _angles_of(operations: Sequence[Operation]) -> dict[Command, dict[str, Quantity]]:
+    """The orientations and angles among the values of each command, by name."""
+    owners: list[tuple[Command, Operation | Pattern]] = [((one.target, None), one) for one in operations]
+    owners += [((one.target, pattern.text), pattern) for one in operations for pattern in one.patterns]
+    return {
+        command: {
+            one.name: one
+            for one in (*owner.arguments, *owner.result)
+            if one.is_whole or one.full_turn is not None
+        }
+        for command, owner in owners
+    }
 
 
-class Angles:
-    """The orientations and angles among the values of operations."""
-
-    def __init__(self, operations: Sequence[Operation]) -> None:
-        self._known: dict[Command, dict[str, Quantity]] = {}
-        for operation in operations:
-            self._add((operation.target, None), (*operation.arguments, *operation.result))
-            for pattern in operation.patterns:
-                self._add((operation.target, pattern.text), (*pattern.arguments, *pattern.result))
-
-    def of(self, command: Command) -> Mapping[str, Quantity]:
-        """Those of one command, by name."""
-        return self._known.get(command, {})
-
-    def _add(self, command: Command, quantities: Sequence[Quantity]) -> None:
-        found = {one.name: one for one in quantities if one.is_whole or one.full_turn is not None}
-        if found:
-            self._known[command] = found
-
-
-def angle_between(quantity: Quantity, before: Any, after: Any) -> float | None:
+def _angle_between(quantity: Quantity | None, before: Any, after: Any) -> float | None:
     """How far two values of a quantity are apart as orientations or angles; None if they are none."""
-    if quantity.is_whole:
+    if quantity is not None and quantity.is_whole:
         first, second = quantity.orientation(before), quantity.orientation(after)
         return quantity.from_unit(distance(first, second), "rad") if first and second else None
-    turn = quantity.full_turn
+    turn = quantity.full_turn if quantity is not None else None
     if turn is None or not (is_number(before) and is_number(after)):
         return None
     return apart(before, after, turn)
 
 
-def values_apart(
-    before: Any, after: Any, quantities: Mapping[str, Quantity], other: Callable[[Any, Any], float]
-) -> float:
-    """The greatest distance of two sets of values by quantity; ``other`` is that of all other values."""
-    if not quantities or not isinstance(before, Mapping) or not isinstance(after, Mapping):
-        return other(before, after)
+def _values_apart(before: Any, after: Any, angles: Mapping[str, Quantity]) -> float:
+    """The greatest distance of two sets of values by quantity."""
+    if not angles or not isinstance(before, Mapping) or not isinstance(after, Mapping):
+        return _distance(before, after)
     distances = []
     for name in {*before, *after}:
-        angle = None
-        if name in quantities:
-            angle = angle_between(quantities[name], before.get(name), after.get(name))
-        distances.append(other(before.get(name), after.get(name)) if angle is None else angle)
+        pair = before.get(name), after.get(name)
+        angle = _angle_between(angles.get(name), *pair)
+        distances.append(_distance(*pair) if angle is None else angle)
     return max(distances, default=0.0)
-
-
-def turned_parts(
-    original: Mapping[str, Any], mutant: Mapping[str, Any], probes: Sequence[Probe]
-) -> Iterator[Turned]:
-    """The orientations and angles in two readings of the probes, as far as both have them."""
-    for probe in probes:
-        for name in readings_of(probe, original) if probe.result else ():
-            for quantity in probe.result:
-                keys = _keys(name, quantity, original)
-                if not keys or not all(key in original and key in mutant for key in keys):
-                    continue
-                before, after = (_value(quantity, keys, values) for values in (original, mutant))
-                angle = angle_between(quantity, before, after)
-                if angle is not None:
-                    yield Turned(f"{name}{quantity.path}", keys, before, after, angle, quantity.unit or "rad")
 
 
 def _value(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any]) -> Any:
@@ -132,7 +85,7 @@ def readings_of(probe: Probe, values: Mapping[str, Any]) -> list[str]:
 
 def _keys(name: str, quantity: Quantity, values: Mapping[str, Any]) -> tuple[str, ...]:
     """The flat values that a quantity consists of, in its order; none if they are not there."""
-    path: Path = quantity.path
+    path = quantity.path
     bounds = path.steps[-1].bounds if path.steps else None
     steps = path.steps[:-1] if bounds is not None else path.steps
     base = name + "".join(
@@ -166,32 +119,20 @@ _STRIDES = (1, 4, 16, 64)
 _FULL = 100
 
 
-def strides_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[tuple[int, str], int]:
+def strides_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dict[str, int]]:
     """After every how many commands the probes are read, by round and test; tests without are left out."""
     read = [end for end in ends.values() if end.reading is not None]
     if not read or any(end.not_along for end in ends.values()):
         return {}
     seconds = min(end.reading for end in read if end.reading is not None)
-    found = {}
-    for key, end in ends.items():
+    found: dict[int, dict[str, int]] = {}
+    for (round, test), end in ends.items():
         may_take = max(_LEAST, _SHARE * end.cpu)
         possible = [one for one in _STRIDES if one <= end.commands]
         fitting = [one for one in possible if _readings_at(end.commands, one) * seconds <= may_take]
         if fitting:
-            found[key] = fitting[0]
+            found.setdefault(round, {})[test] = fitting[0]
     return found
-
-
-def moments_in(strides: Mapping[tuple[int, str], int], round: int) -> dict[str, int]:
-    """The strides of a round, by test, for its jobs."""
-    return {test: stride for (where, test), stride in strides.items() if where == round}
-
-
-def note_moments(ends: Iterable[TestEnd], progress: Progress) -> None:
-    """Say once why probes are not read along the way."""
-    why = next((end.not_along for end in ends if end.not_along), None)
-    if why is not None:
-        progress.note(f"the probes are read at the ends of tests only, not along the way: {why}")
 
 
 def _readings_at(commands: int, stride: int) -> int:
@@ -298,18 +239,16 @@ def compare(
     if probes and not (original.probes or mutant.probes or original.unread or mutant.unread):
         gaps = ("no probe reads anything",)
     tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
-    trace_line = _first_difference(original, mutant, tolerance, Angles(operations))
+    trace_line = _first_difference(original, mutant, tolerance, _angles_of(operations))
     returned_line = _returned_difference(original, mutant, probes)
     distances = [distance for distance, _ in probe_lines]
     different = [line for distance, line in probe_lines if distance > 1.0]
 
     way, way_line, moments = _on_the_way(original, mutant, probes)
-    lines = [
-        *_outcome_lines(original, mutant),
-        *different,
-        *([way_line] if (way or 0.0) > 1.0 else []),
-        *filter(None, [returned_line, trace_line]),
-    ]
+    is_same_end = original.outcome == mutant.outcome
+    end_line = "" if is_same_end else f"the test ended {mutant.outcome} instead of {original.outcome}"
+    way_line = way_line if (way or 0.0) > 1.0 else ""
+    lines = [one for one in (end_line, *different, way_line, returned_line, trace_line) if one]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
@@ -394,12 +333,6 @@ def farthest(comparisons: Sequence[Difference]) -> Difference:
     return Difference(together, distance, tuple(lines), gaps, way, compared)
 
 
-def _outcome_lines(original: Observation, mutant: Observation) -> list[str]:
-    if original.outcome == mutant.outcome:
-        return []
-    return [f"the test ended {mutant.outcome} instead of {original.outcome}"]
-
-
 def _probe_differences(
     original: Observation, mutant: Observation, probes: Sequence[Probe]
 ) -> list[tuple[float, str]]:
@@ -408,11 +341,19 @@ def _probe_differences(
         (OTHER_WORLD, f"{_short(target)}: {_readable(original, mutant, target)}")
         for target in sorted(original.unread.keys() ^ mutant.unread.keys())
     ]
-    turned = list(turned_parts(original.probes, mutant.probes, probes))
-    for one in turned:
-        distance = one.angle / _tolerance(one.name, probes)
-        found.append((min(distance, OTHER_WORLD), f"{_short(one.name)}: {_turn(one)}"))
-    done = {key for one in turned for key in one.keys}
+    done: set[str] = set()
+    for name, quantity in _parts(original.probes, probes):
+        keys = _keys(name, quantity, original.probes)
+        if not keys or not all(key in original.probes and key in mutant.probes for key in keys):
+            continue
+        before, after = (_value(quantity, keys, values) for values in (original.probes, mutant.probes))
+        angle = _angle_between(quantity, before, after)
+        if angle is not None:
+            done.update(keys)
+            part = f"{name}{quantity.path}"
+            shown = " instead of ".join(told_apart(after, before, value_text, 4))
+            text = f"{_short(part)}: {shown} (turned by {angle:.3g} {quantity.unit or 'rad'})"
+            found.append((min(angle / _tolerance(part, probes), OTHER_WORLD), text))
     for key in dict.fromkeys([*original.probes, *mutant.probes]):
         if key in done or any(key == target or _lies_below(key, target) for target in unread):
             continue
@@ -420,6 +361,14 @@ def _probe_differences(
         distance = _distance(before, after) / _tolerance(key, probes)
         found.append((min(distance, OTHER_WORLD), f"{_short(key)}: {_change(before, after)}"))
     return sorted(found, key=lambda item: -item[0])
+
+
+def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple[str, Quantity]]:
+    """The quantities of the readings among some values, with the names of the readings."""
+    for probe in probes:
+        for name in readings_of(probe, values) if probe.result else ():
+            for quantity in probe.result:
+                yield name, quantity
 
 
 def _figures(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> Iterator[Figure]:
@@ -469,16 +418,21 @@ def _distance(before: Any, after: Any) -> float:
 
 
 def _first_difference(
-    original: Observation, mutant: Observation, tolerance: float, angles: Angles
+    original: Observation,
+    mutant: Observation,
+    tolerance: float,
+    angles: Mapping[Command, Mapping[str, Quantity]],
 ) -> str | None:
     for index, (before, after) in enumerate(zip(original.events, mutant.events, strict=False), start=1):
         if before.key != after.key:
             return f"call {index}: {after.key} instead of {before.key}"
-        known = angles.of(before.what)
-        if values_apart(before.written, after.written, known, _distance) > tolerance:
-            return f"call {index}, {after.key}: wrote {_change(before.written, after.written)}"
-        if values_apart(before.read, after.read, known, _distance) > tolerance:
-            return f"call {index}, {after.key}: read {_change(before.read, after.read)}"
+        known = angles.get(before.what, {})
+        for verb, was, is_now in (
+            ("wrote", before.written, after.written),
+            ("read", before.read, after.read),
+        ):
+            if _values_apart(was, is_now, known) > tolerance:
+                return f"call {index}, {after.key}: {verb} {_change(was, is_now)}"
     more = len(mutant.events) - len(original.events)
     if more == 0 or original.truncated or mutant.truncated:
         return None
@@ -504,20 +458,20 @@ def _returned_difference(original: Observation, mutant: Observation, probes: Seq
     what was returned to fixtures is from those that the test has alone.
     """
     tolerance = min((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
-    if original.prepared is not None and mutant.prepared is not None:
-        pairs = zip(original.prepared[::-1], mutant.prepared[::-1], strict=False)
-        for before, after in [*pairs][::-1]:
-            if not _is_same(before, after, tolerance):
-                return _returned_text(before, after)
-    if original.returned is None or mutant.returned is None:
+    first, second = original.prepared, mutant.prepared
+    common = min(len(first), len(second)) if first is not None and second is not None else 0
+    pairs = [*zip(first[-common:], second[-common:], strict=True)] if first and second and common else []
+    before, after = original.returned, mutant.returned
+    if before is not None and after is not None:
+        pairs += zip(before, after, strict=False)
+    for was, is_now in pairs:
+        if not _is_same(was, is_now, tolerance):
+            return _returned_text(was, is_now)
+    if before is None or after is None or len(before) == len(after):
         return None
-    for before, after in zip(original.returned, mutant.returned, strict=False):
-        if not _is_same(before, after, tolerance):
-            return _returned_text(before, after)
-    more, fewer = mutant.returned[len(original.returned) :], original.returned[len(mutant.returned) :]
-    if more:
-        return f"{_event_text(*more[0])} only with the mutant"
-    return f"{_event_text(*fewer[0])} only in the original" if fewer else None
+    if len(after) > len(before):
+        return f"{_event_text(*after[len(before)])} only with the mutant"
+    return f"{_event_text(*before[len(after)])} only in the original"
 
 
 def _is_same(before: Any, after: Any, tolerance: float) -> bool:
@@ -562,8 +516,3 @@ def _change(before: Any, after: Any) -> str:
     if is_number(before) and is_number(after):
         return f"{text} (off by {abs(float(after) - float(before)):.3g})"
     return text
-
-
-def _turn(one: Turned) -> str:
-    text = " instead of ".join(told_apart(one.after, one.before, value_text, 4))
-    return f"{text} (turned by {one.angle:.3g} {one.unit})"

@@ -1,4 +1,4 @@
-"""What is recorded of a campaign: kept where it differs from the original, and what that says."""
+"""Keep what is recorded of mutants where it differs from the original."""
 
 from __future__ import annotations
 
@@ -53,18 +53,13 @@ class Evidence:
         self.recordings.keep_only({mutant.id for mutant in mutants})
         for round, repetition, ends in sorted(runs, key=lambda run: run[:2]):
             if repetition == 0:
-                self._add_original(round, ends)
-            else:
-                for end in ends:
+                self.recordings.forget(ORIGINAL, round)  # what an earlier campaign recorded makes way
+            for end in ends:
+                if repetition:
                     self.add_again(round, end)
-
-    def _add_original(self, round: int, ends: Iterable[TestEnd]) -> None:
-        """What an earlier campaign recorded of the original makes way."""
-        self.recordings.forget(ORIGINAL, round)
-        for end in ends:
-            if end.recording is not None:
-                self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, bytes_of(end.recording))
-                self.problems.update(dict.fromkeys(_seen(end).recording.problems))
+                elif end.recording is not None:
+                    self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, bytes_of(end.recording))
+                    self.problems.update(dict.fromkeys(_seen(end).recording.problems))
 
     def add_again(self, round: int, end: TestEnd) -> None:
         """A further run of the original: how far things are apart without any fault."""

@@ -12,7 +12,7 @@ from typing import Any, Protocol, Self
 
 from mutabot.config.configuration import Configuration
 from mutabot.config.options import Sample, Shard
-from mutabot.execution.interruption import Pause
+from mutabot.errors import UsageError, unknown_name_text
 from mutabot.execution.task import Executor
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
@@ -21,6 +21,9 @@ from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.model.job import Job
+
+AUTO, BRANCH, REPLAY = "auto", "branch", "replay"
+ENGINES = (BRANCH, REPLAY)
 
 
 class Preview(Protocol):
@@ -96,7 +99,6 @@ class Request:
         since: the revision of git from which on changes are looked at; None for no such comparison.
         other_journal: a journal, or the folder of a project, to take outcomes over from beside the own one.
         budget: seconds that the campaign may take; None for no limit.
-        pause: by what the campaign can be paused; None if it cannot.
     """
 
     configuration: Configuration
@@ -123,7 +125,25 @@ class Request:
     since: str | None = None
     other_journal: Path | None = None
     budget: float | None = None
-    pause: Pause | None = None
+
+    @property
+    def engines(self) -> tuple[str, ...]:
+        """The engines that it may use, in the order in which they are asked. Raises UsageError if none."""
+        found = tuple(name for name in ENGINES if self.engine in (AUTO, name))
+        if not found:
+            raise UsageError(unknown_name_text("engine", self.engine, (AUTO, *ENGINES)))
+        return found
+
+    @property
+    def forks(self) -> bool:
+        """Whether mutants are forked where they can be."""
+        return BRANCH in self.engines
+
+    @property
+    def repetitions(self) -> int:
+        """How often the baseline runs each round. With forks, their parent is one more run of the
+        original."""
+        return max(1 if self.forks else 2, self.baseline or 0)
 
     @property
     def root(self) -> Path:
@@ -153,8 +173,8 @@ class Request:
         return self.root / HOME / self.journal
 
     def clock(self) -> float:
-        """Seconds since some moment, bar those of pauses: what the campaign may spend is counted by these."""
-        return time.monotonic() if self.pause is None else self.pause.clock()
+        """Seconds since some moment: what the campaign may spend is counted by these."""
+        return time.monotonic()
 
     def job(self, round: int, **details: Any) -> Job:
         """A job of this campaign in a round."""

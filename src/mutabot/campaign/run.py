@@ -1,7 +1,4 @@
-"""The campaign: baseline, plan, what still holds, controls, engine; and the journal from the first moment.
-
-How a campaign begins: an executor, the baseline, and the mutants that were asked for.
-"""
+"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there at once."""
 
 from __future__ import annotations
 
@@ -9,7 +6,7 @@ import errno
 import platform
 import time
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -18,14 +15,13 @@ from typing import Any
 from mutabot import __version__, extensions
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.baseline.unfit import note_ranges, refuse_unfit, refuse_unhooked
-from mutabot.campaign.budget import OUT_OF_TIME, run_within
-from mutabot.campaign.campaign import Campaign, Sink, on_this_machine
-from mutabot.campaign.engines.choice import first_engine, repetitions_for, run_mutants
-from mutabot.campaign.engines.confirmation import confirm, decide, earlier_decision
-from mutabot.campaign.engines.repeats import look_again, refuse_flaky
+from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
+from mutabot.campaign.budget import OUT_OF_TIME, run_planned
+from mutabot.campaign.campaign import Campaign, OutcomeWriter, on_this_machine
+from mutabot.campaign.engines.confirmation import decide, earlier_decision
+from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import Evidence, recorded, without_recording
-from mutabot.campaign.faults.demanded import apart, demanded_of
+from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
 from mutabot.campaign.request import Progress, Request
@@ -33,7 +29,6 @@ from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import Reused, note_outdated, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot, State
-from mutabot.campaign.search import run_ladders
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.since.since import Revision, altered_since, only_altered, open_others
@@ -49,6 +44,9 @@ from mutabot.model.codec import to_data
 
 #: remarks that are told where there are no mutants
 _REMARKS = 8
+#: rows that could not be stored, as far as they are told one by one
+#: what else decides how a campaign ends, beside the user's own files
+_VERSIONS = ("pytest", "wrapt", "pytest-bdd")
 
 
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
@@ -64,7 +62,7 @@ def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
 
     Raises UsageError if the system allows too few open files.
     """
-    provide(request.jobs, served=request.pause is not None)
+    provide(request.jobs)
     with (
         interruptions_kept(),
         at_work(request.journal_path.parent),
@@ -78,18 +76,14 @@ def begin(
 ) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
 
-    Raises what ``take_baseline`` raises, ConfigurationError for orientations that the original lacks and for
-    names on a middleware where none is installed, and SelectionError for words of ``--only`` and ``--skip``
-    that cannot mean anything.
+    Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary,
+    and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
     """
     refuse_typos(request)
     refuse_unhooked(request.vocabulary)
-    baseline, results = take_baseline(
-        request, executor, progress, prepared=prepare(request.project),
-        repetitions=repetitions_for(request), may_share=first_engine(request).may_share,
-    )  # fmt: skip
+    baseline, results = take_baseline(request, executor, progress, prepared=prepare(request.project))
     refuse_unfit(baseline, request.vocabulary)
-    note_ranges(baseline, request.vocabulary, progress)
+    note_fit(baseline, request.vocabulary, progress)
     return Campaign(request, baseline, executor, progress, evidence), results
 
 
@@ -111,8 +105,8 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
         raise NothingToDoError("the selection leaves no mutant to run")
     if request.sample is None:
         return Plan(mutants, plan.left_out)
-    drawn, drawing = draw(mutants, request.seed, request.sample)
-    return Plan(drawn, plan.left_out, drawing)
+    drawn, how = draw(mutants, request.seed, request.sample)
+    return Plan(drawn, plan.left_out, how)
 
 
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
@@ -120,17 +114,25 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
     if reasons:
         reason, count = reasons.most_common(1)[0]
         return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
-    if not baseline.hits:
-        files = ", ".join((*request.configuration.program, *request.configuration.oracle))
-        lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
-        shown = [str(remark) for remark in baseline.remarks[:_REMARKS]]
-        more = len(baseline.remarks) - len(shown)
-        return "\n".join([*lines, *shown, *([f"… and {more} more"] if more > 0 else [])])
-    return f"no mutants: all {len(plan.left_out)} would change nothing"
+    if baseline.hits:
+        return f"no mutants: all {len(plan.left_out)} would change nothing"
+    files = ", ".join((*request.configuration.program, *request.configuration.oracle))
+    lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
+    lines += [str(remark) for remark in baseline.remarks[:_REMARKS]]
+    more = len(baseline.remarks) - _REMARKS
+    return "\n".join([*lines, *([f"… and {more} more"] if more > 0 else [])])
 
 
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "pytest-bdd")
+
+
+def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
+    """Take the baseline and plan, without running a mutant."""
+    with at_it(request, progress) as opened:
+        campaign, _ = begin(request, opened, progress)
+    plan = selected(campaign, plan_of(request, campaign.baseline))
+    return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
 
 
 def run_campaign(request: Request, progress: Progress) -> Path:
@@ -142,10 +144,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
     Raises ConfigurationError, BaselineError, NothingToDoError, ControlError, JournalError.
     """
     started = request.clock()
-    with (
-        interruptions_kept(),
-        Journal.prepare(request.journal_path, meta=_meta(request)) as journal,
-    ):
+    with interruptions_kept(), Journal.prepare(request.journal_path, meta=_meta(request)) as journal:
         try:
             with (
                 _disk_told(request),
@@ -157,12 +156,15 @@ def run_campaign(request: Request, progress: Progress) -> Path:
                 try:
                     end = _run(request, opened, progress, journal, others, evidence)
                 finally:
-                    _remember(journal, opened)
+                    if opened.remarks:
+                        with suppress(JournalError):
+                            journal.set_meta(REMARKS, list(opened.remarks))
             journal.set_meta("seconds", request.clock() - started)
             journal.finish(end)
         except BaseException as error:
+            is_stopped = isinstance(error, KeyboardInterrupt)
             with suppress(JournalError):  # on a full disk not even this can be written
-                journal.finish(_reason(error))
+                journal.finish("interrupted" if is_stopped else f"{type(error).__name__}: {error}")
             raise
         finally:
             _note_others(journal, progress)
@@ -183,33 +185,29 @@ def _run(
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
-    _note_lacking(request, watch.opened, progress)
+    _note_lacking(request, watch, progress)
     baseline, decided = campaign.baseline, earlier_decision(journal)
     whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
     part = part_of(plan, request.shard, baseline)
-    _write_beginning(journal, request, results, plan, whole, progress)
+    _write_beginning(campaign, journal, results, plan, whole)
     write_shard(journal, request.shard, part)
+    if request.shard is not None:
+        progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
     if request.fresh:
         journal.forget(mutant.id for mutant in part.mutants)
     if evidence is not None:
-        evidence.begin(
-            [(one.task.key.round, one.task.key.repetition, one.ends) for one in results], whole.mutants
-        )
-    journal.set_meta(OPERATORS, summaries(plan.mutants))
-    journal.set_meta(DRAWS, drawing(plan.mutants))
-    journal.set_meta(REACHING, to_data(reaching(baseline, plan.mutants)))
-    if request.shard is not None:
-        progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
-    _note_unstable(baseline, progress)
+        evidence.begin([(*one.task.key, one.ends) for one in results], whole.mutants)
+    for (round, test), reason in baseline.unstable.items():
+        progress.note(f"set aside in round {round + 1}: {test} ({reason})")
     refuse_flaky(request, baseline)
     campaign = decide(campaign, plan.mutants, journal, decided)
     after = Snapshot.take(request.root, before)
     edited = after.edited_programs(before)
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
-        is_whole = _run_all(campaign, part, Sink(journal), Reused(), started)
-        return _end(journal, part, request, progress, is_whole=is_whole)
+        is_whole = _run_all(campaign, part, OutcomeWriter(journal), Reused(), started)
+        return _end(journal, part, campaign, is_whole=is_whole)
     state = State.now(request, before, after, watch.opened)
     dependencies = Dependencies(request, baseline, state)
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
@@ -219,22 +217,45 @@ def _run(
     if revision is not None:
         altered = altered_since(revision, campaign, dependencies, found, part.mutants)
         part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
-    sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
-        is_whole = _run_all(campaign, part, sink, found, started)
+        writer = OutcomeWriter(journal, _key_of(journal, dependencies, plan))
+        is_whole = _run_all(campaign, part, writer, found, started)
     finally:
-        _forget_if_edited(request, journal, progress, dependencies, after)
-    _tidy(request, journal, whole)
-    return _end(journal, part, request, progress, is_whole=is_whole)
+        _forget_if_edited(campaign, journal, dependencies, after)
+    _tidy(journal, request, whole)
+    return _end(journal, part, campaign, is_whole=is_whole)
 
 
-def _end(journal: Journal, part: Plan, request: Request, progress: Progress, *, is_whole: bool) -> str:
+def _note_lacking(request: Request, watch: OpenedFiles, progress: Progress) -> None:
+    """Name what tests need and will not have where they run, before anything goes there."""
+    preview = request.executor.preview(request.configuration) if request.executor is not None else None
+    lacking = preview.lacking(watch.opened) if preview is not None else None
+    if lacking is not None:
+        progress.note(lacking)
+
+
+def _tidy(journal: Journal, request: Request, whole: Plan) -> None:
+    """Forget mutants that the program has no longer. Of other families nothing is known now."""
+    there = {one.id for one, _ in journal.known()} | {one.id for one in whole.mutants}
+    rest = {one for one, _ in journal.kept()} - there
+    journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
+
+
+def _run_all(campaign: Campaign, plan: Plan, writer: OutcomeWriter, found: Reused, started: float) -> bool:
+    """Run all that is not known, as far as there is time for it. Returns whether that is all."""
+    is_whole = run_planned(campaign, plan.mutants, writer, found, started)
+    if is_whole:
+        rerun(campaign.whole, plan.mutants, writer, campaign.request.clock() - started)
+    return is_whole
+
+
+def _end(journal: Journal, part: Plan, campaign: Campaign, *, is_whole: bool) -> str:
     """How the campaign has ended, by what is in the journal."""
     known = journal.rounds_known()
     if not is_whole:
         return OUT_OF_TIME
-    alone, _ = apart(part.mutants)  # of ladders, not every mutant is run
-    is_known = all(known.get(mutant.id, 0) >= request.rounds for mutant in alone)
+    alone, _ = split_ladders(part.mutants)  # of ladders, not every mutant is run
+    is_known = all(known.get(mutant.id, 0) >= campaign.request.rounds for mutant in alone)
     return "complete" if is_known else INCOMPLETE
 
 
@@ -248,43 +269,6 @@ def _note_others(journal: Journal, progress: Progress) -> None:
         )
     for line in journal.altered:
         progress.note(f"the journal was changed by something else and was restored: {line}")
-
-
-def _remember(journal: Journal, opened: Executor) -> None:
-    """Write down what readers are to know of where tasks ran."""
-    if opened.remarks:
-        with suppress(JournalError):
-            journal.set_meta(REMARKS, list(opened.remarks))
-
-
-def _run_all(campaign: Campaign, plan: Plan, sink: Sink, found: Reused, started: float) -> bool:
-    """All that is not known, as far as there is time for it; returns whether that is all."""
-    request = campaign.request
-    if request.budget is not None:
-        is_whole = run_within(campaign, plan.mutants, sink, found, started + request.budget)
-    else:
-        _run_mutants(campaign, plan, sink, found.done)
-        is_whole = True
-    if is_whole:
-        look_again(campaign.whole, plan.mutants, sink, request.clock() - started)
-    return is_whole
-
-
-def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[str, int]] = ()) -> None:
-    """Every mutant in all rounds, but of ladders what it takes to find their thresholds."""
-    alone, ladders = apart(plan.mutants)
-    run_mutants(campaign, alone, sink, done)
-    confirm(campaign, alone, sink, done)
-    request = campaign.request
-    always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
-    run_ladders(campaign.whole, ladders, sink, done, always)
-
-
-def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
-    """Forget mutants that the program has no longer; of other families nothing is known now."""
-    there = {mutant.id for mutant, _ in journal.known()} | {mutant.id for mutant in whole.mutants}
-    rest = {mutant for mutant, _ in journal.kept()} - there
-    journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
 
 
 def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callable[[Outcome], str]:
@@ -303,12 +287,14 @@ def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callabl
 
 
 def _forget_if_edited(
-    request: Request, journal: Journal, progress: Progress, dependencies: Dependencies, after: Snapshot
+    campaign: Campaign, journal: Journal, dependencies: Dependencies, after: Snapshot
 ) -> None:
     """Outcomes that may come from two versions of a file are not reused."""
-    edited = Snapshot.take(request.root, after).edited_since(dependencies.files)
+    edited = Snapshot.take(campaign.request.root, after).edited_since(dependencies.files)
     if edited:
-        progress.note(f"{_listed(edited)} changed while mutants ran: what was found will not be reused")
+        campaign.progress.note(
+            f"{_listed(edited)} changed while mutants ran: what was found will not be reused"
+        )
         with suppress(JournalError):
             journal.forget_keys()
 
@@ -326,85 +312,61 @@ def _disk_told(request: Request) -> Iterator[None]:
     except OSError as error:
         if error.errno not in {errno.ENOSPC, errno.EDQUOT, errno.EROFS}:
             raise
-        home = request.journal_path.parent
-        text = (
-            f"{error.filename or home} cannot be written: {error.strerror}; what was written before is kept"
-        )
+        where = error.filename or request.journal_path.parent
+        text = f"{where} cannot be written: {error.strerror}; what was written before is kept"
         raise JournalError(text, path=str(request.journal_path)) from error
 
 
-def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
-    """Baseline and plan, without running a mutant."""
-    with at_it(request, progress) as opened:
-        campaign, _ = begin(request, opened, progress)
-    plan = selected(campaign, plan_of(request, campaign.baseline))
-    return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
-
-
 def _write_beginning(
-    journal: Journal,
-    request: Request,
-    results: Sequence[Result],
-    plan: Plan,
-    whole: Plan,
-    progress: Progress,
+    campaign: Campaign, journal: Journal, results: Sequence[Result], plan: Plan, whole: Plan
 ) -> None:
     """From here on the journal is that of this campaign."""
+    request, note = campaign.request, campaign.progress.note
     journal.begin(_meta(request))
     if journal.moved is not None:
-        progress.note(
+        note(
             "the journal of before was damaged or written by another version of mutabot: it is kept as "
             f"{journal.moved.name}, and every mutant is run again"
         )
     if journal.set_aside:
         count = len(journal.set_aside)
-        progress.note(
+        note(
             f"{count} {'row' if count == 1 else 'rows'} in the journal, such as {journal.set_aside[0]}, "
             "mutabot had not written, or they were damaged: nothing of them is reused"
         )
     for result in results:
+        round, repetition = result.task.key
         for end in result.ends:
-            journal.add_test(result.task.key.round, result.task.key.repetition, without_recording(end))
-    known = [mutant for mutant, _ in journal.known()]
-    carried = carry(known, request, plan.mutants, whole.mutants)
-    paths = {file: request.root / file for file in {m.site.span.file for m in (*plan.mutants, *carried)}}
+            journal.add_test(round, repetition, without_recording(end))
+    carried = carry([one for one, _ in journal.known()], request, plan.mutants, whole.mutants)
+    files = {mutant.site.span.file for mutant in (*plan.mutants, *carried)}
     sources = {
         file: path.read_text(encoding="utf-8", errors="replace")
-        for file, path in paths.items()
-        if path.is_file()
+        for file in files
+        if (path := request.root / file).is_file()
     }
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
         journal.set_meta(DRAWING, to_data(plan.drawing))
-
-
-def _note_lacking(request: Request, opened: Collection[str] | None, progress: Progress) -> None:
-    """Name what tests need and will not have where they run, before anything goes there."""
-    preview = request.executor.preview(request.configuration) if request.executor is not None else None
-    missed = preview.lacking(opened) if preview is not None else None
-    if missed is not None:
-        progress.note(missed)
-
-
-def _note_unstable(baseline: Baseline, progress: Progress) -> None:
-    for (round, test), reason in baseline.unstable.items():
-        progress.note(f"set aside in round {round + 1}: {test} ({reason})")
-
-
-def _reason(error: BaseException) -> str:
-    return "interrupted" if isinstance(error, KeyboardInterrupt) else f"{type(error).__name__}: {error}"
+    journal.set_meta(OPERATORS, summaries(plan.mutants))
+    journal.set_meta(DRAWS, drawing(plan.mutants))
+    journal.set_meta(REACHING, to_data(reaching(campaign.baseline, plan.mutants)))
 
 
 def _meta(request: Request) -> dict[str, Any]:
+    versions = {}
+    for name in (*_VERSIONS, *extensions.versions()):
+        with suppress(PackageNotFoundError):
+            versions[name] = version(name)
     return {
         "mutabot": __version__,
         "python": platform.python_version(),
-        "versions": _versions(),
+        "versions": versions,
         "root": str(request.root),
         "seed": request.seed,
         "rounds": request.rounds,
-        "engine": first_engine(request).name,
+        "engine": request.engines[0],
         "jobs": request.jobs,
         "families": list(request.families),
         "every_test": request.every_test,
@@ -412,13 +374,3 @@ def _meta(request: Request) -> dict[str, Any]:
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
     }
-
-
-def _versions() -> dict[str, str]:
-    found = {}
-    for name in (*_VERSIONS, *extensions.versions()):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return found

@@ -1,13 +1,12 @@
-"""Finding detection thresholds with as few runs as they take.
+"""Find detection thresholds with as few runs as they take.
 
-The first round of a ladder is bisected. Each later one begins with both ends of its bracket; where they
-disagree with it, the search gallops outward by 1, 2, 4 … steps (Bentley and Yao 1976) and bisects inside.
-What bisection runs always fits some threshold, so it can never see a larger fault that is missed: one more
-run a round, the guard, looks elsewhere. It is the largest magnitude first, then whichever was run least
-often. At the first violation the whole ladder is run in all rounds.
+The first round of a ladder is bisected. Each later one begins with both ends of its bracket, and is bisected
+where these disagree with it. What bisection runs always fits some threshold, so it can never see a larger
+fault that is missed: one more run a round, the guard, looks elsewhere. It is the largest magnitude first,
+then whichever was run least often. At the first violation the whole ladder is run in all rounds.
 
 A magnitude that the robot refuses bounds the search like one that is noticed. One that says nothing is passed
-over. All ladders of a campaign are searched at once, in waves, so that one trunk serves the faults of a
+over. All ladders of a campaign are searched at once, in waves, so that one fork parent serves the faults of a
 round. The first round comes first; the others, which begin with what it found, run side by side.
 """
 
@@ -18,8 +17,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
-from mutabot.campaign.campaign import Campaign, Sink
-from mutabot.campaign.engines.choice import run_trials
+from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.faults.demanded import Ladder
 from mutabot.model import Outcome
 from mutabot.model.graded import Seen, bracket_of, seen
@@ -66,35 +65,18 @@ class LadderSearch:
         always = self.always & left
         if always:
             return set(always)
-        guess = self._guess(round)
-        wanted = self._first(row) if guess is None else self._carried(row, guess)
+        ends = {step for step in self._guess(round) if 0 <= step < self.size}
+        wanted = (ends - row.keys()) or _middle(row, *_ends(row, self.size))
         if wanted:
             return wanted & left
         return self._guard(round, row, left)
 
-    def _guess(self, round: int) -> tuple[Step, Step] | None:
-        """The bracket of the first round; None in that round itself, and if it knows nothing."""
+    def _guess(self, round: int) -> tuple[Step, ...]:
+        """Both ends of the bracket of the first round; none in that round itself, or if it knows nothing."""
         row = self.found.get(0, {})
         if round == 0 or not any(one.is_valid for one in row.values()):
-            return None
+            return ()
         return _ends(row, self.size)
-
-    def _first(self, row: Mapping[Step, Seen]) -> set[Step]:
-        low, high = _ends(row, self.size)
-        return _middle(row, low, high)
-
-    def _carried(self, row: Mapping[Step, Seen], guess: tuple[Step, Step]) -> set[Step]:
-        low, high = guess
-        ends = {step for step in guess if 0 <= step < self.size}
-        if not ends <= row.keys():
-            return ends
-        below, above = _ends(row, self.size)
-        further = None
-        if above <= low and below < 0:  # noticed where the other round missed it
-            further = _outward(row, low, -1, self.size)
-        elif below >= high and above >= self.size:  # missed where the other round noticed it
-            further = _outward(row, high, 1, self.size)
-        return {further} if further is not None else _middle(row, below, above)
 
     def _guard(self, round: int, row: Mapping[Step, Seen], left: set[Step]) -> set[Step]:
         """One magnitude more, the first time that nothing else is left to ask."""
@@ -128,22 +110,10 @@ def _middle(row: Mapping[Step, Seen], low: Step, high: Step) -> set[Step]:
     return {between[len(between) // 2]} if between else set()
 
 
-def _outward(row: Mapping[Step, Seen], start: Step, way: int, size: int) -> Step | None:
-    """The next step of a gallop: 1, 2, 4 … further than the last that was run; None if it is at its end."""
-    reach, at = 1, start
-    while True:
-        at = min(max(at + way * reach, 0), size - 1)
-        if at not in row:
-            return at
-        if at in (0, size - 1):
-            return None
-        reach *= 2
-
-
 def run_ladders(
     campaign: Campaign,
     ladders: Sequence[Ladder],
-    sink: Sink,
+    writer: OutcomeWriter,
     done: Collection[tuple[str, int]] = (),
     always: Mapping[str, Collection[float]] | None = None,
 ) -> None:
@@ -157,21 +127,10 @@ def run_ladders(
     if not ladders:
         return
     kept = {
-        (one.mutant, one.round): one for one in sink.journal.outcomes() if (one.mutant, one.round) in done
+        (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
     }
-    sizes = always or {}
-    searches = {
-        ladder.id: LadderSearch(
-            len(ladder.mutants),
-            campaign.request.rounds,
-            campaign.request.seed,
-            frozenset(
-                step for step, one in enumerate(ladder.mutants) if one.magnitude in sizes.get(ladder.id, ())
-            ),
-        )
-        for ladder in ladders
-    }
-
+    request = campaign.request
+    searches = _searches(campaign, ladders, always or {})
     found: list[Outcome] = []
 
     def run(known: range) -> None:
@@ -184,14 +143,14 @@ def run_ladders(
         ]:
             found.clear()
             new = [(mutant, round) for *_, mutant, round in trials if (mutant.id, round) not in kept]
-            run_trials(campaign, new, sink, found.append)
+            run_trials(campaign, new, writer, found.append)
             ended = {**kept, **{(one.mutant, one.round): one for one in found}}
             for search, step, mutant, round in trials:
                 outcome = ended.get((mutant.id, round))
                 if outcome is not None:
                     search.take(round, step, seen(outcome))
 
-    rounds = range(campaign.request.rounds)
+    rounds = range(request.rounds)
     run(rounds[:1])
     run(rounds)
     whole = len(rounds) * sum(len(ladder.mutants) for ladder in ladders)
@@ -200,3 +159,15 @@ def run_ladders(
         f"thresholds: {len(ladders)} ladders in {len(rounds)} rounds took {runs} runs; all their magnitudes "
         f"would have taken {whole}"
     )
+
+
+def _searches(
+    campaign: Campaign, ladders: Sequence[Ladder], always: Mapping[str, Collection[float]]
+) -> dict[str, LadderSearch]:
+    found = {}
+    for ladder in ladders:
+        demanded = always.get(ladder.id, ())
+        steps = frozenset(step for step, one in enumerate(ladder.mutants) if one.magnitude in demanded)
+        request, size = campaign.request, len(ladder.mutants)
+        found[ladder.id] = LadderSearch(size, request.rounds, request.seed, steps)
+    return found

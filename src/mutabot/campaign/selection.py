@@ -1,4 +1,4 @@
-"""Which of the planned mutants to run.
+"""Select which of the planned mutants to run.
 
 Typing mistakes in ``--only`` and ``--skip`` that are seen without a plan are told before the baseline.
 """
@@ -6,9 +6,7 @@ Typing mistakes in ``--only`` and ``--skip`` that are seen without a plan are to
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from functools import cached_property
-from itertools import chain
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from mutabot.campaign.faults.providers import operators_of_packages
@@ -42,35 +40,47 @@ def select(
 
     Raises SelectionError for anything that fits no mutant, nor one that the plan leaves out.
     """
-    only, skip, left_out = list(only), list(skip), list(left_out)
     set_aside = [item.id for item in left_out]
-    chosen = list(mutants) if selection_file is None else _from_file(selection_file, mutants, set_aside)
+    chosen = list(mutants)
+    if selection_file is not None:
+        wanted = _from_file(selection_file, chosen, set_aside)
+        chosen = [mutant for mutant in chosen if mutant.id in wanted]
+    only = list(only)
     wanted = _fitting(only, chosen, set_aside, "--only") if only else {mutant.id for mutant in chosen}
     wanted -= _fitting(skip, chosen, set_aside, "--skip")
     return [mutant for mutant in chosen if mutant.id in wanted]
 
 
-def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> list[Mutant]:
+def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> set[str]:
     """The mutants that a selection file names. Raises SelectionError."""
-    found: set[str] = set()
-    unknown: list[str] = []
+    patterns = _patterns(file, {*(mutant.id for mutant in mutants), *set_aside})
+    return _fitting(patterns, mutants, set_aside, str(file), lambda word, mutant: is_like(word, mutant.id))
+
+
+def _fitting(
+    patterns: Iterable[str],
+    mutants: Sequence[Mutant],
+    set_aside: Sequence[str],
+    source: str,
+    fits_one: Callable[[str, Mutant], bool] = fits,
+) -> set[str]:
+    """The ids of the mutants that words name. Raises SelectionError for words that fit nothing."""
     ids = {mutant.id for mutant in mutants}
-    for pattern in _patterns(file, ids | {*set_aside}):
-        if pattern in ids:  # as nearly all are, be there thousands; an id may hold signs that are wild
+    found: set[str] = set()
+    unknown = []
+    for pattern in patterns:
+        if pattern in ids:  # as nearly all of a file are, be there thousands; an id may hold wild signs
             found.add(pattern)
-            continue
-        here = {one for one in ids if is_like(pattern, one)}
-        if not here and not any(is_like(pattern, other) for other in set_aside):
-            unknown.append(pattern)
-        found |= here
+        elif pattern.startswith("@") and fits_one is fits:
+            found |= _from_file(Path(pattern[1:]), mutants, set_aside)
+        else:
+            here = {mutant.id for mutant in mutants if fits_one(pattern, mutant)}
+            if not here and not any(is_like(pattern, other) for other in set_aside):
+                unknown.append(pattern)
+            found |= here
     if unknown:
-        raise nothing_fits(str(file), unknown, [*(mutant.id for mutant in mutants), *set_aside])
-    return [mutant for mutant in mutants if mutant.id in found]
-
-
-def _of_id(pattern: str, mutants: Sequence[Mutant]) -> list[Mutant]:
-    """The mutant with exactly this id, which may hold signs that are wild elsewhere."""
-    return [mutant for mutant in mutants if mutant.id == pattern]
+        raise nothing_fits(source, unknown, [*_names(mutants), *set_aside])
+    return found
 
 
 def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
@@ -86,24 +96,6 @@ def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
             pattern = re.split(r"(?:^|\s)#", line, maxsplit=1)[0].strip()
         if pattern:
             yield pattern
-
-
-def _fitting(
-    patterns: Iterable[str], mutants: Sequence[Mutant], set_aside: Sequence[str], option: str
-) -> set[str]:
-    found: set[str] = set()
-    unknown = []
-    for pattern in patterns:
-        if pattern.startswith("@"):
-            found |= {mutant.id for mutant in _from_file(Path(pattern[1:]), mutants, set_aside)}
-            continue
-        here = {mutant.id for mutant in _of_id(pattern, mutants) or mutants if fits(pattern, mutant)}
-        if not here and not any(is_like(pattern, other) for other in set_aside):
-            unknown.append(pattern)
-        found |= here
-    if unknown:
-        raise nothing_fits(option, unknown, _names(mutants))
-    return found
 
 
 def _names(mutants: Sequence[Mutant]) -> list[str]:
@@ -129,68 +121,40 @@ def _shown(pattern: str) -> str:
     return repr(pattern if len(pattern) <= _LONGEST else f"{pattern[:_LONGEST]}…")
 
 
-_WILD = re.compile(r"[*?]")
-
-
 def refuse_typos(request: Request) -> None:
-    """Raises SelectionError for words that cannot fit a mutant of this project, whatever its plan is."""
-    known = _Known(request)
-    mistakes = [
-        nothing_fits(option, unknown, known.words)
-        for option, words in (("--only", request.only), ("--skip", request.skip))
-        if (unknown := [word for word in words if not known.may_fit(word)])
-    ]
+    """Raise SelectionError for words that cannot fit a mutant of this project, whatever its plan is."""
+    sources = (*request.configuration.program, *request.configuration.oracle)
+    files = program_files(request.root, sources)
+    names = [*registry.names(), *known_families(), *(role.value for role in Role)]
+    mistakes = []
+    for option, words in (("--only", request.only), ("--skip", request.skip)):
+        unknown = [word for word in words if not _may_fit(word, request.root, files, names)]
+        if unknown:
+            mistakes.append(nothing_fits(option, unknown, [*names, *operators_of_packages(), *files]))
     if mistakes:
-        raise SelectionError(
-            "\n".join(map(str, mistakes)),
-            unknown=chain.from_iterable(mistake.unknown for mistake in mistakes),
-        )
+        text = "\n".join(map(str, mistakes))
+        raise SelectionError(text, unknown=[word for mistake in mistakes for word in mistake.unknown])
 
 
-class _Known:
-    """What mutants of a project can be named by, as far as it is known before the plan."""
+def _may_fit(word: str, root: Path, files: Sequence[str], names: Collection[str]) -> bool:
+    """Whether there may be such a mutant. What holds wild signs, numbers or a list is for the plan to say."""
+    file, colon, _ = word.partition(":")
+    if means_numbers(word) or word.startswith("@") or {"*", "?"} & {*file}:
+        return True
+    if not colon and (word in names or word in operators_of_packages()):
+        return True
+    found = [known for known in files if _is_file(file, known)]
+    line = line_of(word)
+    if found and line is not None and not {"*", "?"} & {*line[0]}:
+        return any(line[1].start <= _lines(root / known) for known in found)
+    return bool(found) or _exists(root, file)
 
-    def __init__(self, request: Request) -> None:
-        self._root = request.root
-        configuration = request.configuration
-        self._sources = (*configuration.program, *configuration.oracle)
 
-    def may_fit(self, word: str) -> bool:
-        """Whether there may be such a mutant. What holds wild signs or numbers is for the plan to say."""
-        if means_numbers(word) or word.startswith("@"):  # what a list says is for the plan to say as well
-            return True
-        file, colon, _ = word.partition(":")
-        if _WILD.search(file) or (not colon and (word in self._names or word in self._of_packages)):
-            return True
-        found = [known for known in self._files if _is_file(file, known)]
-        line = line_of(word)
-        if found and line is not None and _WILD.search(line[0]) is None:
-            return any(line[1].start <= self._lines(known) for known in found)
-        return bool(found) or _exists(self._root, file)
-
-    @property
-    def words(self) -> list[str]:
-        """What may have been meant."""
-        return [*self._names, *self._of_packages, *self._files]
-
-    @cached_property
-    def _names(self) -> tuple[str, ...]:
-        return (*registry.names(), *known_families(), *(role.value for role in Role))
-
-    @cached_property
-    def _of_packages(self) -> tuple[str, ...]:
-        """Operators that are none on calls; to look at them may take its time."""
-        return tuple(operators_of_packages())
-
-    @cached_property
-    def _files(self) -> list[str]:
-        return program_files(self._root, self._sources)
-
-    def _lines(self, file: str) -> int:
-        try:
-            return (self._root / file).read_bytes().count(b"\n") + 1
-        except OSError:
-            return 0
+def _lines(file: Path) -> int:
+    try:
+        return file.read_bytes().count(b"\n") + 1
+    except OSError:
+        return 0
 
 
 def _is_file(word: str, file: str) -> bool:

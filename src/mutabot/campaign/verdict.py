@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from mutabot.errors import MutabotError
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.event_file import OWN_FAULT
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import Figure, added
+from mutabot.model.outcome import Figure, added, in_words
 from mutabot.model.source_units import Executed, together
 
 #: tests of a survivor whose checks are kept
@@ -97,12 +97,15 @@ class Run:
 def judged(campaign: Campaign, run: Run) -> Outcome:
     """The outcome of a run, whose recordings are kept as far as they differ from the original's.
 
-    What goes wrong while it is judged is an error of this mutant, and not the end of the campaign.
+    What goes wrong while it is judged is an error of this mutant, and not the end of the campaign. An outcome
+    with ``beside`` was ended by a limit of wall clock on a busy machine: it is to be run once more alone.
     """
     try:
-        return _judged(campaign, run)
+        outcome = _judged(campaign, run)
     except Exception as error:
         return not_judged(run.mutant, run.round, error, run.engine)
+    beside = f"{in_words(outcome)}; {run.hindered}" if run.hindered is not None else None
+    return replace(outcome, beside=beside)
 
 
 def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:
@@ -139,7 +142,10 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
     verdict, end, message = _ruling(run, baseline.exits[run.round])
     aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
     if aside:
-        verdict, message = Verdict.UNSTABLE, _let_through_without(aside)
+        more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
+        others = f"{aside[0]}{more}, set aside in this round, might not"
+        verdict = Verdict.UNSTABLE
+        message = f"the tests that can be relied on let it through; {others}"
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
     died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
@@ -208,12 +214,6 @@ def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
     return tuple(sorted(found, key=lambda one: not one.acted)[:_MOST_LOOKED])
 
 
-def _let_through_without(aside: Sequence[str]) -> str:
-    more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
-    others = f"{aside[0]}{more}, set aside in this round, might not"
-    return f"the tests that can be relied on let it through; {others}"
-
-
 def _ruling(run: Run, usual: int) -> Ruling:
     """Verdict, the test that decided it, and the reason in words; ``usual``: the suite's exit code."""
     if run.problem is not None:
@@ -245,7 +245,11 @@ def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool
         return Verdict.REFUSED, refused, refused.refused
     if run.exit_code not in (None, usual) and not any(end.outcome == "failed" for end in run.ends):
         return _ruling_on_exit(run.exit_code, usual, acted)
-    return _ruling_on_survivor(run, acted)
+    if acted:
+        return Verdict.SURVIVED, None, None
+    if any(end.hits for end in run.ends):
+        return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
+    return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
 
 
 def _before_death(run: Run) -> list[TestEnd]:
@@ -289,14 +293,6 @@ def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
     if not acted:
         return Verdict.UNSTABLE, None, f"{text}, and the mutant has changed nothing"
     return Verdict.KILLED, None, text
-
-
-def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
-    if acted:
-        return Verdict.SURVIVED, None, None
-    if any(end.hits for end in run.ends):
-        return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
-    return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
 
 
 def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:

@@ -16,9 +16,8 @@ from mutabot import __version__, limits
 from mutabot.errors import UsageError
 from mutabot.extensions import Part, brought
 
-_KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
-#: an engine is a file; its name is told without loading it, so that `--help` is fast
-ENGINES = ("auto", *sorted(file.stem for file in _KINDS.glob("[!_]*.py")))
+#: the names of ``campaign.request``, which is not loaded for this, so that `--help` is fast
+ENGINES = ("auto", "branch", "replay")
 
 
 def _print_version(wanted: bool) -> None:

@@ -1,24 +1,17 @@
-"""Ctrl-C takes effect where it is safe, while a campaign waits for its workers; and a campaign can pause.
+"""Let Ctrl-C, and the end of a campaign's time, take effect where it is safe.
 
 Python raises KeyboardInterrupt between any two instructions, also between the opening of a descriptor or
 the start of a process and the moment from which on somebody looks after it. So the first Ctrl-C is kept for
 the next time that the campaign waits, which is at most a few seconds away. A second one is not.
-
-In a pause nothing new begins, and what is at work goes on to its end. One byte in a pipe stands for "go on".
-Nobody reads it but who pauses, so that whoever wants to begin something, trunks included, only looks whether
-it is there, and can wait for it as for anything else.
 """
 
 from __future__ import annotations
 
-import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import FrameType, TracebackType
-from typing import Self
+from types import FrameType
 
 
 class OutOfTimeError(Exception):
@@ -86,7 +79,7 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
 
     Args:
         until: when that is, by the clock.
-        clock: seconds, which may stand still for a while.
+        clock: the seconds by which ``until`` is meant.
     """
     keeper = signal.getsignal(signal.SIGINT)
     if not isinstance(keeper, _Keeper):
@@ -123,67 +116,3 @@ def interruptible() -> Iterator[None]:
         yield
     finally:
         keeper.may_raise = False
-
-
-class Pause:
-    """Whether a campaign is paused; any thread may begin and end it. Use as a context manager.
-
-    Attributes:
-        reading: a descriptor that is readable while nothing is paused. It is never to be read from.
-    """
-
-    def __init__(self) -> None:
-        self.reading, self._writing = os.pipe()
-        self._lock = threading.Lock()
-        self._began: float | None = None
-        self._ended = float("-inf")
-        self._before = 0.0
-        self._is_closed = False
-        os.write(self._writing, b"g")
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        with self._lock:
-            self._is_closed = True
-            os.close(self.reading)
-            os.close(self._writing)
-
-    @property
-    def is_on(self) -> bool:
-        """Whether it is paused."""
-        return self._began is not None
-
-    def begin(self) -> bool:
-        """Pause; returns False if it was paused before, or is over."""
-        with self._lock:
-            if self._began is not None or self._is_closed:
-                return False
-            os.read(self.reading, 1)
-            self._began = time.monotonic()
-            return True
-
-    def end(self) -> bool:
-        """Go on; returns False if it was not paused, or is over."""
-        with self._lock:
-            if self._began is None or self._is_closed:
-                return False
-            self._ended = time.monotonic()
-            self._before += self._ended - self._began
-            self._began = None
-            os.write(self._writing, b"g")
-            return True
-
-    def clock(self) -> float:
-        """Seconds that count: those of pauses do not."""
-        with self._lock:
-            now = self._began if self._began is not None else time.monotonic()
-            return now - self._before
-
-    def lasted_until(self) -> float:
-        """Until when (``time.monotonic``) the last pause lasted; now, while it does."""
-        with self._lock:
-            return self._ended if self._began is None else time.monotonic()

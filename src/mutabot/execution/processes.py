@@ -1,6 +1,7 @@
-"""What a worker process needs: a folder, a command line, an environment, an end; and what it tells.
+"""Processes that run jobs: fresh ones, and copies of a fork server that has collected the tests.
 
-Open files: as many as a campaign needs may be open at a time, or it is refused before anything runs.
+A process has a folder, a command line, an environment and an end, and it tells events. As many open files as
+a campaign needs may be open at a time, or it is refused before anything runs.
 """
 
 from __future__ import annotations
@@ -11,21 +12,25 @@ import errno
 import os
 import resource
 import secrets
+import select
 import signal
+import socket
 import stat
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+import time
+from collections.abc import Callable, Iterable
 from dataclasses import field, replace
 from pathlib import Path
 from shutil import disk_usage
 
 from mutabot.errors import UsageError
+from mutabot.execution.interruption import interruptible
 from mutabot.execution.remains import remove_folder
 from mutabot.frozen import frozen
 from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, EventReader
-from mutabot.model.events import Event, ForkEnded
+from mutabot.model.events import Event, ForkEnded, Serving
 from mutabot.model.fold import fold_fork
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
 from mutabot.model.keeper import FILE as KEEPER
@@ -246,6 +251,192 @@ class EventStream:
         return self._with_forks(name, fold_fork(events, ended.exit_code, ended.died))
 
 
+#: seconds that a server may take to answer, and to end, once its tests are collected
+_ANSWER = 30.0
+#: seconds between two looks whether a run is still wanted
+LOOKS = 0.2
+
+
+class Copy:
+    """A copy of a fork server, at work on a job. Like ``Spawned``, but it is the server that sees it end."""
+
+    pidfd = None
+
+    def __init__(self, pid: int, server: ForkServer) -> None:
+        self.pid, self._server = pid, server
+        self.startup = server.startup
+
+    @property
+    def tests(self) -> int:
+        """The number of the process that runs the tests."""
+        return self.pid
+
+    @property
+    def left(self) -> None:
+        """Nobody but the server's keeper looks after what it leaves."""
+        return
+
+    @property
+    def exit_code(self) -> int | None:
+        """Its exit code, negative for a signal; None while it runs."""
+        return self._server.exit_code_of(self.pid)
+
+    def kill(self) -> None:
+        """End it and all it has started."""
+        if self.exit_code is None:
+            kill_group(self.pid)
+            with contextlib.suppress(ProcessLookupError):  # it may not lead its group yet
+                os.kill(self.pid, signal.SIGKILL)
+
+    def end(self) -> int:
+        """End it if it has not ended yet; returns its exit code."""
+        self.kill()
+        return self._server.wait_for(self.pid)
+
+    def release(self) -> None:
+        """Nothing is held of it."""
+
+
+class ForkServer:
+    """A process that has collected the tests, and is copied for each job.
+
+    Args:
+        job: a job of the kind that it is to serve.
+        root, arguments: as for every worker.
+        folder: where its home is made.
+        descriptors: what copies inherit.
+
+    Attributes:
+        events: what it tells.
+        process: the server.
+        startup: seconds it took to start.
+    """
+
+    def __init__(
+        self, job: Job, root: Path, arguments: Iterable[str], folder: Path, descriptors: tuple[int, ...]
+    ) -> None:
+        self._template = _template(job)
+        self._started = time.monotonic()
+        self.startup = 0.0
+        self.serving: Serving | None = None
+        self._copied: int | None = None
+        self._codes: dict[int, int | None] = {}
+        self._jobs, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with theirs:
+            self._home = Home.make(folder, replace(self._template, serving=theirs.fileno()))
+            self.events = EventStream(self._home)
+            passed = (theirs.fileno(), *descriptors)
+            self.process = Spawned(root, arguments, self._home, self.events.writing, passed)
+
+    def serves(self, job: Job) -> bool:
+        """Whether a copy can do this job: all that counts before the first test is the same."""
+        return _template(job) == self._template
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether none of its copies is at work."""
+        return None not in self._codes.values()
+
+    def wait_until_ready(self, seconds: float, look: Callable[[], None] | None = None) -> str | None:
+        """Wait until the tests are collected. Returns why it cannot serve, or None if it can.
+
+        ``look``: called several times a second meanwhile; what it raises ends the wait.
+        """
+
+        def is_ready() -> bool:
+            if look is not None:
+                look()
+            return self.serving is not None
+
+        with interruptible():
+            self._listen_until(is_ready, seconds, LOOKS if look is not None else seconds)
+        self.startup = time.monotonic() - self._started
+        if self.serving is None:
+            return "the process that was to collect the tests did not get there"
+        return self.serving.reason
+
+    def copy(self, home: Home, writing: int) -> Copy | None:
+        """A copy that does the job in ``home`` and rings at ``writing``; None if the server is gone."""
+        self._copied = None
+        try:
+            socket.send_fds(self._jobs, [os.fsencode(home.folder)], [writing])
+        except OSError:
+            return None
+        self._listen_until(lambda: self._copied is not None, _ANSWER)
+        return Copy(self._copied, self) if self._copied is not None else None
+
+    def listen(self) -> None:
+        """Take in what it reports."""
+        for event in self.events.own():
+            match event:
+                case Serving(copy=int(pid)):
+                    self._copied = pid
+                    self._codes[pid] = None
+                case Serving():
+                    self.serving = event
+                case ForkEnded():
+                    self._codes[event.fork] = event.exit_code
+
+    def exit_code_of(self, pid: int) -> int | None:
+        """The exit code of a copy; None while it runs. With the server its copies die."""
+        code = self._codes[pid]
+        if code is None and self.process.exit_code is not None:
+            self.listen()
+            code = self._codes[pid]
+            return -signal.SIGKILL if code is None else code
+        return code
+
+    def wait_for(self, pid: int) -> int:
+        """The exit code of a copy that is about to end."""
+        self._listen_until(lambda: self._codes[pid] is not None, _ANSWER)
+        if self._codes[pid] is None:  # it cannot be relied on any more
+            self.process.kill()
+        code = self.exit_code_of(pid)
+        return -signal.SIGKILL if code is None else code
+
+    def close(self) -> tuple[list[str], str | None]:
+        """End it and all copies; returns what these had left running, and what cannot be removed."""
+        self._jobs.close()
+        self._listen_until(lambda: False, _ANSWER if self.serving is not None else 0.0)
+        self.process.end()
+        self.process.release()
+        self.events.close()
+        return self.process.left or [], self._home.remove()
+
+    def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
+        """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""
+        until = time.monotonic() + seconds
+        poll = select.poll()
+        poll.register(self.events.bell, select.POLLIN)
+        poll.register(self.process.pidfd, select.POLLIN)
+        while not done():
+            left = until - time.monotonic()
+            if left <= 0:
+                return
+            ended = self.process.exit_code is not None
+            if not ended:
+                poll.poll(min(left, period) * 1e3)
+            self.listen()
+            if ended:
+                return
+
+
+def _template(job: Job) -> Job:
+    """What two jobs must have in common to begin as copies of one server."""
+    return replace(
+        job,
+        round=0,
+        tests=None,
+        mutant=None,
+        record=False,
+        stop_at_kill=False,
+        budgets={},
+        moments={},
+        inspect=False,
+        branching=None,
+    )
+
+
 def command(arguments: Iterable[str], home: Path) -> list[str]:
     """The command line of a worker."""
     # the native traceback is the one that pytest need not parse any source for: that took a killed mutant
@@ -292,38 +483,32 @@ def usual_environment() -> dict[str, str]:
     }
 
 
-#: for Python, the journal and what is recorded; for pytest with its plug-ins, and the program under test
-_ALWAYS = 128
+#: for Python, the journal and what is recorded; for pytest with its plug-ins, the program under test, a page
+_ALWAYS = 256
 #: for each of ``-j``: a pipe and the process itself, for up to four in its place, and as much to begin them
 _EACH = 16
-#: for a page: its connections, and what is read to answer them
-_PAGE = 128
 
 
-def needed(jobs: int, *, served: bool) -> int:
+def needed(jobs: int) -> int:
     """How many files a campaign may have open at a time."""
-    return _ALWAYS + _EACH * jobs + (_PAGE if served else 0)
+    return _ALWAYS + _EACH * jobs
 
 
-def provide(jobs: int, *, served: bool) -> None:
-    """Raise this process's limit, and with it that of all it starts, if it is too low.
+def provide(jobs: int) -> None:
+    """Raise this process's limit of open files, and with it that of all it starts, if it is too low.
 
     Raises UsageError if the system does not allow that.
     """
-    wanted = needed(jobs, served=served)
+    wanted = needed(jobs)
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if _is_enough(soft, wanted):
+    if soft == resource.RLIM_INFINITY or soft >= wanted:
         return
-    if _is_enough(hard, wanted):
+    if hard == resource.RLIM_INFINITY or hard >= wanted:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
         return
-    fewer = (hard - needed(0, served=served)) // _EACH
+    fewer = (hard - _ALWAYS) // _EACH
     advice = f", or use -j {fewer}" if fewer > 0 else ""
     raise UsageError(
-        f"-j {jobs}{' with a page' if served else ''} needs {wanted} open files at a time, but the system "
-        f"allows {hard} (RLIMIT_NOFILE): raise that limit (`ulimit -Hn {wanted}` as root){advice}"
+        f"-j {jobs} needs {wanted} open files at a time, but the system allows {hard} (RLIMIT_NOFILE): raise "
+        f"that limit (`ulimit -Hn {wanted}` as root){advice}"
     )
-
-
-def _is_enough(limit: int, wanted: int) -> bool:
-    return limit == resource.RLIM_INFINITY or limit >= wanted

@@ -1,4 +1,4 @@
-"""What a worker has left behind when it is gone: processes in sessions of their own, and its folder.
+"""Clean up after workers: processes in sessions of their own, and folders.
 
 All that is started below a worker finds the worker's folder in its environment, and the kernel shows with
 what environment a process began, whoever its parent is by then. A look at all processes takes about a
@@ -7,13 +7,10 @@ millisecond. The folder is removed, whatever the worker has made of it.
 
 from __future__ import annotations
 
-import fcntl
 import os
 import select
 import shutil
 import signal
-import stat
-import struct
 import subprocess
 import time
 from contextlib import suppress
@@ -92,12 +89,8 @@ def end_abandoned(home: Path) -> int:
 
 def end_below(folder: Path) -> int:
     """End all that was started below workers whose folders are in this one; returns how many there were."""
-    marks = os.fsencode(f"{VARIABLE}={folder}/")
-    ended = 0
-    for process in _processes():
-        entries = [entry for entry in _environment(process) if entry.startswith(marks)]
-        ended += sum(_end(process, entry) for entry in entries)
-    return ended
+    below = [(worker, pid) for worker, pids in by_mark().items() for pid in pids if folder in worker.parents]
+    return sum(_end(pid, _mark(worker)) for worker, pid in below)
 
 
 def _mark(folder: Path) -> bytes:
@@ -150,69 +143,34 @@ def _end(pid: int, entry: bytes) -> bool:
         os.close(process)
 
 
-#: <linux/fs.h>: to read and to set the flags of a file; those that keep it from being changed or deleted
-_GET_FLAGS, _SET_FLAGS = 0x80086601, 0x40086602
-_IMMUTABLE, _APPEND_ONLY = 0x10, 0x20
-_FLAGS = struct.Struct("@l")
-_Error = tuple[type[BaseException], BaseException, TracebackType]
-
-
 def remove_folder(folder: Path) -> str | None:
     """Remove a folder with all that is in it. Returns why it is still there, in words; None if it is gone."""
     problems: list[str] = []
 
-    def let_in(function: Any, path: str, error: _Error) -> None:
+    def note(
+        function: Any, path: str, error: tuple[type[BaseException], BaseException, TracebackType]
+    ) -> None:
         if not isinstance(error[1], FileNotFoundError):
             problems.append(f"{path} ({getattr(error[1], 'strerror', None) or error[1]})")
-        if isinstance(error[1], PermissionError):
-            _free(Path(path))
 
-    for _ in range(2):  # the second time all is free
+    for _ in range(2):  # the second time all folders are open
         try:
-            shutil.rmtree(folder, onerror=let_in)
+            shutil.rmtree(folder, onerror=note)
         except (RecursionError, OSError) as error:  # more folders in each other than Python can go down
             problems.append(f"{folder} ({getattr(error, 'strerror', None) or error})")
             subprocess.run(["rm", "-rf", "--", folder], check=False, stderr=subprocess.DEVNULL)
         if not os.path.lexists(folder):
             return None
+        _open_up(folder)
     return problems[-1] if problems else f"{folder} (something is written there)"
 
 
-def _free(path: Path) -> None:
-    """Something cannot be removed: let its owner change all that is in its folder, and in itself.
-
-    Folders may be closed to their owner, as those of private files are, and files may be immutable. Nothing
-    is changed through a link: what it leads to is the user's.
-    """
-    folder = path.parent
-    _open_up(folder)
+def _open_up(folder: Path) -> None:
+    """Let the owner of folders change what is in them. Nothing is changed through a link."""
     with suppress(OSError):
-        for one in [path, *folder.iterdir()]:
-            _open_up(one)
-    if not path.is_symlink() and path.is_dir():
-        with suppress(OSError):
-            for one in path.iterdir():
-                _open_up(one)
-
-
-def _open_up(path: Path) -> None:
-    with suppress(OSError):
-        mode = path.lstat().st_mode
-        if not stat.S_ISDIR(mode) and not stat.S_ISREG(mode):
-            return
-        _make_mutable(path)
-        if stat.S_ISDIR(mode):
-            path.chmod(0o700)
-            _make_mutable(path)
-
-
-def _make_mutable(path: Path) -> None:
-    with suppress(OSError):
-        flags = os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC
-        descriptor = os.open(path, flags)
-        try:
-            found = _FLAGS.unpack(fcntl.ioctl(descriptor, _GET_FLAGS, bytes(_FLAGS.size)))[0]
-            if found & (_IMMUTABLE | _APPEND_ONLY):
-                fcntl.ioctl(descriptor, _SET_FLAGS, _FLAGS.pack(found & ~(_IMMUTABLE | _APPEND_ONLY)))
-        finally:
-            os.close(descriptor)
+        folder.chmod(0o700)
+    for path, names, _ in os.walk(folder):
+        for one in (Path(path, name) for name in names):
+            with suppress(OSError):
+                if not one.is_symlink():
+                    one.chmod(0o700)

@@ -1,20 +1,16 @@
-"""Worker processes: each runs one job in a fresh Python and tells what it does.
+"""Run tasks in worker processes, and tell what they do.
 
-One thread looks after all of them: it waits for events, for exits and for deadlines, and never for one
-worker alone. Workers are process groups of their own, so that ending one ends all it started.
+One thread looks after all workers: it waits for events, for exits and for deadlines, and never for one worker
+alone. Workers are process groups of their own, so that ending one ends all it started.
 
-Workers that only wait, for what may never come, and who may compute in their place.
+A worker that only waits, for what may never come, lends its place to the next task: what a mutant of a
+message does to a program is often just that. One place at a time stays one place. What counts is what the
+tasks of a worker ask for, not what they get, since a process that gets little of a busy machine is not idle.
+As long as processors are short on the machine, whoever uses them, nothing is lent.
 
-A place that such a worker holds is lent to the next task. What a mutant of a message does to a program is
-often just that: it waits. One place at a time stays one place: whoever asks for no neighbours has none.
-
-Nothing is lent where nobody can tell waiting from being kept waiting: a process that gets little of a busy
-machine is not idle. So what counts is what the tasks of a worker ask for, not what they get; and as long as
-processors are short on the machine, whoever uses them, nothing is lent at all.
-
-Of the token pool this is the controller's side: a pipe with one byte per free token, as many tokens as
-processes may compute. A trunk is started with a token that the controller took for it; from then on it takes
-and gives back by itself and says how many it holds, so that the tokens of a trunk that dies are not lost.
+The token pool is a pipe with one byte per free token, as many tokens as processes may compute. A fork parent
+is started with a token that the controller took for it. From then on it takes and gives back by itself and
+says how many it holds, so that the tokens of one that dies are not lost.
 """
 
 from __future__ import annotations
@@ -31,9 +27,17 @@ from types import TracebackType
 from typing import Protocol
 
 from mutabot.errors import JournalError
-from mutabot.execution.forkserver import LOOKS, Copy, ForkServer
-from mutabot.execution.interruption import Pause, interruptible
-from mutabot.execution.processes import EventStream, Home, Spawned, compile_us, refuse_full_disk
+from mutabot.execution.interruption import interruptible
+from mutabot.execution.processes import (
+    LOOKS,
+    Copy,
+    EventStream,
+    ForkServer,
+    Home,
+    Spawned,
+    compile_us,
+    refuse_full_disk,
+)
 from mutabot.execution.remains import by_mark, claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.task import Result, Task
 from mutabot.model import process_time
@@ -186,6 +190,25 @@ class TokenPool:
 _HOME_LOST = Untrusted("the folder in which the tests' process worked was deleted or closed while it ran")
 
 
+def _work_folder(home: Path) -> Path:
+    """Make a folder for the workers of this process; those of killed controllers end. Raises JournalError."""
+    try:
+        home.mkdir(exist_ok=True)
+        ignore = home / ".gitignore"
+        if not ignore.exists():
+            ignore.write_text("*\n", encoding="utf-8")
+        end_abandoned(home)
+        folder = Path(tempfile.mkdtemp(prefix="work-", dir=home))
+        try:
+            claim(folder)
+        except BaseException:
+            remove_folder(folder)
+            raise
+    except OSError as error:
+        raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+    return folder
+
+
 class Workers:
     """Runs tasks in up to ``jobs`` worker processes at a time, and more while some of them only wait.
 
@@ -193,9 +216,7 @@ class Workers:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
         jobs: how many are at work side by side.
-        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
-        pause: while it is on, no task begins, and no trunk branches; None if nobody can pause.
-        on_left: told once what tests had left running, and was ended.
+        tell: told once why tasks do not begin as copies of a fork server, and what tests leave running.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
@@ -212,9 +233,7 @@ class Workers:
         root: Path,
         arguments: Iterable[str],
         jobs: int,
-        on_unshared: Callable[[str], None] = lambda reason: None,
-        pause: Pause | None = None,
-        on_left: Callable[[list[str]], None] = lambda left: None,
+        tell: Callable[[str], None] = lambda text: None,
     ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
@@ -223,29 +242,13 @@ class Workers:
         self._workers: list[_Worker] = []
         self._waiting = Waiting(self._jobs)
         self._servers: list[ForkServer] = []
-        self._on_unshared = on_unshared
-        self._pause = pause
-        self._on_left, self._has_told_left = on_left, False
+        self._tell, self._has_told_left = tell, False
         self._may_share = True
         self._remains: list[str] = []
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
         compile_us()
-        home = root / ".mutabot"
-        try:
-            home.mkdir(exist_ok=True)
-            ignore = home / ".gitignore"
-            if not ignore.exists():
-                ignore.write_text("*\n", encoding="utf-8")
-            end_abandoned(home)
-            self._folder = Path(tempfile.mkdtemp(prefix="work-", dir=home))
-            try:
-                claim(self._folder)
-            except BaseException:
-                remove_folder(self._folder)
-                raise
-        except OSError as error:
-            raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+        self._folder = _work_folder(root / ".mutabot")
 
     def __enter__(self) -> Workers:
         return self
@@ -254,16 +257,16 @@ class Workers:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         for worker in self._workers:
-            worker.kill()
+            worker.process.kill()
         for worker in self._workers:
             worker.close(self._selector)
-            self._tell_left(worker.left)
+            self._note(worker.left, None)
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
         self._selector.close()
         self.pool.close()
-        self._note_remains(remove_folder(self._folder))
+        self._note(None, remove_folder(self._folder))
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
@@ -276,7 +279,7 @@ class Workers:
         waiting = iter(tasks)
         next_task = next(waiting, None)
         while True:
-            while next_task is not None and not self._is_paused and self._has_place(next_task):
+            while next_task is not None and self._has_place(next_task):
                 self._start(next_task)
                 next_task = next(waiting, None)
             if next_task is None and not self._workers:
@@ -285,7 +288,7 @@ class Workers:
 
     def apart(self) -> Workers:
         """One more worker process, which shares nothing with these."""
-        return Workers(self._root, self._arguments, jobs=1, pause=self._pause)
+        return Workers(self._root, self._arguments, jobs=1)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -298,22 +301,17 @@ class Workers:
             f"remove {self._folder} by hand.",
         )
 
-    def _note_remains(self, remains: str | None) -> None:
+    def _note(self, left: list[str] | None, remains: str | None) -> None:
+        """Take in what a process left running, which is told once, and what of it cannot be removed."""
+        if left and not self._has_told_left:
+            self._has_told_left = True
+            more = f" and {len(left) - 1} more" if len(left) > 1 else ""
+            self._tell(f"tests leave processes running, which are ended with them: {left[0]}{more}")
         if remains is not None:
             self._remains.append(remains)
 
-    @property
-    def _is_paused(self) -> bool:
-        return self._pause is not None and self._pause.is_on
-
-    @property
-    def _inherited(self) -> tuple[int, ...]:
-        """The descriptors that trunks need."""
-        gate = () if self._pause is None else (self._pause.reading,)
-        return (*self.pool.descriptors, *gate)
-
     def _has_place(self, task: Task) -> bool:
-        if self._workers and self._is_alone(task):
+        if self._workers and (task.alone or any(worker.task.alone for worker in self._workers)):
             return False
         if not task.is_trunk:
             return self._waiting.has_place(self._workers)
@@ -323,13 +321,9 @@ class Workers:
             self.pool.refill()  # nobody is left who could hold one
         return self.pool.take()
 
-    def _is_alone(self, task: Task) -> bool:
-        return task.alone or any(worker.task.alone for worker in self._workers)
-
     def _start(self, task: Task) -> None:
         if task.job.branching is not None:
-            gate = None if self._pause is None else self._pause.reading
-            branching = replace(task.job.branching, tokens=self.pool.descriptors, gate=gate)
+            branching = replace(task.job.branching, tokens=self.pool.descriptors)
             task = replace(task, job=replace(task.job, branching=branching))
         home = Home.make(self._folder, task.job)
         events = EventStream(home)
@@ -346,7 +340,7 @@ class Workers:
         copy = server.copy(home, writing) if server is not None else None
         if copy is not None:
             return copy
-        descriptors = self._inherited if task.is_trunk else ()
+        descriptors = self.pool.descriptors if task.is_trunk else ()
         return Spawned(self._root, self._arguments, home, writing, descriptors)
 
     def _server_for(self, task: Task) -> ForkServer | None:
@@ -356,7 +350,7 @@ class Workers:
             return found
         for idle in [server for server in self._servers if server.is_idle]:
             self._end_server(idle)  # what it was for is over
-        server = ForkServer(task.job, self._root, self._arguments, self._folder, self._inherited)
+        server = ForkServer(task.job, self._root, self._arguments, self._folder, self.pool.descriptors)
         self._servers.append(server)
         for descriptor in (server.events.bell, server.process.pidfd):  # with it, its copies end
             self._selector.register(descriptor, selectors.EVENT_READ, server)
@@ -364,7 +358,7 @@ class Workers:
         if reason is None:
             return server
         self._may_share = False
-        self._on_unshared(reason)
+        self._tell(f"each run starts anew, imports and collection included: {reason}")
         self._end_server(server)
         return None
 
@@ -372,29 +366,21 @@ class Workers:
         for descriptor in (server.events.bell, server.process.pidfd):
             self._selector.unregister(descriptor)
         self._servers.remove(server)
-        left, remains = server.close()
-        self._tell_left(left)
-        self._note_remains(remains)
-
-    def _tell_left(self, left: list[str] | None) -> None:
-        """Say once that tests leave something running."""
-        if left and not self._has_told_left:
-            self._has_told_left = True
-            self._on_left(left)
+        self._note(*server.close())
 
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Event]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
         timeout = self._patience(next_task)
-        awaited = self._awaited(next_task)
-        if awaited is not None:
-            self._selector.register(awaited, selectors.EVENT_READ, None)
+        is_for_token = next_task is not None and next_task.is_trunk and len(self._workers) < self._jobs
+        if is_for_token:
+            self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         if self.look is not None:
             self.look()
             timeout = LOOKS if timeout is None else min(timeout, LOOKS)
         with interruptible():
             ready = self._selector.select(timeout)
-        if awaited is not None:
-            self._selector.unregister(awaited)
+        if is_for_token:
+            self._selector.unregister(self.pool.reading)
         for key, _ in ready:
             if isinstance(key.data, ForkServer):
                 key.data.listen()
@@ -403,7 +389,7 @@ class Workers:
                     yield key.data.task, line
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.deadline(self._pause) and not worker.has_ended and worker.is_out_of_time():
+            if now >= worker.until and not worker.has_ended and worker.is_out_of_time():
                 worker.expire()
             if worker.has_ended:
                 yield from self._finish(worker)
@@ -412,25 +398,16 @@ class Workers:
         """Seconds until something is to be looked at, whatever happens; None if nothing is."""
         if any(worker.has_ended for worker in self._workers):
             return 0.0  # a fork server may have told so while it was asked for something else
-        until = min((worker.deadline(self._pause) for worker in self._workers), default=None)
+        until = min((worker.until for worker in self._workers), default=None)
         seconds = None if until is None else max(0.0, until - time.monotonic())
-        if next_task is None or self._is_paused:
+        if next_task is None:
             return seconds
         return PERIOD if seconds is None else min(seconds, PERIOD)
-
-    def _awaited(self, next_task: Task | None) -> int | None:
-        """What tells that the next task may begin; None if only workers can."""
-        if next_task is None:
-            return None
-        if self._pause is not None and self._pause.is_on:
-            return self._pause.reading
-        return self.pool.reading if next_task.is_trunk and len(self._workers) < self._jobs else None
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Event]]:
         self._workers.remove(worker)
         lines, result, remains = worker.finish(self._selector)
-        self._tell_left(worker.left)
-        self._note_remains(remains)
+        self._note(worker.left, remains)
         for line in lines:
             yield worker.task, line
         if result.end is None:
@@ -447,7 +424,7 @@ class _Worker:
         self.task = task
         self.result = Result(task, held=1 if task.is_trunk else 0)
         self.events = events
-        self._home, self._process = home, process
+        self._home, self.process = home, process
         self.left: list[str] | None = None
         self._started = time.monotonic()
         self._allow(task.startup)
@@ -455,7 +432,7 @@ class _Worker:
     @property
     def pid(self) -> int:
         """The number of its process."""
-        return self._process.pid
+        return self.process.pid
 
     @property
     def processes(self) -> Path:
@@ -465,12 +442,12 @@ class _Worker:
     @property
     def has_ended(self) -> bool:
         """Whether the process is gone."""
-        return self._process.exit_code is not None
+        return self.process.exit_code is not None
 
     def watch(self, selector: selectors.BaseSelector) -> None:
         selector.register(self.events.bell, selectors.EVENT_READ, self)
-        if self._process.pidfd is not None:
-            selector.register(self._process.pidfd, selectors.EVENT_READ, self)
+        if self.process.pidfd is not None:
+            selector.register(self.process.pidfd, selectors.EVENT_READ, self)
 
     def read(self) -> list[Event]:
         """Take what it has told by now."""
@@ -498,12 +475,6 @@ class _Worker:
             self.until = time.monotonic() + max(left, LOOKS)
         return left <= 0
 
-    def deadline(self, pause: Pause | None) -> float:
-        """When (``time.monotonic``) its time is up. A trunk in a pause has nothing to tell."""
-        if pause is None or not self.task.is_trunk:
-            return self.until
-        return max(self.until, pause.lasted_until() + self.task.deadline)
-
     def expire(self) -> None:
         """Its time is up: end the process group."""
         self.result.hindered = self._used.hindrance([self.pid])
@@ -512,12 +483,9 @@ class _Worker:
         limit = self.task.startup if test is None else self.task.deadlines.get(test, self.task.deadline)
         self.result.overdue = overdue(limit, test)
         self.result.where = process_time.ask(
-            self._process.tests, str(self._home.folder / process_time.FILE), self.task.job.root
+            self.process.tests, str(self._home.folder / process_time.FILE), self.task.job.root
         )
-        self._process.end()
-
-    def kill(self) -> None:
-        self._process.kill()
+        self.process.end()
 
     def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result, str | None]:
         """Collect the rest of a process that has ended.
@@ -534,24 +502,24 @@ class _Worker:
             children.read()
             lines += self._taken([Acted(test) for test in acted_in(children.records.values())])
             lines += self._taken([Untrusted(children.doubt)] if children.doubt is not None else [])
-        self.result.wall = time.monotonic() - self._started + self._process.startup
+        self.result.wall = time.monotonic() - self._started + self.process.startup
         self.result.log = self._home.log_text()
         return lines, self.result, self.close(selector)
 
     def close(self, selector: selectors.BaseSelector) -> str | None:
         """Let go of all; what of it cannot be removed, in words, or None."""
         selector.unregister(self.events.bell)
-        if self._process.pidfd is not None:
-            selector.unregister(self._process.pidfd)
+        if self.process.pidfd is not None:
+            selector.unregister(self.process.pidfd)
         self.events.close()
         self._end()
-        self._process.release()
+        self.process.release()
         return self._home.remove()
 
     def _end(self) -> int:
         """End it and all that was started below it; returns its exit code."""
-        code = self._process.end()
+        code = self.process.end()
         if self.left is None:
-            left = self._process.left
+            left = self.process.left
             self.left = end_left_over(self._home.processes) if left is None else left
         return code

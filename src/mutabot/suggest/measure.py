@@ -9,9 +9,8 @@ from typing import Any
 from mutabot.campaign.again import as_it_is_now
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.choice import first_engine
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.fresh import task
+from mutabot.campaign.engines.isolated_run import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import open_executor
 from mutabot.model import Mutant, Probe
@@ -72,10 +71,9 @@ def measure(
         probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
         noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
         with open_executor(noting, progress) as opened:
-            may_share = first_engine(noting).may_share
-            baseline, results = take_baseline(noting, opened, progress, repetitions=1, may_share=may_share)
+            baseline, results = take_baseline(noting, opened, progress, repetitions=1)
             for result in results:
-                _take(measured.originals, places, result.task.key.round, result.ends)
+                _take(measured.originals, places, result.task.key[0], result.ends)
             _run_survivors(Campaign(noting, baseline, opened, progress), measured, places, survivors)
     return measured
 

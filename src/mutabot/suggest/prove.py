@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.campaign.engines.choice import first_engine
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import open_executor, run_campaign
 from mutabot.errors import MutabotError
@@ -56,7 +55,7 @@ class Proof:
             these = _only(copied, checks)
             self.progress.stage("proof on the original", len(rounds))
             with open_executor(these, self.progress) as opened:
-                share = first_engine(these).may_share
+                share = these.forks
                 tasks = (Task(round, these.job(round), startup=300.0, may_share=share) for round in rounds)
                 for result in opened.run(tasks):
                     self.progress.advance(f"round {result.task.key + 1}")

@@ -1,4 +1,4 @@
-/* The campaign under way: how far it is, pause and stop, and newer data as they come. */
+/* The campaign under way: how far it is, stop, and newer data as they come. */
 "use strict";
 (() => {
   const { h, say, legible, duration } = mutabot;
@@ -16,12 +16,11 @@
   const bar = h("progress", { max: 1, "aria-label": "How far the campaign is" });
   const text = h("p", { class: "live-text" }, "…");
   const line = h("p", { class: "live-line" });
-  const pause = h("button", { type: "button", id: "live-pause", onclick: () => command(state && state.paused ? "resume" : "pause") }, "Pause");
   const stop = h("button", { type: "button", id: "live-stop", onclick: ask }, "Stop …");
   const notes = h("ul", { class: "plain small" });
   const told = h("details", { class: "live-notes", hidden: true }, h("summary", null, "Notes"), notes);
   const box = h("section", { class: "live", id: "live", "aria-label": "The campaign under way" },
-    h("div", { class: "live-how" }, text, line), h("div", { class: "live-tools" }, pause, stop), bar, told);
+    h("div", { class: "live-how" }, text, line), h("div", { class: "live-tools" }, stop), bar, told);
   document.querySelector(".top").after(box);
 
   const source = new EventSource("events");
@@ -31,7 +30,6 @@
     heard = performance.now();
     isAway = false;
     draw();
-    if (before && before.paused !== state.paused) say(state.paused ? "Paused" : "Going on");
     if (state.ended && !(before && before.ended)) { next = 0; say(ending()); }
     plan();
   });
@@ -51,7 +49,7 @@
   const ending = () => state.ended === "complete" ? "The campaign is complete." : `The campaign has ended: ${legible(state.ended)}.`;
 
   function left() {
-    if (state.left === null || state.paused) return "";
+    if (state.left === null) return "";
     const seconds = Math.max(0, state.left - (performance.now() - heard) / 1000);
     return seconds < 1.5 ? "about a second left" : `about ${seconds < 100 ? `${Math.round(seconds)} s` : duration(seconds)} left`;
   }
@@ -60,15 +58,14 @@
     if (!state) { if (isGone) text.textContent = GONE; return; }
     const count = state.total === null ? (state.done ? String(state.done) : "") : `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")}`;
     const parts = state.ended ? [ending(), isGone ? "Its command has ended: what was not opened here is in `mutabot report --html DIR`." : "Close this page, and the command ends."]
-      : [state.paused ? "Paused" : "", legible(state.stage || "Beginning"), count, left()];
+      : [legible(state.stage || "Beginning"), count, left()];
     text.textContent = parts.filter(Boolean).join(state.ended ? " " : " · ");
     line.textContent = isAway && !state.ended ? "The connection is lost; trying again …" : state.ended ? "" : legible(state.line);
     if (state.ended || state.total) { bar.max = state.ended ? 1 : state.total; bar.value = state.ended ? 1 : state.done; } else bar.removeAttribute("value");
     bar.hidden = Boolean(state.ended);
-    pause.textContent = state.paused ? "Go on" : "Pause";
-    pause.hidden = stop.hidden = Boolean(state.ended);
-    pause.disabled = stop.disabled = isAway;
-    box.dataset.state = state.ended ? (state.ended === "complete" ? "complete" : "ended") : state.paused ? "paused" : "running";
+    stop.hidden = Boolean(state.ended);
+    stop.disabled = isAway;
+    box.dataset.state = state.ended ? (state.ended === "complete" ? "complete" : "ended") : "running";
     const wait = !mutabot.campaign && document.querySelector("main .wait");
     if (wait) wait.textContent = state.ended ? "The campaign ended before it had a plan; there is nothing to show." : "The tests run on the original first. The report fills as soon as there is a plan.";
   }

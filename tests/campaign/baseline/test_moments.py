@@ -10,7 +10,7 @@ import pytest
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.comparison import Event, Observation, compare, strides_of
 from mutabot.campaign.run import run_campaign
-from mutabot.execution.forkserver import _template
+from mutabot.execution.processes import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary
 from mutabot.model.events import TestEnd
 from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_branches, outcomes, request_for, write_project
@@ -164,7 +164,7 @@ def test_the_cost_of_a_reading_decides_how_often() -> None:
         return TestEnd("t", "passed", commands=commands, cpu=cpu, reading=reading, not_along=why)
 
     def stride(*ends: TestEnd) -> int | None:
-        return strides_of({(round, "t"): one for round, one in enumerate(ends)}).get((0, "t"))
+        return strides_of({(round, "t"): one for round, one in enumerate(ends)}).get(0, {}).get("t")
 
     assert stride(end(0.0001)) == 1
     assert stride(end(0.0005)) == 4

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.budget import Batches, in_order, run_in_batches
+from mutabot.campaign import budget
+from mutabot.campaign.budget import in_order
 from mutabot.campaign.run import run_campaign
 from mutabot.execution.interruption import OutOfTimeError, interruptible, interruptions_kept, limited
 from mutabot.journal.journal import Journal
@@ -58,36 +59,6 @@ def test_every_outcome_comes_once_each_site_first_and_one_round_after_the_other(
     assert sorted(pairs) == sorted((item.id, round) for item in MUTANTS for round in range(2))
     assert len({item.site for item, _ in trials[:3]}) == 3
     assert [round for _, round in trials] == [0] * 5 + [1] * 5
-
-
-def test_a_longer_time_runs_what_a_shorter_one_runs_and_more() -> None:
-    class Even(Batches):
-        """Batches of two."""
-
-        def __init__(self, left: float) -> None:
-            self._left = left
-
-        @property
-        def left(self) -> float:
-            return self._left
-
-        def size(self, trials: Any) -> int:
-            return min(2, len(trials)) if self._left >= 1 else 0
-
-        def took(self, trials: Any, seconds: float) -> None:
-            self._left -= 1
-
-    def run(left: float) -> tuple[list[int], bool]:
-        ran: list[int] = []
-        whole = run_in_batches(
-            Even(left), [(one, 0) for one in MUTANTS], lambda some: ran.extend(one.number for one, _ in some),
-            lambda count: None,
-        )  # fmt: skip
-        return ran, whole
-
-    assert run(1) == ([1, 2], False)
-    assert run(2) == ([1, 2, 3, 4], False)
-    assert run(3) == ([1, 2, 3, 4, 5], True)
 
 
 def test_the_end_of_the_time_waits_until_it_is_safe() -> None:
@@ -145,7 +116,7 @@ def test_what_is_under_way_when_the_time_is_up_gets_no_verdict(
     (project / "mission.py").write_text(
         (project / "mission.py").read_text().replace("sleep(0.05)", "sleep(1.0)")
     )
-    monkeypatch.setattr(Batches, "size", lambda self, trials: len(trials))
+    monkeypatch.setattr(budget, "_FIRST", 1000)
     results = campaign(project, budget=3.5)
     assert results.done < results.planned
     assert results.state == "out of time"

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.engines import repeats
-from mutabot.campaign.engines.repeats import Doubts
+from mutabot.campaign.engines import rerun
+from mutabot.campaign.engines.rerun import Doubts
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
@@ -77,7 +77,7 @@ def test_repeats_beyond_their_time_are_left_and_told(
 ) -> None:
     script.kill(FALSE)
     for name in ("SECONDS", "SHARE", "MOST_SECONDS", "MOST_SHARE"):
-        monkeypatch.setattr(repeats, name, 0.0)
+        monkeypatch.setattr(rerun, name, 0.0)
     write_project(tmp_path, MISSION, TESTS)
     results, found, progress = campaign(tmp_path, engine="branch", repeats=True)
     assert found[FALSE].verdict is Verdict.KILLED

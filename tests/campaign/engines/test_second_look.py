@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.engines.repeats import choose, unconfirmed
+from mutabot.campaign.engines.rerun import choose, unconfirmed
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.errors import UnstableError

@@ -373,7 +373,7 @@ def test_an_interrupted_campaign_shows_what_was_there_before(
     def interrupted(*arguments: Any, **options: Any) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(campaign, "run_mutants", interrupted)
+    monkeypatch.setattr(campaign, "run_planned", interrupted)
     with pytest.raises(KeyboardInterrupt):
         project.run()
     shown = project.all_results()
@@ -423,14 +423,14 @@ def test_a_new_file_that_nothing_has_to_do_with_is_no_reason_to_run_again(projec
 def test_a_program_edited_while_mutants_run_is_never_mistaken_for_the_one_they_ran(
     project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    original = campaign.run_mutants
+    original = campaign.run_planned
 
-    def edited(*arguments: Any) -> None:
+    def edited(*arguments: Any) -> bool:
         project.edit("mission.py")
-        original(*arguments)
+        return original(*arguments)
 
     with monkeypatch.context() as patch:
-        patch.setattr(campaign, "run_mutants", edited)
+        patch.setattr(campaign, "run_planned", edited)
         first = project.run()
     assert "mission.py changed while mutants ran" in project.note
     project.edit("mission.py", lambda text: text.removesuffix("\n# edited\n"))
@@ -514,7 +514,7 @@ def test_a_disk_that_is_full_for_the_workers_is_a_clear_error(
     def full(*arguments: Any) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "job.json")
 
-    monkeypatch.setattr(campaign, "run_mutants", full)
+    monkeypatch.setattr(campaign, "run_planned", full)
     with pytest.raises(JournalError, match=r"job\.json cannot be written: No space left"):
         project.run()
     assert_nothing_is_left(project)

@@ -230,7 +230,7 @@ class FakeLink:
 class FakeCluster:
     """A cluster that is only asked."""
 
-    pause, done, home = None, 0, None
+    done, home = 0, None
 
     def __init__(self, odd: dict[int, bytes]) -> None:
         self.told: list[str] = []

@@ -1,4 +1,4 @@
-"""A real campaign with its page: it can be paused, resumed and stopped, and ends as it would without."""
+"""A real campaign with its page: it can be stopped, and ends as it would without."""
 
 from __future__ import annotations
 
@@ -79,14 +79,10 @@ def journal_of(folder: Path) -> JournalReader:
 
 
 @pytest.mark.whole
-def test_a_campaign_is_watched_paused_and_resumed_and_stays_until_the_page_is_closed(project: Path) -> None:
+def test_a_campaign_is_watched_and_stays_until_the_page_is_closed(project: Path) -> None:
     with running(project, *ONE_BY_ONE) as (process, address):
         with listening(address) as events:
             until(events, is_at_mutants)
-            assert command(address, "pause") == 204
-            until(events, lambda state: state["paused"])
-            assert command(address, "resume") == 204
-            until(events, lambda state: not state["paused"])
             last = until(events, lambda state: state["ended"] == "complete")
             text = ask(address, "data/campaign.js").text
             assert f'"version":{last["version"]}' in text
@@ -95,7 +91,6 @@ def test_a_campaign_is_watched_paused_and_resumed_and_stays_until_the_page_is_cl
         out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == ExitCode.FINE
     assert "survivors" in out
-    assert "paused from the page" in err
     assert "the page stays as long as a browser shows it" in err
     with journal_of(project) as journal:
         assert journal.finished == "complete"
@@ -103,14 +98,13 @@ def test_a_campaign_is_watched_paused_and_resumed_and_stays_until_the_page_is_cl
 
 
 @pytest.mark.whole
-def test_stop_is_like_ctrl_c_also_in_a_pause_and_the_campaign_goes_on_later(
+def test_stop_is_like_ctrl_c_and_the_campaign_goes_on_later(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with running(project, *ONE_BY_ONE) as (process, address):
         with listening(address) as events:
             until(events, is_at_mutants)
-            command(address, "pause")
-            until(events, lambda state: state["paused"])
+            until(events, lambda state: state["done"] > 0)
             assert command(address, "stop") == 204
             until(events, lambda state: state["ended"] == "interrupted")
         _, err = process.communicate(timeout=PATIENCE)

@@ -36,16 +36,12 @@ def page() -> Iterator[Any]:
 
 
 def state(version: int, **changes: Any) -> dict[str, Any]:
-    usual = {"stage": "mutants", "line": "", "done": version, "total": 10, "left": 30.0, "paused": False}
+    usual = {"stage": "mutants", "line": "", "done": version, "total": 10, "left": 30.0}
     return {**usual, "ended": "", "version": version, "every": 0.1, **changes}
 
 
-def _use_buttons(page: Any, feed: Feed) -> None:
-    """Pause, go on, and stop at the second thought."""
-    page.get_by_role("button", name="Pause").click()
-    feed.put(state(2, paused=True))
-    page.get_by_role("button", name="Go on").click()
-    feed.put(state(2))
+def _use_buttons(page: Any) -> None:
+    """Stop at the second thought."""
     for answer in ("Let it run", "Stop it"):
         page.get_by_role("button", name="Stop …").click()
         page.get_by_role("button", name=answer).click()
@@ -87,12 +83,12 @@ def test_a_click_during_which_newer_data_come_is_not_lost(page: Any, tmp_path: P
         server.close()
 
 
-def test_it_fills_is_paused_and_says_how_it_ended(page: Any, tmp_path: Path) -> None:
+def test_it_fills_and_says_how_it_ended(page: Any, tmp_path: Path) -> None:
     known = [0]
     given: list[str] = []
     path = tmp_path / "journal.sqlite"
     feed, pages = Feed(), Pages(path, "cell", lambda: known[0])
-    names = ("pause", "resume", "stop")
+    names = ("stop",)
     server = Server(pages, feed, {name: lambda name=name: given.append(name) for name in names})  # type: ignore[misc]
     try:
         feed.put(state(0, stage="baseline", total=None, left=None))
@@ -118,7 +114,7 @@ def test_it_fills_is_paused_and_says_how_it_ended(page: Any, tmp_path: Path) -> 
             told = page.locator("#live").inner_text()
             assert all(words in told for words in ("2 of 10", "s left", "#1 round 1: killed by check"))
 
-            _use_buttons(page, feed)
+            _use_buttons(page)
             journal.finish("interrupted")
         pages.look_at_once()
         known[0] = 3
@@ -130,7 +126,7 @@ def test_it_fills_is_paused_and_says_how_it_ended(page: Any, tmp_path: Path) -> 
         page.get_by_text("This campaign is not complete (interrupted)").wait_for()
         page.locator("#live summary").click()
         assert page.locator("#live li").inner_text() == "<b>a note</b>"
-        assert given == ["pause", "resume", "stop"]
+        assert given == ["stop"]
     finally:
         page.close()  # a server that ends resets what the browser still listens to
         feed.close()

@@ -1,10 +1,8 @@
 """The baseline: the suite on the unmutated program, twice per round, recorded.
 
-It tells which tests reach which site with which values, how long they take, and whether they can be
-relied on. What differs between the two runs of a round is flaky, and is set aside before any mutant runs.
-What calls of one place returned says what a mutant that leaves them out answers.
-
-What workers saw of tests, with the places of their calls, as it is compared.
+It tells which tests reach which site with which values, how long they take, and whether they can be relied
+on. What differs between the two runs of a round is flaky, and is set aside before any mutant runs. What calls
+of one place returned says what a mutant that leaves them out answers.
 """
 
 from __future__ import annotations
@@ -231,7 +229,7 @@ class Baseline(Original):
         unstable: tests set aside as flaky, with the reason, by (round, test).
         flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
         exits: per round, the exit code of the suite on the original.
-        strides: after every how many commands probes are read along the way, by (round, test).
+        strides: after every how many commands probes are read along the way, by round and test.
         refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
         written_through: places that return the robot's own memory, to which the program writes.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
@@ -258,7 +256,7 @@ class Baseline(Original):
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
-    strides: Mapping[tuple[int, str], int] = field(default_factory=dict)
+    strides: Mapping[int, Mapping[str, int]] = field(default_factory=dict)
     refused: dict[tuple[int, str], tuple[RefusedAt, ...]] = field(default_factory=dict)
     written_through: set[Place] = field(default_factory=set)
     restless: set[tuple[int, str]] = field(default_factory=set)
@@ -322,7 +320,8 @@ class Baseline(Original):
 
     def _reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
         """These tests reach a place in a round; None: what stands there is there for all tests."""
-        here = [test for test in self.by_cost(round) if tests is None or test in tests]
+        quickest = sorted(self.tests[round], key=lambda test: cost(self.ends[round, test]))
+        here = [test for test in quickest if tests is None or test in tests]
         aside = [test for where, test in self.unstable if where == round]
         self.reaching[round, place] = here
         if aside := [test for test in aside if tests is None or test in tests]:
@@ -333,7 +332,10 @@ class Baseline(Original):
         self.doubted.add(test)
 
     def compare_runs(self, round: int, end: TestEnd, found: Observation, vocabulary: Vocabulary) -> None:
-        """Compare one more run of a test of the original with its first."""
+        """Compare one more run of a test of the original with its first.
+
+        Only what both have alike can be compared with a mutant's.
+        """
         key = (round, end.test)
         if end.operations != self.ends[key].operations:
             self.uneven.add(key)
@@ -344,7 +346,11 @@ class Baseline(Original):
         comparable = found if first.moments else replace(found, moments=first.moments)
         if comparable != first or end.simulated != self.ends[key].simulated:
             self.unequal.add(key)
-        self.observe_again(round, end.test, found, vocabulary)
+        steady = as_steady(first, found, vocabulary.probes, vocabulary.operations)
+        if steady is None:
+            self.restless.add(key)
+        else:
+            self.observations[key] = steady
 
     def set_aside(self, round: int, test: str, reason: str) -> None:
         """A test turned out to be flaky: from now on no mutant is judged by it in this round."""
@@ -364,33 +370,18 @@ class Baseline(Original):
 
         A test that fails may stop short of a place that it reaches in other rounds.
         """
-        aside = [test for where, test in self.unstable if where == round]
-        return [test for test in aside if self._reaches(test, mutant)]
-
-    def _reaches(self, test: str, mutant: Mutant) -> bool:
-        place = Place.of(mutant)
-        return any(
-            test in found.get((other, place), ())
-            for other in range(len(self.tests))
-            for found in (self.reaching, self.flaky_reaching)
-        )
-
-    def observe_again(self, round: int, test: str, found: Observation, vocabulary: Vocabulary) -> None:
-        """An equal run of the original: only what both have alike can be compared with a mutant's."""
-        known = (vocabulary.probes, vocabulary.operations)
-        steady = as_steady(self.observations[round, test], found, *known)
-        if steady is None:
-            self.restless.add((round, test))
-        else:
-            self.observations[round, test] = steady
+        place, rounds = Place.of(mutant), range(len(self.tests) if self.unstable else 0)
+        reaching = {
+            test
+            for known in (self.reaching, self.flaky_reaching)
+            for other in rounds
+            for test in known.get((other, place), ())
+        }
+        return [test for where, test in self.unstable if where == round and test in reaching]
 
     def refused_in(self, round: int, tests: Iterable[str]) -> dict[str, tuple[RefusedAt, ...]]:
         """The calls of these tests that the robot refuses in the original."""
         return {test: self.refused[round, test] for test in tests if (round, test) in self.refused}
-
-    def by_cost(self, round: int) -> list[str]:
-        """All tests of a round, quickest first."""
-        return sorted(self.tests[round], key=lambda test: cost(self.ends[round, test]))
 
     def budget(self, round: int, test: str, factor: float) -> Budget:
         """What a mutant may use in this test.

@@ -1,4 +1,4 @@
-"""From spans to sites: the text of a call and its number, as the file's language has them; what is written.
+"""Name the sites at spans, and find the expressions of a file through which something is written.
 
 What a name stands for is taken from all assignments of its function, whichever comes first; of an attribute,
 from those of the file. So more may be found than is written, never less of what stands in one file.
@@ -43,128 +43,100 @@ _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 def written_through(source: str) -> frozenset[Extent]:
     """Where all expressions of a file stand through which something is written. Raises SyntaxError."""
-    tree = ast.parse(source)
-    file = _File()
-    scopes = [_Scope(file), *(_Scope(file) for node in ast.walk(tree) if isinstance(node, _Function))]
-    functions = [node for node in ast.walk(tree) if isinstance(node, _Function)]
-    for scope, root in zip(scopes, [tree, *functions], strict=True):
-        scope.read(root)
-    for scope in scopes:
-        for written in scope.writes:
-            scope.follow(written)
-    return frozenset(file.found)
+    writes = _Writes()
+    writes.visit(ast.parse(source))
+    for scope, node in writes.writes:
+        writes.follow(scope, node)
+    return frozenset(writes.found)
 
 
-@dataclass(slots=True)
-class _File:
-    """What is known of a whole file.
+class _Writes(ast.NodeVisitor):
+    """Collects what is assigned and what is written to, function by function.
 
     Attributes:
         found: what is written through.
-        attributes: what is assigned to an attribute, by its text, and in which function.
-        returned: what functions return, by their names.
-    """
-
-    found: set[Extent] = field(default_factory=set)
-    attributes: dict[str, list[tuple[_Scope, ast.expr]]] = field(default_factory=dict)
-    returned: dict[str, list[tuple[_Scope, ast.expr]]] = field(default_factory=dict)
-
-
-@dataclass(slots=True)
-class _Scope:
-    """A function, or the module.
-
-    Attributes:
         writes: what stands before the ``[…]``, the ``.name`` or the method by which it is changed.
     """
 
-    file: _File
-    names: dict[str, list[ast.expr]] = field(default_factory=dict)
-    writes: list[ast.expr] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.found: set[Extent] = set()
+        self.writes: list[tuple[int, ast.expr]] = []
+        #: what a name of a function, an attribute or a call of a function may stand for
+        self._values: dict[tuple[int, str], list[tuple[int, ast.expr]]] = {}
+        self._scope, self._function = 0, ""
 
-    def read(self, root: ast.AST) -> None:
-        """Look at all that stands in it."""
-        name = root.name if isinstance(root, _Function) else ""
-        for node in _within(root):
-            if isinstance(node, ast.Return) and node.value is not None:
-                self.file.returned.setdefault(name, []).append((self, node.value))
-            elif isinstance(node, ast.Call):
-                self.writes += _changed_by(node)
-            else:
-                self._assignment(node)
+    def visit(self, node: ast.AST) -> None:
+        """Take in a node and all below it."""
+        before = self._scope, self._function
+        if isinstance(node, _Function):
+            self._scope, self._function = id(node), node.name
+        match node:
+            case ast.Return(value=ast.expr() as value):
+                self._add(0, f"{self._function}()", value)
+            case ast.Call():
+                self._write(*_changed_by(node))
+            case ast.Assign() | ast.Delete():
+                for target in node.targets:
+                    self._assign(target, node.value if isinstance(node, ast.Assign) else None)
+            case ast.AnnAssign(value=ast.expr() as value) | ast.NamedExpr(value=value):
+                self._assign(node.target, value)
+            case ast.For() | ast.AsyncFor() | ast.comprehension():
+                self._assign(node.target, node.iter)  # an item may be a part of the same memory
+            case ast.withitem(optional_vars=ast.expr() as target):
+                self._assign(target, node.context_expr)
+            case ast.AugAssign():
+                if isinstance(node.target, ast.Name):  # in place, where it can be
+                    self._write(node.target)
+                self._assign(node.target, None)
+        self.generic_visit(node)
+        self._scope, self._function = before
 
-    def _assignment(self, node: ast.AST) -> None:
-        if isinstance(node, ast.Assign):
-            for target in node.targets:
-                self._assigned(target, node.value)
-        elif isinstance(node, ast.AnnAssign | ast.NamedExpr) and node.value is not None:
-            self._assigned(node.target, node.value)
-        elif isinstance(node, ast.For | ast.AsyncFor | ast.comprehension):
-            self._assigned(node.target, node.iter)  # an item may be a part of the same memory
-        elif isinstance(node, ast.withitem) and node.optional_vars is not None:
-            self._assigned(node.optional_vars, node.context_expr)
-        elif isinstance(node, ast.AugAssign):
-            if isinstance(node.target, ast.Name):  # in place, where it can be
-                self.writes.append(node.target)
-            self._assigned(node.target, None)
-        elif isinstance(node, ast.Delete):
-            for target in node.targets:
-                self._assigned(target, None)
+    def _add(self, scope: int, name: str, value: ast.expr) -> None:
+        self._values.setdefault((scope, name), []).append((self._scope, value))
 
-    def _assigned(self, target: ast.expr, value: ast.expr | None) -> None:
+    def _write(self, *nodes: ast.expr) -> None:
+        self.writes += [(self._scope, node) for node in nodes]
+
+    def _assign(self, target: ast.expr, value: ast.expr | None) -> None:
         if isinstance(target, ast.Tuple | ast.List):
             for part in target.elts:
-                self._assigned(part, value)
+                self._assign(part, value)
         elif isinstance(target, ast.Starred):
-            self._assigned(target.value, value)
+            self._assign(target.value, value)
         elif isinstance(target, ast.Subscript | ast.Attribute):
-            self.writes.append(target.value)
-            if isinstance(target, ast.Attribute) and value is not None:
-                self.file.attributes.setdefault(ast.unparse(target), []).append((self, value))
-        elif isinstance(target, ast.Name) and value is not None:
-            self.names.setdefault(target.id, []).append(value)
+            self._write(target.value)
+        if value is not None and isinstance(target, ast.Name | ast.Attribute):
+            scope = self._scope if isinstance(target, ast.Name) else 0
+            self._add(scope, ast.unparse(target), value)
 
-    def follow(self, node: ast.expr) -> None:
+    def follow(self, scope: int, node: ast.expr) -> None:
         """What is written through this is written through all that it is a part of, or another name of."""
-        known = set(self.file.found)
-        self.file.found.add(extent_of(node))
-        if extent_of(node) in known:
+        if extent_of(node) in self.found:
             return
+        self.found.add(extent_of(node))
+        parts: list[ast.expr] = []
+        names = [(0, ast.unparse(node))]
         match node:
             case ast.Subscript() | ast.Attribute() | ast.Starred() | ast.Await() | ast.NamedExpr():
-                self.follow(node.value)
-                for scope, value in self.file.attributes.get(ast.unparse(node), ()):
-                    scope.follow(value)
+                parts = [node.value]
             case ast.Name():
-                for value in self.names.get(node.id, ()):
-                    self.follow(value)
+                names = [(scope, node.id)]
             case ast.IfExp():
-                self.follow(node.body)
-                self.follow(node.orelse)
-            case ast.BoolOp() | ast.Tuple() | ast.List():
-                for part in node.values if isinstance(node, ast.BoolOp) else node.elts:
-                    self.follow(part)
+                parts = [node.body, node.orelse]
+            case ast.BoolOp():
+                parts = node.values
+            case ast.Tuple() | ast.List():
+                parts = node.elts
             case ast.Call():
-                self._follow_call(node)
-
-    def _follow_call(self, node: ast.Call) -> None:
-        name = _name_of(node.func)
-        for scope, value in self.file.returned.get(name, ()):
-            scope.follow(value)
-        if name in _VIEWS:
-            seen = [node.func.value] if isinstance(node.func, ast.Attribute) else []
-            for one in [*seen, *node.args[:1]]:
-                self.follow(one)
-
-
-def _within(root: ast.AST) -> Iterator[ast.AST]:
-    """All nodes of a function or module but those of functions inside it."""
-    waiting = list(ast.iter_child_nodes(root))
-    while waiting:
-        node = waiting.pop()
-        yield node
-        if not isinstance(node, _Function):
-            waiting.extend(ast.iter_child_nodes(node))
+                name = _name_of(node.func)
+                names = [(0, f"{name}()")]
+                if name in _VIEWS:
+                    seen = [node.func.value] if isinstance(node.func, ast.Attribute) else []
+                    parts = [*seen, *node.args[:1]]
+        for part in parts:
+            self.follow(scope, part)
+        for where, value in (pair for name in names for pair in self._values.get(name, ())):
+            self.follow(where, value)
 
 
 def _changed_by(node: ast.Call) -> Iterator[ast.expr]:

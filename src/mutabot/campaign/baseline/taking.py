@@ -1,13 +1,13 @@
-"""Taking the baseline: the runs of the suite on the original, and what they tell.
+"""Take the baseline: run the suite on the original, and read what it tells.
 
 Tests that fail on the original are an error if they do in every round, and are set aside where they do so in
 some. Each is named with its seed and with the command that makes plain pytest draw the seeds of that round.
-Whether the probes can be read at all is looked at here: without them comparisons would say nothing.
 """
 
 from __future__ import annotations
 
 import shlex
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -21,18 +21,16 @@ from mutabot.campaign.baseline.baseline import (
     places_of,
     refused_of,
 )
-from mutabot.campaign.comparison import moments_in, note_moments, strides_of
+from mutabot.campaign.comparison import strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.vocabulary import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
-from mutabot.frozen import frozen
-from mutabot.model import Instrumentation, Probe, ProgramText, Span, Vocabulary
+from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
-from mutabot.model.events import Event, Problem, Remark, TestEnd
-from mutabot.model.job import Job
+from mutabot.model.events import Remark, TestEnd
 from mutabot.model.mutant import Place
 from mutabot.operators import load_all
 
@@ -93,77 +91,12 @@ def _first_line(end: TestEnd) -> str:
     return lines[0] if lines else "no message"
 
 
-#: why a probe says nothing that was read without an error
-_NOTHING = "it reads nothing (None); a probe returns what it reads"
-
-
-def refuse_unreadable(vocabulary: Vocabulary, ends: Sequence[TestEnd]) -> None:
-    """Refuse a probe that no test of the original can read.
-
-    ``ends``: the tests that passed.
-
-    Raises ConfigurationError that names the key, the reason and what is needed.
-    """
-    ends = _with_calls(ends)
-    for probe in vocabulary.probes:
-        reasons = [_why_not(probe, end) for end in ends]
-        if reasons and all(reasons):
-            text = f"{probe.target} cannot be read at the end of any test: {reasons[0]}"
-            raise problem_error(Problem(probe.source, "call", text))
-
-
-def note_readability(vocabulary: Vocabulary, ends: Sequence[TestEnd], progress: Progress) -> None:
-    """Say which probes some tests cannot read, and that a clock never ticks."""
-    ends = _with_calls(ends)
-    for probe in vocabulary.probes:
-        blind = {end.test: why for end in ends if (why := _why_not(probe, end)) is not None}
-        if blind:
-            test, why = next(iter(blind.items()))
-            count = len({end.test for end in ends})
-            progress.note(
-                f"{probe.target} cannot be read in {len(blind)} of {count} tests, such as {test} ({why}): "
-                "what survives there is not called indistinguishable"
-            )
-    if vocabulary.clock is not None and ends and all(end.simulated is None for end in ends):
-        progress.note(
-            f"the clock {vocabulary.clock.tick} never ticks in a test: there is no limit of simulated time"
-        )
-
-
-def _with_calls(ends: Sequence[TestEnd]) -> Sequence[TestEnd]:
-    """The tests that have anything to do with the robot; all of them if none has."""
-    return [end for end in ends if end.trace] or [end for end in ends if end.outcome != "skipped"]
-
-
-def is_read(probe: Probe, names: Iterable[str]) -> bool:
-    """Whether there is a value of the probe among these names."""
-    return any(
-        name == probe.target or (name.startswith(probe.target) and name[len(probe.target)] in ".[#")
-        for name in names
-    )
-
-
-def _why_not(probe: Probe, end: TestEnd) -> str | None:
-    if probe.target in end.unread:
-        return end.unread[probe.target]
-    return None if is_read(probe, end.probes) else _NOTHING
-
-
-REPETITIONS = 2
 _KNOWN_LATER = (
     "at {} sites some tests call an operation and others what nothing tells to be one: it counts there "
     "as one, and the tests are recorded again"
 )
 #: pytest's exit code where tests failed
 _FAILED = 1
-
-
-@frozen
-class _SuiteRun:
-    """Which run of the suite: the key of its task."""
-
-    round: int
-    repetition: int
 
 
 @dataclass(slots=True)
@@ -185,16 +118,24 @@ class _Suite:
 
     def run(self, tasks: Iterable[Task]) -> None:
         """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
-        for result in _told_as_they_come(self.executor.events(tasks), self.progress, self.remarks):
-            run: _SuiteRun = result.task.key
-            self.results[run.round, run.repetition] = result
+        for result in self.executor.events(tasks):
+            if not isinstance(result, Result):
+                if isinstance(result[1], Remark):  # told when it is made, before the tests run if possible
+                    self.remarks.append(result[1])
+                    self.progress.note(str(result[1]))
+                continue
+            round, repetition = result.task.key
+            self.results[round, repetition] = result
             _refuse(result, self.request.arguments)
-            which = f"round {run.round + 1}, run {run.repetition + 1}"
-            self.progress.advance(f"baseline, {which}: {_counts(result)}")
+            counts = Counter(end.outcome for end in result.ends)
+            counted = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
+            which = f"round {round + 1}, run {repetition + 1}"
+            self.progress.advance(f"baseline, {which}: {counted or 'nothing ran'}")
 
-    def job(self, round: int, **details: Any) -> Job:
-        """A run of the original in a round."""
-        return self.request.job(round, record=True, known=tuple(self.known.items()), **details)
+    def task(self, round: int, repetition: int, **details: Any) -> Task:
+        """A run of the original in a round. With forks, imports and collection are done once for all runs."""
+        job = self.request.job(round, record=True, known=tuple(self.known.items()), **details)
+        return Task((round, repetition), job, startup=300.0, may_share=self.request.forks)
 
     def learns(self) -> bool:
         """Whether the runs so far tell of operations where they did not know of them in all tests."""
@@ -206,11 +147,6 @@ class _Suite:
         """The runs of a round, in their order."""
         return [self.results[key] for key in sorted(self.results) if key[0] == round]
 
-    def strides(self) -> dict[tuple[int, str], int]:
-        """After every how many commands probes can be read along the way, by (round, test)."""
-        ends = {(run[0], end.test): end for run, result in self.results.items() for end in result.ends}
-        return strides_of(ends)
-
 
 def take_baseline(
     request: Request,
@@ -218,50 +154,62 @@ def take_baseline(
     progress: Progress,
     *,
     prepared: Mapping[str, Preparation] | None = None,
-    repetitions: int = REPETITIONS,
-    may_share: bool = False,
+    repetitions: int | None = None,
 ) -> tuple[Baseline, list[Result]]:
     """Run the suite on the original and look at what it does.
 
-    ``prepared`` is what providers of faults want to know, by their names. With one repetition the second run
-    is left to the trunks of the branch engine. ``may_share``: whether imports and collection may be done once
-    for all runs.
+    ``prepared`` is what providers of faults want to know, by their names. ``repetitions``: how often each
+    round is run; as often as the request says, if it is not given. With one, the second run is left to the
+    fork parents.
 
     Returns the baseline and the raw results, first repetitions first.
 
     Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
     tests, BaselineError when tests fail.
     """
-    prepared = prepared or {}
-    for note in (note for one in prepared.values() for note in one.notes):
-        progress.note(note)
-    texts = tuple(text for one in prepared.values() for text in one.texts)
-    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
-        if family not in (*request.families, *OF_CALLS):
-            progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
+    prepared, repetitions = prepared or {}, repetitions or request.repetitions
+    _note_prepared(request, prepared, progress)
     progress.stage("baseline", request.rounds * repetitions)
     suite = _Suite(request, executor, progress)
-    suite.run(_tasks(suite, texts, may_share))
+    texts = tuple(text for one in prepared.values() for text in one.texts)
+    recording = Instrumentation(texts, record=True) if texts else None
+
+    def first_runs() -> Iterator[Task]:
+        for round in range(request.rounds):
+            yield suite.task(round, 0, inspect=round == 0, instrumentation=recording)
+
+    suite.run(first_runs())
     if suite.learns():
         progress.note(_KNOWN_LATER.format(len(suite.known)))
         suite.remarks.clear()
-        suite.run(_tasks(suite, texts, may_share))
-    strides = suite.strides()
-    if repetitions > 1:
-        suite.run(_again(suite, repetitions, strides, may_share))
+        suite.run(first_runs())
+    strides = strides_of(
+        {(run[0], end.test): end for run, result in suite.results.items() for end in result.ends}
+    )
+    if repetitions > 1:  # of the text as it stands: neither looking at it nor probes may change anything
+        suite.run(
+            suite.task(round, repetition, moments=strides.get(round, {}))
+            for repetition in range(1, repetitions)
+            for round in range(request.rounds)
+        )
     else:  # was it chance, or the round's seed?
         failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
-        suite.run(
-            Task(_SuiteRun(round, 1), suite.job(round), startup=300.0, may_share=may_share)
-            for round in failing
-        )
+        suite.run(suite.task(round, 1) for round in failing)
     baseline = _read(suite, prepared, strides)
     results = suite.results
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
+def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progress: Progress) -> None:
+    for note in (note for one in prepared.values() for note in one.notes):
+        progress.note(note)
+    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
+        if family not in (*request.families, *OF_CALLS):
+            progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
+
+
 def _read(
-    suite: _Suite, prepared: Mapping[str, Preparation], strides: Mapping[tuple[int, str], int]
+    suite: _Suite, prepared: Mapping[str, Preparation], strides: Mapping[int, Mapping[str, int]]
 ) -> Baseline:
     """What all runs tell, and what is to be said about it."""
     request, progress = suite.request, suite.progress
@@ -272,15 +220,23 @@ def _read(
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):
         failing |= _add_round(baseline, request, sources, round, suite.of(round))
-        baseline.text[round] = _text_seen(suite.results[round, 0])
+        first = suite.results[round, 0]
+        baseline.text[round] = TextSeen(
+            imported=frozenset(first.seen.imported if first.seen else ()),
+            sightings=tuple(first.seen.sightings if first.seen else ()),
+            reached=first.reached,
+            elsewhere=first.reached_elsewhere,
+            refused=first.not_instrumented,
+        )
     refuse_failing(request, failing)
     if not any(baseline.ran(round) for round in range(request.rounds)):
         raise NothingToDoError(_no_tests(baseline))
     ends = list(baseline.ends.values())
-    refuse_unreadable(request.vocabulary, ends)
-    note_readability(request.vocabulary, ends, progress)
-    _note_exclusive(baseline, progress)
-    why = _not_private(suite.results.values())
+    found = (baseline.why_exclusive(round) for round in range(len(baseline.tests)))
+    for test, how in [one for one in found if one is not None][:1]:
+        progress.note(f"{test}: it {how}: mutants run one after the other, with nothing beside them")
+    ended = (result.end for result in suite.results.values() if result.end is not None)
+    why = next((end.not_private for end in ended if end.not_private), None)
     baseline.shares_files = why is not None or not request.configuration.private_files
     if why is not None:
         progress.note(
@@ -288,83 +244,29 @@ def _read(
             "one after the other, and what one leaves, others may find. User namespaces would allow it, in a "
             "container --cap-add SYS_ADMIN --security-opt apparmor=unconfined"
         )
-    note_moments(ends, progress)
+    not_along = next((end.not_along for end in ends if end.not_along), None)
+    if not_along is not None:
+        progress.note(f"the probes are read at the ends of tests only, not along the way: {not_along}")
     return baseline
-
-
-def _text_seen(result: Result) -> TextSeen:
-    """What a run saw of instrumented program text."""
-    return TextSeen(
-        imported=frozenset(result.seen.imported if result.seen else ()),
-        sightings=tuple(result.seen.sightings if result.seen else ()),
-        reached=result.reached,
-        elsewhere=result.reached_elsewhere,
-        refused=result.not_instrumented,
-    )
-
-
-def _exit_code(result: Result, *, is_whole: bool) -> int:
-    """How the suite ends; without the tests that are set aside nothing fails."""
-    if not is_whole and result.exit_code == _FAILED:
-        return 0
-    return result.exit_code
-
-
-def _note_exclusive(baseline: Baseline, progress: Progress) -> None:
-    """Say why nothing can run beside the suite."""
-    found = (baseline.why_exclusive(round) for round in range(len(baseline.tests)))
-    if (first := next((one for one in found if one is not None), None)) is not None:
-        progress.note(f"{first[0]}: it {first[1]}: mutants run one after the other, with nothing beside them")
-
-
-def _not_private(results: Iterable[Result]) -> str | None:
-    """Why a run could not keep its files to itself."""
-    return next((one.end.not_private for one in results if one.end and one.end.not_private), None)
-
-
-def _told_as_they_come(
-    events: Iterator[Result | tuple[Task, Event]], progress: Progress, remarks: list[Remark]
-) -> Iterator[Result]:
-    """Results; remarks are told when they are made, which is before the tests run where that is possible."""
-    for event in events:
-        if isinstance(event, Result):
-            yield event
-        elif isinstance(event[1], Remark):
-            remarks.append(event[1])
-            progress.note(str(event[1]))
-
-
-def _tasks(suite: _Suite, texts: tuple[ProgramText, ...], may_share: bool) -> Iterator[Task]:
-    """The first run of each round."""
-    recording = Instrumentation(texts, record=True) if texts else None
-    for round in range(suite.request.rounds):
-        job = suite.job(round, inspect=round == 0, instrumentation=recording)
-        yield Task(_SuiteRun(round, 0), job, startup=300.0, may_share=may_share)
-
-
-def _again(
-    suite: _Suite, repetitions: int, strides: Mapping[tuple[int, str], int], may_share: bool
-) -> Iterator[Task]:
-    """Further runs, of the text as it stands: neither looking at it nor probes may change anything."""
-    for repetition in range(1, repetitions):
-        for round in range(suite.request.rounds):
-            job = suite.job(round, moments=moments_in(strides, round))
-            yield Task(_SuiteRun(round, repetition), job, startup=300.0, may_share=may_share)
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:
     """Stop at once if this run of the suite cannot be a baseline."""
+    running = [result.running] if result.running is not None else []
     if result.problems:
-        raise _worst_problem(result)
+        errors = [problem_error(problem) for problem in result.problems]
+        if len(errors) > 1:
+            errors[0].args = ("\n".join(str(error) for error in errors[:10]),)
+        raise errors[0]
     if result.untrusted is not None:
         raise BaselineError(
             f"the tests cannot be run on the original: {result.untrusted}; do they write to descriptors that "
             "they have not opened, or delete .mutabot?",
-            tests=_running(result),
+            tests=running,
         )
     if result.end is None:
         text = f"the tests cannot be run on the original: {death(result, said=False)}{at(result)}"
-        raise BaselineError(f"{text}{said_in(result.log)}", tests=_running(result))
+        raise BaselineError(f"{text}{said_in(result.log)}", tests=running)
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
     how = ABNORMAL.get(result.end.exit_status)
@@ -379,24 +281,6 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
             f"{broken[0].test}: {broken[0].failure}; the original must run before mutants can",
             tests=[end.test for end in broken],
         )
-
-
-def _worst_problem(result: Result) -> Exception:
-    errors = [problem_error(problem) for problem in result.problems]
-    if len(errors) > 1:
-        errors[0].args = ("\n".join(str(error) for error in errors[:10]),)
-    return errors[0]
-
-
-def _running(result: Result) -> list[str]:
-    return [result.running] if result.running is not None else []
-
-
-def _counts(result: Result) -> str:
-    counts: dict[str, int] = {}
-    for end in result.ends:
-        counts[end.outcome] = counts.get(end.outcome, 0) + 1
-    return ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "nothing ran"
 
 
 def _add_round(
@@ -430,7 +314,9 @@ def _add_round(
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
-    baseline.exits[round] = _exit_code(repetitions[0], is_whole=len(good) == len(runs[0]))
+    # without the tests that are set aside nothing fails
+    is_set_aside = len(good) < len(runs[0]) and repetitions[0].exit_code == _FAILED
+    baseline.exits[round] = 0 if is_set_aside else repetitions[0].exit_code
     _add_hits(baseline, sources, round, repetitions[0], good)
     baseline.refused |= {(round, test): calls for test, calls in refused_of(repetitions[0]).items()}
     return failed
@@ -453,7 +339,9 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
     reaching: dict[Place, list[str]] = {}
     for end in result.ends:
         if end.test not in good:
-            _add_set_aside(baseline, round, end.test, {places[index] for index, *_ in end.trace})
+            if (round, end.test) in baseline.unstable:  # where it would have judged mutants
+                for place in {places[index] for index, *_ in end.trace}:
+                    baseline.flaky_reaching.setdefault((round, place), []).append(end.test)
             continue
         for index, written, read, answer in end.trace:
             place = places[index]
@@ -470,9 +358,3 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
         reaching[place] = list(good)
     for place, tests in reaching.items():
         baseline.reaching[round, place] = sorted(tests, key=lambda test: cost(baseline.ends[round, test]))
-
-
-def _add_set_aside(baseline: Baseline, round: int, test: str, places: Iterable[Place]) -> None:
-    """Where a test that is set aside would have judged mutants."""
-    for place in places if (round, test) in baseline.unstable else ():
-        baseline.flaky_reaching.setdefault((round, place), []).append(test)

@@ -1,9 +1,11 @@
-"""What a vocabulary has and the original does not: mistakes that nothing else tells, values out of range."""
+"""Find what a vocabulary has and the original does not: probes that cannot be read, values that do not fit.
+
+Without readings of probes comparisons would say nothing.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from mutabot.campaign.baseline.baseline import Baseline
@@ -11,74 +13,9 @@ from mutabot.campaign.comparison import parts_of, readings_of
 from mutabot.campaign.request import Progress
 from mutabot.config.vocabulary import problem_error
 from mutabot.extensions import brought
-from mutabot.model import Operation, Pattern, Quantity, Vocabulary
-from mutabot.model.events import Problem, Remark
+from mutabot.model import Operation, Pattern, Probe, Quantity, Vocabulary
+from mutabot.model.events import Problem, Remark, TestEnd
 from mutabot.model.quantity import is_number, value_text
-
-
-@dataclass(slots=True)
-class _Count:
-    """How often a quantity had a value, how often one outside its range, and the first of these."""
-
-    values: int = 0
-    outside: int = 0
-    example: float | None = None
-
-    def add(self, quantity: Quantity, value: Any) -> None:
-        numbers = [item for item in _items(value) if is_number(item)]
-        beyond = [number for number in numbers if not quantity.allows(number)]
-        self.values += bool(numbers)
-        self.outside += bool(beyond)
-        if self.example is None and beyond:
-            self.example = beyond[0]
-
-
-def note_ranges(baseline: Baseline, vocabulary: Vocabulary, progress: Progress) -> None:
-    """Tell once about each quantity whose recorded values leave its own range."""
-    remarks = tuple(_out_of_range(baseline, vocabulary))
-    baseline.remarks = (*baseline.remarks, *remarks)
-    for remark in remarks:
-        progress.note(str(remark))
-
-
-def _out_of_range(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
-    for operation in vocabulary.operations:
-        for pattern in operation.patterns or (None,):
-            owner = pattern if pattern is not None else operation
-            for quantity in (*owner.arguments, *owner.result):
-                count = _Count()
-                if quantity.range is not None:
-                    _count(count, baseline, operation, pattern, quantity)
-                if count.outside:
-                    yield _remark(owner, quantity, count)
-
-
-def _count(
-    count: _Count, baseline: Baseline, operation: Operation, pattern: Pattern | None, quantity: Quantity
-) -> None:
-    text = pattern.text if pattern is not None else None
-    for place, hits in baseline.hits.items():
-        if (place.operation, place.pattern) == (operation.target, text):
-            for hit in hits:
-                count.add(quantity, {**hit.read, **hit.written}.get(quantity.name))
-
-
-def _remark(owner: Operation | Pattern, quantity: Quantity, count: _Count) -> Remark:
-    is_written = quantity in owner.arguments
-    limits = "[{:g}, {:g}]".format(*quantity.range or ())
-    remedy = f"clip = {limits} if the robot limits what it is sent, else a wider range"
-    return Remark(
-        owner.source,
-        f"{'arguments' if is_written else 'result'}.{quantity.name}",
-        f"{count.outside} of {count.values} recorded values are outside range = {limits}, such as "
-        f"{quantity.text(count.example)}, and mutants stay away from what is outside; "
-        f"give it {remedy if is_written else 'a wider range'}",
-    )
-
-
-def _items(value: Any) -> Sequence[Any]:
-    return value if isinstance(value, list | tuple) else [value]
-
 
 _NO_MIDDLEWARE = (
     "it is a name on a middleware, but no installed package brings one, so that nothing would be seen of it; "
@@ -89,6 +26,8 @@ _NEEDED = {
     "euler": "three angles",
     "quaternion": "four numbers, not all zero",
 }
+#: why a probe says nothing that was read without an error
+_NOTHING = "it reads nothing (None); a probe returns what it reads"
 
 
 def refuse_unhooked(vocabulary: Vocabulary) -> None:
@@ -102,26 +41,64 @@ def refuse_unhooked(vocabulary: Vocabulary) -> None:
 
 
 def refuse_unfit(baseline: Baseline, vocabulary: Vocabulary) -> None:
-    """Refuse an orientation, or an angle of a probe, that no recorded value is.
+    """Refuse a probe that no test can read, and an orientation or angle that no recorded value is.
 
-    Raises ConfigurationError that names the key, the value and what is needed.
+    Raises ConfigurationError that names the key, the value or the reason, and what is needed.
     """
-    for problem in (*_of_operations(baseline, vocabulary), *_of_probes(baseline, vocabulary)):
+    for problem in (
+        *_unreadable(baseline, vocabulary),
+        *_of_operations(baseline, vocabulary),
+        *_of_probes(baseline, vocabulary),
+    ):
         raise problem_error(problem)
 
 
+def note_fit(baseline: Baseline, vocabulary: Vocabulary, progress: Progress) -> None:
+    """Tell which probes some tests cannot read, that a clock never ticks, and values out of range."""
+    ends = _with_calls(baseline)
+    for probe in vocabulary.probes:
+        blind = {end.test: why for end in ends if (why := _why_not(probe, end)) is not None}
+        if blind:
+            test, why = next(iter(blind.items()))
+            count = len({end.test for end in ends})
+            progress.note(
+                f"{probe.target} cannot be read in {len(blind)} of {count} tests, such as {test} ({why}): "
+                "what survives there is not called indistinguishable"
+            )
+    if vocabulary.clock is not None and ends and all(end.simulated is None for end in ends):
+        progress.note(
+            f"the clock {vocabulary.clock.tick} never ticks in a test: there is no limit of simulated time"
+        )
+    remarks = tuple(_out_of_range(baseline, vocabulary))
+    baseline.remarks = (*baseline.remarks, *remarks)
+    for remark in remarks:
+        progress.note(str(remark))
+
+
+def _with_calls(baseline: Baseline) -> list[TestEnd]:
+    """The tests that have anything to do with the robot; all of them if none has."""
+    ends = list(baseline.ends.values())
+    return [end for end in ends if end.trace] or [end for end in ends if end.outcome != "skipped"]
+
+
+def _why_not(probe: Probe, end: TestEnd) -> str | None:
+    """Why a probe could not be read at the end of a test; None if it could."""
+    return end.unread.get(probe.target) or (None if readings_of(probe, end.probes) else _NOTHING)
+
+
+def _unreadable(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
+    for probe in vocabulary.probes:
+        reasons = [_why_not(probe, end) for end in _with_calls(baseline)]
+        if reasons and all(reasons):
+            text = f"{probe.target} cannot be read at the end of any test: {reasons[0]}"
+            yield Problem(probe.source, "call", text)
+
+
 def _of_operations(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
-    for place, hits in baseline.hits.items():
-        operation = vocabulary.operation(place.operation)
-        if operation is None:
-            continue
-        owner = operation.pattern(place.pattern) or operation
-        for side, quantities in (("arguments", owner.arguments), ("result", owner.result)):
-            for quantity in quantities:
-                values = ({**hit.read, **hit.written}.get(quantity.name) for hit in hits)
-                wrong = _wrong(quantity, values)
-                if wrong is not None:
-                    yield Problem(owner.source, f"{side}.{quantity.name}", wrong)
+    for owner, side, quantity, values in _recorded(baseline, vocabulary):
+        wrong = _wrong(quantity, values)
+        if wrong is not None:
+            yield Problem(owner.source, f"{side}.{quantity.name}", wrong)
 
 
 def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
@@ -132,9 +109,7 @@ def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
             values = [
                 value for one, names in known for name in names for value in parts_of(name, quantity, one)
             ]
-            wrong = _wrong(quantity, values)
-            if not values:
-                wrong = "the probe never reads such a part"
+            wrong = _wrong(quantity, values) if values else "the probe never reads such a part"
             if wrong is not None:
                 yield Problem(probe.source, f"result.{quantity.name}", wrong)
 
@@ -145,3 +120,44 @@ def _wrong(quantity: Quantity, values: Iterable[Any]) -> str | None:
     if not quantity.is_whole or not seen or any(quantity.orientation(value) is not None for value in seen):
         return None
     return f"{quantity.kind} needs {_NEEDED[quantity.kind]}, and the value is {value_text(seen[0])}"
+
+
+def _out_of_range(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
+    for owner, side, quantity, values in _recorded(baseline, vocabulary):
+        if quantity.range is None:
+            continue
+        numbers = [found for value in values if (found := [*filter(is_number, _items(value))])]
+        outside = [[one for one in some if not quantity.allows(one)] for some in numbers]
+        examples = [some[0] for some in outside if some]
+        limits = "[{:g}, {:g}]".format(*quantity.range)
+        remedy = f"clip = {limits} if the robot limits what it is sent, else a wider range"
+        if examples:
+            yield Remark(
+                owner.source,
+                f"{side}.{quantity.name}",
+                f"{len(examples)} of {len(numbers)} recorded values are outside range = {limits}, such as "
+                f"{quantity.text(examples[0])}, and mutants stay away from what is outside; "
+                f"give it {remedy if side == 'arguments' else 'a wider range'}",
+            )
+
+
+def _recorded(
+    baseline: Baseline, vocabulary: Vocabulary
+) -> Iterator[tuple[Operation | Pattern, str, Quantity, list[Any]]]:
+    """The recorded values of each quantity of an operation or pattern, and on which side it is."""
+    for operation in vocabulary.operations:
+        for pattern in (None, *operation.patterns):
+            owner, text = pattern or operation, pattern.text if pattern is not None else None
+            found = [
+                {**hit.read, **hit.written}
+                for place, hits in baseline.hits.items()
+                if (place.operation, place.pattern) == (operation.target, text)
+                for hit in hits
+            ]
+            for side, quantities in (("arguments", owner.arguments), ("result", owner.result)):
+                for quantity in quantities if found else ():
+                    yield owner, side, quantity, [values.get(quantity.name) for values in found]
+
+
+def _items(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, list | tuple) else [value]

@@ -1,13 +1,12 @@
-"""Controls: mutants that must survive, and mutants that must die.
+"""Controls: mutants of mutabot's own whose end is known.
 
-The identity mutant goes through all the machinery and changes nothing, so it must survive. The fatal mutant
-raises, so it must die, which proves that turning a mutant on changes anything at all. A control that ends
-wrongly is tried again in a fresh process; one that ends wrongly there too stops the campaign: its verdicts
-could not be believed.
+The identity changes nothing, so it must survive. The fatal mutant raises, so it must die: turning a mutant on
+changes something. A control that ends wrongly is tried again in a fresh process. One that ends wrongly there
+too stops the campaign: its verdicts could not be believed.
 
-There is one pair for each engine and each way into the program: mutants of calls, of the program text, and of
-each other provider have their own. Those of the text ask at their place like any alternative: the identity
-proves by its hits that the text which runs is the instrumented one.
+Each way of running has one pair: each provider by each engine, and forks before any test. Controls of the
+program text ask at their place like any alternative: the hits of the identity prove that instrumented text
+runs.
 """
 
 from __future__ import annotations
@@ -18,16 +17,16 @@ from dataclasses import dataclass, replace
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.faults.providers import provider
+from mutabot.campaign.request import REPLAY
 from mutabot.campaign.verdict import judge
 from mutabot.errors import ControlError
-from mutabot.execution.task import Task
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
 from mutabot.operators.command import Fatal, Identity
 
-from .fresh import REPLAY, run_of, task
+from .isolated_run import MutantRun, run_of, task
 
 IDENTITY, FATAL = Identity.name, Fatal.name
 #: what a control is run for that is forked before any test
@@ -55,47 +54,60 @@ class Control:
     subject: str
 
     @property
-    def way(self) -> tuple[str, str, bool, int]:
+    def way(self) -> tuple[str, str, bool]:
         """What it proves of an engine, wherever it acts."""
-        return self.name, self.provider, self.subject == IMPORT, self.round
+        return self.name, self.provider, self.subject == IMPORT
 
     @property
     def mutant(self) -> Mutant:
-        """The control as a mutant; what it is run for is part of its id."""
+        """The control as a mutant. What it is run for is part of its id."""
         place = self.place
-        variant = self.subject if self.round == 0 else f"{self.subject}, round {self.round + 1}"
         return Mutant(
-            0, CONTROL, self.name, place.site, place.operation, place.pattern, None, variant, self.name,
+            0, CONTROL, self.name, place.site, place.operation, place.pattern, None, self.subject, self.name,
             provider=self.provider,
         )  # fmt: skip
 
-    def task(self, campaign: Campaign) -> Task:
-        """The task that runs it by replay."""
-        made = task(campaign, self.mutant, self.round, self.tests, stop=self.name == FATAL)
-        return replace(made, key=self)
+    @property
+    def run(self) -> MutantRun:
+        """The control as what an engine runs."""
+        return self.mutant, self.round
 
-    def end(self, outcome: Outcome) -> ControlEnd:
-        """How it ended, judged by its outcome."""
-        wrong = self._what_is_wrong(outcome)
-        return ControlEnd(self.subject, self.name, wrong is None, wrong or f"{outcome.hits} hits")
-
-    def _what_is_wrong(self, outcome: Outcome) -> str | None:
-        expected = Verdict.NO_EFFECT if self.name == IDENTITY else Verdict.KILLED
-        if outcome.verdict is expected:
+    def what_is_wrong(self, outcome: Outcome) -> str | None:
+        """Why its end is not the one that it must have; None if it is."""
+        if outcome.verdict is (Verdict.NO_EFFECT if self.name == IDENTITY else Verdict.KILLED):
             return None
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
             return f"the test passes although the {provider(self.provider).location} raises"
         where = f"; it was at {outcome.stuck}" if outcome.stuck is not None else ""
         return f"{outcome.verdict}: {outcome.message or 'it changed something'}{where}"
 
-    def error(self, wrong: str) -> ControlError:
-        """The error that stops the campaign."""
-        return ControlError(
-            f"the {self.name} control of {self.subject} at {self.place.site.place} ended wrongly: "
-            f"{wrong}; no verdict of this campaign could be believed",
-            control=self.name,
-            test_file=self.tests[0].partition("::")[0],
+
+def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
+    """One pair for each provider, where a mutant is planned, in the quickest test of the first round.
+
+    What raises while the program is imported says little about what is reached in a test: that comes last.
+    Only a test that passes on the original must fail by the fatal one. ``forked``: for processes that are
+    forked at the place. What is forked before any test has an identity of its own.
+    """
+    planned = {Place.of(one) for one in mutants if not forked or baseline.why_apart(one) is None}
+    chosen: dict[tuple[str, bool], tuple[tuple[int, bool, float], Place, str]] = {}
+    for (round, place), tests in baseline.reaching.items():
+        ends = [baseline.ends[round, test] for test in tests]
+        passing = [end for end in ends if end.outcome == "passed"]
+        if not passing or place not in planned or (forked and any(end.processes for end in ends)):
+            continue
+        is_early = place in baseline.early
+        way = (baseline.faults.provider_at(place), forked and is_early)
+        cost = (round, is_early, min(end.wall for end in passing))
+        if way not in chosen or cost < chosen[way][0]:
+            chosen[way] = (cost, place, passing[0].test)
+    return [
+        Control(
+            name, place, by, cost[0], baseline.suite(cost[0]), IMPORT if early else test.partition("::")[0]
         )
+        for (by, early), (cost, place, test) in chosen.items()
+        for name in ((IDENTITY,) if early and (by, False) in chosen else (IDENTITY, FATAL))
+    ]
 
 
 def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[ControlEnd]:
@@ -103,77 +115,52 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
 
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
-    progress = campaign.progress
     found = controls_of(campaign.baseline, mutants)
-    controls = [one for one in found if (REPLAY, one.way) not in campaign.proven]
-    if not controls:
-        return
-    progress.stage("controls", len(controls))
+    controls = [one for one in found if (REPLAY, *one.way) not in campaign.proven]
+    if controls:
+        campaign.progress.stage("controls", len(controls))
     for control, outcome in _replayed(campaign, controls):
-        end = end_of(campaign, control, outcome)
-        progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
-        yield end
-        if not end.ok:
-            raise control.error(end.detail)
-        campaign.proven.add((REPLAY, control.way))
+        yield from settled(campaign, REPLAY, control, outcome, is_step=True)
 
 
-def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
-    """One pair for each way into the program, where a mutant is planned; of ladders, one in each round.
+def settled(
+    campaign: Campaign, engine: str, control: Control, outcome: Outcome, *, is_step: bool = False
+) -> Iterator[ControlEnd]:
+    """The end of a control. One that ended wrongly is tried again in a process that shares nothing.
 
-    What raises while the program is imported says little about what is reached in a test: that comes last.
-    Only a test that passes on the original must fail by the fatal one; one that may fail need not.
-    ``forked``: those for processes that are forked at the place; what is forked before any test has an
-    identity of its own.
+    ``is_step``: whether the present stage counts controls.
+
+    Raises ControlError for a control that ends wrongly, after it was yielded.
     """
-    mutants = [one for one in mutants if not forked or baseline.why_apart(one) is None]
-    planned = {Place.of(mutant) for mutant in mutants}
-    always = set(range(len(baseline.tests))) if any(one.ladder for one in mutants) else set()
-    chosen: dict[tuple[tuple[str, bool], int], tuple[tuple[bool, float], Place, str]] = {}
-    for (round, place), tests in baseline.reaching.items():
-        passing = [test for test in tests if baseline.ends[round, test].outcome == "passed"]
-        if not passing or place not in planned or (forked and _has_processes(baseline, round, tests)):
-            continue
-        is_early = place in baseline.early
-        cost = (is_early, min(baseline.ends[round, test].wall for test in passing))
-        key = ((baseline.faults.provider_at(place), forked and is_early), round)
-        if key not in chosen or cost < chosen[key][0]:
-            chosen[key] = (cost, place, passing[0])
-    first = {way: min(round for other, round in chosen if other == way) for way, _ in chosen}
-    return [
-        Control(
-            name, place, way[0], round, baseline.suite(round), IMPORT if way[1] else test.partition("::")[0]
+    wrong = control.what_is_wrong(outcome)
+    if wrong is not None:
+        with campaign.executor.apart() as executor:  # the other processes are at work meanwhile
+            ((_, again),) = _replayed(replace(campaign, executor=executor), [control])
+        first, wrong = wrong, control.what_is_wrong(again)
+        if wrong is None:
+            if outcome.test is not None:
+                campaign.baseline.doubt(outcome.test)
+            campaign.progress.note(
+                f"the {control.name} control of {control.subject} ended wrongly once ({first}), but as it "
+                "must when it was tried again"
+            )
+        outcome = again
+    if is_step:
+        campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'as it must'}")
+    yield ControlEnd(control.subject, control.name, wrong is None, wrong or f"{outcome.hits} hits")
+    if wrong is not None:
+        raise ControlError(
+            f"the {control.name} control of {control.subject} at {control.place.site.place} ended wrongly: "
+            f"{wrong}; no verdict of this campaign could be believed",
+            control=control.name,
+            test_file=control.tests[0].partition("::")[0],
         )
-        for (way, round), (_, place, test) in chosen.items()
-        if round == first[way] or round in always
-        for name in ((IDENTITY,) if way[1] and (way[0], False) in first else (IDENTITY, FATAL))
-    ]
-
-
-def _has_processes(baseline: Baseline, round: int, tests: Iterable[str]) -> bool:
-    return any(baseline.ends[round, test].processes for test in tests)
-
-
-def end_of(campaign: Campaign, control: Control, outcome: Outcome) -> ControlEnd:
-    """How a control ended. One that ended wrongly is tried again in a process that shares nothing."""
-    end = control.end(outcome)
-    if end.ok:
-        return end
-    with campaign.executor.apart() as executor:  # the other processes are at work meanwhile
-        ((_, again),) = _replayed(replace(campaign, executor=executor), [control])
-    second = control.end(again)
-    if not second.ok:
-        return second
-    if outcome.test is not None:
-        campaign.baseline.doubt(outcome.test)
-    campaign.progress.note(
-        f"the {control.name} control of {control.subject} ended wrongly once ({end.detail}), but as it must "
-        "when it was tried again"
-    )
-    return second
+    campaign.proven.add((engine, *control.way))
 
 
 def _replayed(campaign: Campaign, controls: Iterable[Control]) -> Iterator[tuple[Control, Outcome]]:
-    for result in campaign.executor.run(control.task(campaign) for control in controls):
-        control: Control = result.task.key
-        yield control, judge(campaign, run_of(result, campaign.sources))
+    tasks = (
+        replace(task(campaign, *one.run, one.tests, stop=one.name == FATAL), key=one) for one in controls
+    )
+    for result in campaign.executor.run(tasks):
+        yield result.task.key, judge(campaign, run_of(result, campaign.sources))

@@ -1,83 +1,160 @@
-"""The contract of an engine: what gives mutants their outcomes.
+"""The engines, which give mutants their outcomes, and what one leaves to the other.
 
-An engine is one file in ``campaign/engines/kinds/`` that sets ``ENGINE``; ``choice`` asks all of them, in
-their order. What one cannot judge goes to the next, by what the baseline knows of the tests that judge it, or
-because something went wrong on the way. The last takes everything: replay, the reference.
+``branch`` runs the suite once as the original and forks it where a mutant differs. ``replay`` runs each
+mutant in a process of its own: it is the reference, and it takes every mutant. With ``auto``, ``replay``
+judges what ``branch`` cannot.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
-from typing import Protocol
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
+from itertools import takewhile
 
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.request import BRANCH, REPLAY
 from mutabot.journal.records import ControlEnd
-from mutabot.model import Mutant, Outcome
+from mutabot.model import Mutant, Outcome, Verdict
 
-#: what is run: a mutant in a round
-Trial = tuple[Mutant, int]
+from .controls import Control, controls_of, run_controls, settled
+from .fork_parent import ForkParents, Unhandled
+from .isolated_run import MutantRun, replay, run_alone
+from .rerun import clear_up
 
 
-@dataclass(slots=True)
-class Remainder:
-    """What an engine leaves to the next one.
+def run_trials(
+    campaign: Campaign,
+    runs: Sequence[MutantRun],
+    writer: OutcomeWriter,
+    found: Callable[[Outcome], object] = lambda outcome: None,
+    let_through: Collection[tuple[str, int]] = (),
+) -> None:
+    """Run these mutants in these rounds, with their controls. Each outcome is in the journal within a second.
 
-    Attributes:
-        trials: mutants and rounds.
-        apart: mutants that need a process of their own from the start.
-        why_apart: why, by their ids.
-        reasons: test to why mutants cannot be judged in it by this engine.
-        notes: what else went wrong, in words.
+    An outcome that counts with the whole suite only goes to ``campaign.again`` instead.
+
+    Args:
+        found: called with each outcome. Nothing else keeps them: a campaign may have a million.
+        let_through: the runs that ended without a kill when some tests were left out.
+
+    Raises ControlError for a control that ends wrongly.
     """
+    left, mutants = Unhandled(list(runs)), {mutant.id: mutant for mutant, _ in runs}
+    for engine in campaign.request.engines:
+        runs, left = left.runs, Unhandled()
+        if not runs:
+            return
+        for one in _by_branch(campaign, runs, left) if engine == BRANCH else _by_replay(campaign, runs):
+            if isinstance(one, ControlEnd):
+                writer.journal.add_control(one.test_file, one.control, one.ok, one.detail)
+                continue
+            mutant = mutants[one.mutant]
+            if not _counts(campaign, mutant, one):
+                campaign.again.append(one)
+                campaign.progress.advance(f"{_name(mutant, one)}, which the whole suite has yet to say")
+                continue
+            is_confirmed = (one.mutant, one.round) in let_through
+            outcome = replace(one, confirmed=True) if is_confirmed else one
+            _write(campaign, mutant, outcome, writer, found)
+    for mutant, round in left.runs:
+        text = f"it could not be branched: {left.why(mutant) or 'its branch gave no answer'}"
+        error = Outcome(mutant.id, round, Verdict.ERROR, message=text, engine=campaign.request.engine)
+        _write(campaign, mutant, error, writer, found)
 
-    trials: list[Trial] = field(default_factory=list)
-    apart: list[Trial] = field(default_factory=list)
-    why_apart: dict[str, str] = field(default_factory=dict)
-    reasons: dict[str, str] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
 
-    def set_apart(self, mutant: Mutant, round: int, reason: str) -> None:
-        """Leave a mutant whatever its tests."""
-        self.apart.append((mutant, round))
-        self.why_apart[mutant.id] = reason
-
-    @property
-    def all(self) -> list[Trial]:
-        """All that is left."""
-        return [*self.trials, *self.apart]
-
-    def why(self, mutant: Mutant) -> str:
-        """Why a mutant is left, in words."""
-        if mutant.id in self.why_apart:
-            return f"it {self.why_apart[mutant.id]}"
-        return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
+def _write(
+    campaign: Campaign,
+    mutant: Mutant,
+    outcome: Outcome,
+    writer: OutcomeWriter,
+    found: Callable[[Outcome], object],
+) -> None:
+    writer.add_outcome(outcome)
+    found(outcome)
+    by = f" by {outcome.by}" if outcome.by is not None else ""
+    campaign.progress.advance(f"{_name(mutant, outcome)}{by}")
 
 
-class Engine(Protocol):
-    """Gives mutants their outcomes.
+def _name(mutant: Mutant, outcome: Outcome) -> str:
+    return f"#{mutant.number} round {outcome.round + 1}: {outcome.verdict}"
 
-    Attributes:
-        name: as ``--engine``, journals and outcomes have it.
-        order: who is asked first; the one with the highest number takes everything.
-        runs: how often the baseline runs the original in each round before this engine begins. One that runs
-            the original itself, beside its mutants, needs one run less than one that does not.
-        may_share: whether the baseline's runs may begin where the tests are collected already.
+
+def _counts(campaign: Campaign, mutant: Mutant, outcome: Outcome) -> bool:
+    """Whether no test was left out whose absence may have led to this outcome."""
+    if outcome.confirmed is None or outcome.verdict is Verdict.SURVIVED:
+        return True
+    baseline, round = campaign.baseline, outcome.round
+    reaching = set(baseline.tests_reaching(round, mutant))
+    first = takewhile(reaching.__contains__, baseline.tests_judging(round, mutant))
+    return outcome.verdict is Verdict.REFUSED and outcome.test in list(first)
+
+
+def _by_replay(campaign: Campaign, runs: Sequence[MutantRun]) -> Iterator[Outcome | ControlEnd]:
+    """Run controls first, then each mutant by itself."""
+    yield from run_controls(campaign, {mutant.id: mutant for mutant, _ in runs}.values())
+    is_all = campaign.request.engine == REPLAY
+    campaign.progress.stage("mutants" if is_all else "mutants by replay", len(runs))
+    yield from replay(campaign, runs)
+
+
+def _by_branch(
+    campaign: Campaign, runs: Sequence[MutantRun], left: Unhandled
+) -> Iterator[Outcome | ControlEnd]:
+    """Run one fork parent per round, with controls and mutants as its forks."""
+    mutants = {mutant.id: mutant for mutant, _ in runs}
+    controls = _forked_controls(campaign, mutants.values())
+    campaign.progress.stage("mutants", len(runs))
+    parents = ForkParents(campaign, left)
+    hindered: list[tuple[Mutant, Outcome]] = []
+    for outcome in parents.run([*(one.run for one in controls.values()), *runs]):
+        if outcome.mutant in controls:
+            yield from settled(campaign, BRANCH, controls[outcome.mutant], outcome)
+        elif outcome.beside is not None:
+            hindered.append((mutants[outcome.mutant], outcome))
+        else:
+            yield outcome
+    _tell(campaign, left)
+    clear_up(campaign, parents.suspects)
+    left.runs = [run for run in left.runs if run[0].id not in controls]
+    yield from run_alone(campaign, hindered)
+
+
+def _forked_controls(campaign: Campaign, mutants: Collection[Mutant]) -> dict[str, Control]:
+    """The controls that are to be forked, by the ids of their mutants."""
+    found = controls_of(campaign.baseline, mutants, forked=True)
+    return {one.mutant.id: one for one in found if (BRANCH, *one.way) not in campaign.proven}
+
+
+def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Unhandled]:
+    """Run the controls alone. Returns how many ended as they must, and what ``branch`` leaves.
+
+    Raises ControlError for a control that ends wrongly.
     """
+    left, ended = Unhandled(), 0
+    rest = mutants
+    if BRANCH in campaign.request.engines:
+        controls = _forked_controls(campaign, mutants)
+        campaign.progress.stage("controls", len(controls))
+        for outcome in ForkParents(campaign, left).run([one.run for one in controls.values()]):
+            ended += len(list(settled(campaign, BRANCH, controls[outcome.mutant], outcome, is_step=True)))
+        apart = [one for one in mutants if campaign.baseline.why_apart(one) is not None]
+        rest = mutants if left.runs else apart
+    if REPLAY in campaign.request.engines and rest:
+        ended += len(list(run_controls(campaign, rest)))
+    return ended, left
 
-    name: str
-    order: int
-    runs: int
-    may_share: bool
 
-    def run(self, campaign: Campaign, trials: list[Trial], left: Remainder) -> Iterator[Outcome | ControlEnd]:
-        """Outcomes of mutants in rounds as they come, and before they are believed those of controls.
-
-        ``left`` is filled with what could not be judged, and why. Raises ControlError for a control that ends
-        wrongly, after it was yielded.
-        """
-
-    def try_controls(
-        self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder
-    ) -> Iterator[ControlEnd]:
-        """The controls for these mutants alone; ``left`` as far as it is known without running them."""
+def _tell(campaign: Campaign, left: Unhandled) -> None:
+    """Say what runs in processes of its own, and why."""
+    tests: dict[str, list[str]] = {}
+    for test, reason in left.reasons.items():
+        tests.setdefault(reason, []).append(test)
+    for reason, (first, *others) in tests.items():
+        more = f" and {len(others)} more" if others else ""
+        where = f"in {first}{more}" if first else "while the program is imported"
+        campaign.progress.note(f"no branches {where}: {reason}; mutants there run in processes of their own")
+    for why, number in Counter(left.why_apart.values()).items():
+        campaign.progress.note(f"{number} mutants: each {why}, in a process of its own")
+    for note in left.notes:
+        campaign.progress.note(note)

@@ -16,7 +16,7 @@ from mutabot.errors import OperatorError
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, ROBOT
 from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project
 from mutabot.frozen import frozen
-from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Site, Vocabulary
+from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
 from mutabot.model.mutant import Place, When
 from mutabot.model.quantity import is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all, operator
@@ -75,21 +75,13 @@ NO_SIGN = (
 )
 
 
-def has_negative(baseline: Baseline, place: Place, subject: Subject) -> bool:
+def _has_negative(baseline: Baseline, place: Place, subject: Subject) -> bool:
     """Whether any call of the same command has a negative value of the subject's quantity."""
-    name = subject.quantity.name if subject.quantity is not None else ""
-    return any(
-        number < 0
-        for other, hits in baseline.hits.items()
-        if (other.operation, other.pattern) == (place.operation, place.pattern)
-        for hit in hits
-        for number in _numbers({**hit.read, **hit.written}.get(name))
-    )
-
-
-def _numbers(value: Any) -> list[float]:
-    items = value if isinstance(value, list | tuple) else [value]
-    return [item for item in items if is_number(item)]
+    command = place.operation, place.pattern
+    same = (hits for other, hits in baseline.hits.items() if (other.operation, other.pattern) == command)
+    values = (_value(subject, hit) for hits in same for hit in hits)
+    items = (item for value in values for item in (value if isinstance(value, list | tuple) else [value]))
+    return any(is_number(item) and item < 0 for item in items)
 
 
 _LOST_WRITE = (
@@ -178,7 +170,8 @@ def _at_places(
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
-            if place in baseline.written_through and _only_reads(subject):
+            is_read_alone = subject.quantity in subject.read and subject.quantity not in subject.written
+            if place in baseline.written_through and is_read_alone:
                 reason = _LOST_WRITE
             if Need.IDLE in rule.needs and reason is None:
                 try:
@@ -305,14 +298,9 @@ def _why_unmet(
             return "the vocabulary names no clock"
         case Need.WAIT if vocabulary.wait is None and subject.operation.named is None:
             return "the vocabulary does not say what lets the program's time pass (wait = …)"
-        case Need.SIGN if not has_negative(baseline, place, subject):
+        case Need.SIGN if not _has_negative(baseline, place, subject):
             return NO_SIGN
     return None
-
-
-def _only_reads(subject: Subject) -> bool:
-    """Whether it is about a quantity that the call reads."""
-    return subject.quantity in subject.read and subject.quantity not in subject.written
 
 
 def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
@@ -381,27 +369,20 @@ def _calls(hits: int) -> str:
 
 def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:
     """What the mutant does, in one line; ``is_shared``: whether the site reaches several operations."""
-    what = _what(subject.operation, place.site, is_shared=is_shared)
+    operation, text = subject.operation, place.site.text
+    if operation.named is not None:  # what is done on a middleware, and who hears it
+        is_callback = text == "lambda" or text.startswith("def ")
+        what = f"{text}, {operation.target}" if is_callback else operation.target
+    else:
+        what = text if _names(text, operation.qualname, is_shared=is_shared) else f"{text} ({operation.name})"
     if subject.pattern is not None:
         name = subject.pattern.name
         what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
     return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
 
 
-def _what(operation: Operation, site: Site, *, is_shared: bool) -> str:
-    """The call in words: its text, or the name of what is done on a middleware, and who hears it."""
-    if operation.named is not None:
-        is_callback = site.text == "lambda" or site.text.startswith("def ")
-        return f"{site.text}, {operation.target}" if is_callback else operation.target
-    if _names(site.text, operation.qualname, is_shared=is_shared):
-        return site.text
-    return f"{site.text} ({operation.name})"
-
-
 def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
     """Whether the text of a call says which operation it is: a variable, a table or a wrapper may not."""
-    wanted = qualname if is_shared else qualname.rpartition(".")[2]
-    return (
-        re.search(rf"(?<![\w.]){re.escape(wanted)}$" if is_shared else rf"\b{re.escape(wanted)}$", text)
-        is not None
-    )
+    name = qualname if is_shared else qualname.rpartition(".")[2]
+    before = r"(?<![\w.])" if is_shared else r"\b"
+    return re.search(f"{before}{re.escape(name)}$", text) is not None

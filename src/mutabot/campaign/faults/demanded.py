@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from mutabot.faults import Planted, Project
@@ -24,7 +24,7 @@ class Ladder:
     mutants: tuple[Mutant, ...]
 
 
-def apart(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[Ladder]]:
+def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[Ladder]]:
     """The mutants that stand alone, and the ladders."""
     alone: list[Mutant] = []
     found: dict[str, list[Mutant]] = {}
@@ -48,8 +48,8 @@ def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]
     demands, families = project.demands, project.families
     if not demands:
         return [*planted]
-    ladders = apart(one.mutant for one in planted if one.reason is None)[1]
-    wanted = _wanted(ladders, demands, project.vocabulary)
+    ladders = split_ladders(one.mutant for one in planted if one.reason is None)[1]
+    wanted = demanded_of(ladders, demands, project.vocabulary)
     found = [
         one
         for one in planted
@@ -67,7 +67,7 @@ def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]
 
 def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
     """These mutants with an order by which those with sizes come last, ladder by ladder."""
-    _, ladders = apart(one.mutant for one in planted if one.reason is None)
+    _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
     steps = [mutant.id for ladder in ladders for mutant in ladder.mutants]
     order = {mutant: (1, number) for number, mutant in enumerate(steps)}
     return [
@@ -78,16 +78,10 @@ def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
 
 def demanded_of(
     ladders: Sequence[Ladder], demands: Sequence[Demand], vocabulary: Vocabulary
-) -> Mapping[str, tuple[float, ...]]:
-    """The demanded magnitudes of each ladder, by its id."""
-    return _wanted(ladders, demands, vocabulary) if demands else {}
-
-
-def _wanted(
-    ladders: Sequence[Ladder], demands: Sequence[Demand], vocabulary: Vocabulary
 ) -> dict[str, tuple[float, ...]]:
-    kinds = {one.id: _kind_of(one.mutants[0], vocabulary) for one in ladders}
-    return {one.id: wanted_magnitudes(demands, one.mutants[0], kinds[one.id]) for one in ladders}
+    """The demanded magnitudes of each ladder, by its id."""
+    first = {one.id: one.mutants[0] for one in ladders if demands}
+    return {name: wanted_magnitudes(demands, one, _kind_of(one, vocabulary)) for name, one in first.items()}
 
 
 def _kind_of(mutant: Mutant, vocabulary: Vocabulary) -> Kind | None:

@@ -218,7 +218,7 @@ def _raised_by(function: Any) -> Iterator[str]:
                 yield class_name(raised)
 
 
-def spell_signature(signature: Signature) -> str:
+def spell_signature(signature: inspect.Signature) -> str:
     """The text that is read as this signature, bar annotations. Defaults that are no literals are ``…``."""
     parameters = [
         parameter.replace(annotation=inspect.Parameter.empty, default=_spelt(parameter.default))

@@ -1,0 +1,328 @@
+"""Run outcomes once more in fresh processes, and write down what differs.
+
+``--verify N`` runs outcomes chosen at random and compares how they end. Kills that may be chance are run
+again too. A test in simulated time whose runs of the original are equal to the last bit is taken to be
+deterministic. Of any other test a kill is in doubt if the test is known to be unreliable, or if it kills so
+few of the mutants that it judges that it might do so by failing at random. An end is in doubt where its
+operator leaves to chance what happens.
+
+A kill that does not come out again becomes ``unstable``, and all other kills of its test are in doubt as
+well. Kills in doubt are repeated cheapest first, within a small share of the campaign's time, and a larger
+one as soon as one does not come out again. How many were left is told.
+
+A test that passed in the baseline and failed in a fork parent may be flaky, or something that a fork left
+behind made it fail. One more run without forks tells: a test that fails again is flaky and judges nothing. Of
+one that passes, that cannot be told apart, so its kills are repeated.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import takewhile
+
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.baseline.taking import FAILS
+from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.faults.providers import provider
+from mutabot.campaign.request import Request
+from mutabot.errors import UnstableError
+from mutabot.execution.task import Task
+from mutabot.journal.records import (
+    FLAKY,
+    REPEATS,
+    VERIFICATION,
+    Disagreement,
+    Flaky,
+    Repeated,
+    Repeats,
+    Verification,
+)
+from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.codec import to_data
+from mutabot.model.outcome import in_words, same_end
+
+from .isolated_run import replay
+
+#: a mutant's id and a round
+Key = tuple[str, int]
+#: so many kills of a test, or this share of what it judges, could be failures at random
+_FEW, _SHARE = 2, 0.1
+#: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
+SHARE, SECONDS = 0.05, 2.0
+#: the same once a kill has not come out again, and for what is left to chance
+MOST_SHARE, MOST_SECONDS = 0.1, 10.0
+#: how often an outcome is repeated whose operator leaves to chance what happens
+RACES = 3
+#: seconds for a test of the suite without any mutant
+_DEADLINE = 600.0
+
+
+@dataclass(slots=True)
+class Doubts:
+    """What is in doubt in a campaign.
+
+    Attributes:
+        baseline: what is known about the tests.
+        mutants: by id.
+        outcomes: by mutant and round, before any was repeated.
+        unreliable: tests that have been seen to end otherwise in equal runs, in any round.
+    """
+
+    baseline: Baseline
+    mutants: Mapping[str, Mutant]
+    outcomes: Mapping[Key, Outcome]
+    unreliable: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.unreliable.update(self.baseline.doubted, (test for _, test in self.baseline.unequal))
+        self.unreliable.update(
+            test for (_, test), why in self.baseline.unstable.items() if not why.startswith(FAILS)
+        )
+
+    def kills(self) -> list[Key]:
+        """All kills by a test that ended."""
+        return [key for key, one in self.outcomes.items() if one.verdict is Verdict.KILLED and one.test]
+
+    def in_doubt(self) -> list[Key]:
+        """The kills that may be chance and were not repeated by an earlier campaign."""
+        few = self._few_lone_kills()
+        kills = (key for key in self.kills() if not self.outcomes[key].repeats)
+        return [key for key in kills if self._test(key) in self.unreliable or key in few]
+
+    def raced(self) -> list[Key]:
+        """Kills and survivors whose operator leaves to chance what happens, likewise."""
+        return [
+            key
+            for key, one in self.outcomes.items()
+            if one.verdict in (Verdict.KILLED, Verdict.SURVIVED) and not one.repeats
+            if provider(self.mutants[key[0]].provider).is_raced(self.mutants[key[0]].operator)
+        ]
+
+    def is_certain(self, key: Key) -> bool:
+        """Whether a kill was repeated before, or is one by a test that is taken to be deterministic."""
+        test = self._test(key)
+        is_deterministic = test not in self.unreliable and self._has_clock(test, key[1])
+        return bool(self.outcomes[key].repeats) or is_deterministic
+
+    def _few_lone_kills(self) -> set[Key]:
+        """Kills of a mutant in one round alone, by a test without a clock that has few such kills."""
+        times = Counter((key[0], self._test(key)) for key in self.kills())
+        lone: dict[str, list[Key]] = {}
+        for key in self.kills():
+            test = self._test(key)
+            if times[key[0], test] == 1 and not self._has_clock(test, key[1]):
+                lone.setdefault(test, []).append(key)
+        judged = Counter(
+            test
+            for key, outcome in (self.outcomes.items() if lone else ())
+            for test in lone.keys() & set(self._ran(key))
+            if test == outcome.test or test in self.baseline.tests_reaching(key[1], self.mutants[key[0]])
+        )
+        few = (keys for test, keys in lone.items() if len(keys) < judged[test])
+        return {key for keys in few if len(keys) <= self._most(judged[self._test(keys[0])]) for key in keys}
+
+    @staticmethod
+    def _most(judged: int) -> float:
+        return max(_FEW, _SHARE * judged)
+
+    def _ran(self, key: Key) -> tuple[str, ...]:
+        """The tests of the suite that a mutant ran."""
+        outcome, suite = self.outcomes[key], self.baseline.suite(key[1])
+        if outcome.test in suite and not outcome.complete:
+            return suite[: suite.index(outcome.test) + 1]
+        return suite if outcome.tests else ()
+
+    def cost(self, key: Key) -> float:
+        """Seconds that the tests of a repeat take on the original."""
+        return sum(self.baseline.ends[key[1], test].wall for test in self._ran(key))
+
+    def _test(self, key: Key) -> str:
+        return self.outcomes[key].test or ""
+
+    def _has_clock(self, test: str, round: int) -> bool:
+        end = self.baseline.ends.get((round, test))
+        return end is not None and end.simulated is not None
+
+
+def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, spent: float) -> None:
+    """Verify and repeat, and write down what came of it, flaky tests included.
+
+    ``spent``: seconds that the campaign has taken until now.
+    """
+    request, journal = campaign.request, writer.journal
+    journal.set_meta(FLAKY, to_data(flaky_of(campaign.baseline)))
+    by_id = {mutant.id: mutant for mutant in mutants}
+    outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
+    reruns = _Reruns(campaign, writer, Doubts(campaign.baseline, by_id, outcomes))
+    if request.verify:
+        reruns.verify(choose(outcomes.values(), request.verify, request.seed))
+    if request.repeats:
+        reruns.repeat(max(SHARE * spent, SECONDS), max(MOST_SHARE * spent, MOST_SECONDS))
+    journal.set_meta(REPEATS, to_data(reruns.summary()))
+
+
+@dataclass(slots=True)
+class _Reruns:
+    """The reruns of one campaign.
+
+    Attributes:
+        found: the last rerun of each outcome.
+        times: how often those were repeated that have come out again.
+    """
+
+    campaign: Campaign
+    writer: OutcomeWriter
+    doubts: Doubts
+    found: dict[Key, Outcome] = field(default_factory=dict)
+    times: Counter[Key] = field(default_factory=Counter)
+
+    def verify(self, keys: Sequence[Key]) -> None:
+        """Run these once more and note which ended otherwise. What was found first stays."""
+        self._run(keys)
+        pairs = [(self.doubts.outcomes[key], self.found[key]) for key in keys]
+        wrong = [
+            _disagreement(self.doubts.mutants[first.mutant], first, second)
+            for first, second in pairs
+            if not same_end(first, second)
+        ]
+        result = Verification(self.campaign.request.verify, len(keys), tuple(wrong))
+        self.writer.journal.set_meta(VERIFICATION, to_data(result))
+        self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree")
+
+    def repeat(self, seconds: float, most: float) -> None:
+        """Run what is in doubt once more, and what that puts in doubt; what is left to chance several times.
+
+        This takes so many ``seconds``, and at ``most`` as many if one does not come out again.
+        """
+        began = self.campaign.request.clock()
+        raced, repeated, changed = set(self.doubts.raced()), set[Key](), set[Key]()
+        while due := self._due(raced, changed):
+            seconds = max(seconds, most) if changed or raced else seconds
+            looked = self._run(due, began + seconds)
+            if not looked:
+                break
+            repeated.update(looked)
+            wrong = {key for key in looked if self._settle(key)}
+            changed |= wrong
+            self.doubts.unreliable.update(self.doubts.outcomes[key].test or "" for key in wrong - raced)
+        if repeated or due:
+            left = f"; {len(due)} were left, as repeats may take {seconds:.0f} s" if due else ""
+            kinds = "kills in doubt and ends left to chance" if raced else "kills in doubt"
+            again = f"{len(repeated) - len(changed)} of {len(repeated)}"
+            self.campaign.progress.note(f"repeats: {again} {kinds} come out again{left}")
+
+    def _due(self, raced: Collection[Key], changed: Collection[Key]) -> list[Key]:
+        """What is to be repeated next."""
+        found = dict.fromkeys([*self.doubts.in_doubt(), *raced])
+        times = {key: RACES if key in raced else 1 for key in found}
+        return [key for key in found if key not in changed and self.times[key] < times[key]]
+
+    def summary(self) -> Repeats:
+        """How many outcomes of each kind were repeated, and how many of these changed."""
+        kills = self.doubts.kills()
+        certain = {key for key in kills if key not in self.found and self.doubts.is_certain(key)}
+        doubted = set(self.doubts.in_doubt()) - certain
+        others = [key for key in kills if key not in certain and key not in doubted]
+        survivors = [key for key, one in self.doubts.outcomes.items() if one.verdict is Verdict.SURVIVED]
+        return Repeats(self._counted(doubted), self._counted(others), len(certain), self._counted(survivors))
+
+    def _counted(self, keys: Iterable[Key]) -> Repeated:
+        keys = list(keys)
+        looked = [key for key in keys if key in self.found]
+        return Repeated(len(keys), len(looked), sum(map(self._is_changed, looked)))
+
+    def _run(self, keys: Sequence[Key], until: float | None = None) -> list[Key]:
+        """Run these in fresh processes, cheapest first. Returns those that were run.
+
+        None begins after ``until`` (``Request.clock``).
+        """
+        clock, looked = self.campaign.request.clock, list[Key]()
+        if not keys or (until is not None and clock() >= until):
+            return looked
+        self.campaign.progress.stage("second look", len(keys))
+        cheapest = sorted(keys, key=self.doubts.cost)
+        runs = ((self.doubts.mutants[mutant], round) for mutant, round in cheapest)
+        for outcome in replay(self.campaign, takewhile(lambda _: until is None or clock() < until, runs)):
+            looked.append((outcome.mutant, outcome.round))
+            self.found[looked[-1]] = outcome
+            self.campaign.progress.advance(in_words(outcome))
+        return looked
+
+    def _is_changed(self, key: Key) -> bool:
+        return self.found[key].verdict is not self.doubts.outcomes[key].verdict
+
+    def _settle(self, key: Key) -> bool:
+        """Write into the journal what a repeat says. Returns whether it came out otherwise."""
+        first = self.doubts.outcomes[key]
+        if self._is_changed(key):
+            self.writer.add_outcome(unconfirmed(first, self.found[key]))
+            return True
+        self.times[key] += 1
+        self.writer.add_outcome(replace(first, repeats=first.repeats + self.times[key]))
+        return False
+
+
+def choose(outcomes: Iterable[Outcome], count: int, seed: int) -> list[Key]:
+    """So many mutants and rounds at random, always the same for equal seeds and outcomes.
+
+    Outcomes for which no test was run are left out: there is nothing to run again.
+    """
+    ran = sorted((one.mutant, one.round) for one in outcomes if one.tests or one.test is not None)
+    return random.Random(f"{seed}:verify").sample(ran, min(count, len(ran)))
+
+
+def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
+    """The outcome of a mutant that ended otherwise when it was run again."""
+    text = f"{in_words(first)}; run once more: {in_words(second)}"
+    return replace(
+        first, verdict=Verdict.UNSTABLE, by=None, test=second.test or first.test, message=text,
+        indistinguishable=None, distance=None, divergence=(), gaps=(), way=None, compared=None, figures=(),
+    )  # fmt: skip
+
+
+def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement:
+    words = in_words(first), in_words(second)
+    if words[0] == words[1]:  # they differ in a later line of the message
+        words = f"{first.verdict}: {first.message}", f"{second.verdict}: {second.message}"
+    return Disagreement(mutant.id, mutant.number, first.round, *words)
+
+
+def flaky_of(baseline: Baseline) -> Flaky:
+    """The tests that are known to be flaky now: the fork parents give the second opinion."""
+    lines = [f"{test} in round {round + 1}: {why}" for (round, test), why in baseline.unstable.items()]
+    known = sum(len(baseline.ran(round)) for round in range(len(baseline.tests)))
+    return Flaky(tuple(lines), known + len(lines))
+
+
+def refuse_flaky(request: Request, baseline: Baseline) -> None:
+    """Raise UnstableError if more tests are flaky than the configuration allows."""
+    flaky, limit = flaky_of(baseline), request.configuration.unstable_limit
+    if flaky.share > limit:
+        raise UnstableError(flaky.text(limit), tests=[test for _, test in baseline.unstable])
+
+
+def clear_up(campaign: Campaign, suspects: Iterable[tuple[int, str]]) -> None:
+    """Run the suite once more in each round that has suspects, and note in the baseline what they are."""
+    baseline, progress = campaign.baseline, campaign.progress
+    by_round: dict[int, list[str]] = {}
+    for round, test in suspects:
+        by_round.setdefault(round, []).append(test)
+    jobs = {round: campaign.request.job(round, tests=baseline.suite(round)) for round in by_round}
+    for result in campaign.executor.run(Task(round, job, deadline=_DEADLINE) for round, job in jobs.items()):
+        round = result.task.key
+        ends = ((end, baseline.ends[round, end.test]) for end in result.ends)
+        passed = {end.test for end, first in ends if end.lasting == first.lasting}
+        for test in by_round[round]:
+            if test not in passed:
+                baseline.set_aside(round, test, "passed in the baseline, but not in equal runs")
+                progress.note(f"set aside as flaky in round {round + 1}: {test}")
+            else:
+                baseline.doubt(test)
+                progress.note(
+                    f"{test} failed once while mutants were branched off in round {round + 1}, and passes "
+                    "without: by chance, or by what a branch left behind; mutants of this test and of later "
+                    "ones run in processes of their own"
+                )
