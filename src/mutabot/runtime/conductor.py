@@ -27,7 +27,7 @@ from mutabot.runtime.isolation.fork_parent import FAILED as BRANCH_FAILED
 from mutabot.runtime.isolation.fork_parent import Trunk
 from mutabot.runtime.isolation.forkable import track_event_loops
 from mutabot.runtime.isolation.lifeline import die_with_parent, nobody_listens
-from mutabot.runtime.observation.compared import Assertions, Comparisons
+from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.program_text.returns import Returns
@@ -153,8 +153,7 @@ class Conductor:
     def look_at_checks(self) -> None:
         """Note what tests check."""
         looks, root = self.running.looks, self.job.root
-        Assertions(root, self._is_of_tests, looks).install()
-        Comparisons(root, looks).install()
+        Checks(root, self._is_of_tests, looks).install()
         self.session.call_sites.hook_pytest()
 
     def _is_of_tests(self, path: str) -> bool:
