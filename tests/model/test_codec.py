@@ -29,7 +29,9 @@ few = settings(max_examples=25, deadline=None)
 STAY_INSIDE = {Call, Reply}
 KINDS = [
     kind
-    for kind in [*vars(model).values(), *vars(job).values(), *get_args(Event)]
+    for kind in dict.fromkeys(
+        [*(getattr(model, name) for name in dir(model)), *vars(job).values(), *get_args(Event)]
+    )
     if isinstance(kind, type) and is_dataclass(kind)
 ]
 

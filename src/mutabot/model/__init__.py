@@ -57,21 +57,10 @@ _HOMES = {
     "quantity": ("Kind", "Mode", "Quantity"),
     "call": ("Call", "Middleware", "Mishap", "NotToldError", "Proceed", "Reply"),
     "mutant": (
-        "FATAL",
-        "IDENTITY",
-        "Alternative",
-        "Choice",
-        "Instrumentation",
-        "ProgramText",
-        "Sighting",
-        "TextPlace",
-        "Moment",
-        "Mutant",
-        "Role",
-        "Site",
-        "Span",
+        "FATAL", "IDENTITY", "Alternative", "Choice", "Instrumentation", "Moment", "Mutant", "ProgramText",
+        "Role", "Sighting", "Site", "Span", "TextPlace",
     ),
     "operation": ("ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait"),
     "outcome": ("By", "Check", "Compared", "Diverged", "Kill", "LeftOut", "Looked", "Outcome", "Verdict"),
-}
+}  # fmt: skip
 __getattr__, __dir__ = lazily(__name__, _HOMES)
