@@ -27,13 +27,14 @@ plain: st.SearchStrategy[Any] = (
 few = settings(max_examples=25, deadline=None)
 #: these hold callables and never leave the process
 STAY_INSIDE = {Call, Reply}
-KINDS = [
-    kind
-    for kind in dict.fromkeys(
-        [*(getattr(model, name) for name in dir(model)), *vars(job).values(), *get_args(Event)]
+NAMED = [getattr(model, name) for name in dir(model)]
+KINDS = list(
+    dict.fromkeys(
+        kind
+        for kind in [*NAMED, *vars(job).values(), *get_args(Event)]
+        if isinstance(kind, type) and is_dataclass(kind)
     )
-    if isinstance(kind, type) and is_dataclass(kind)
-]
+)
 
 
 def values_of(kind: Any) -> st.SearchStrategy[Any]:
