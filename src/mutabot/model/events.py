@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import Any, get_args
+from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
@@ -20,8 +20,14 @@ from mutabot.model.outcome import By, Check
 TRACE_LIMIT = 5000
 
 
+class Event:
+    """Something that a process tells: the classes below are all there are."""
+
+    __slots__ = ()
+
+
 @frozen
-class TestEnd:
+class TestEnd(Event):
     """A test has ended.
 
     Attributes:
@@ -136,7 +142,7 @@ class TestEnd:
 
 
 @frozen
-class SiteSeen:
+class SiteSeen(Event):
     """A site was reached for the first time in this session; traces refer to it by ``index``.
 
     ``direct`` is whether the call that stands there is that of the operation itself, rather than of something
@@ -152,7 +158,7 @@ class SiteSeen:
 
 
 @frozen
-class TestStart:
+class TestStart(Event):
     """A test begins: its fixtures are next."""
 
     __test__ = False
@@ -161,7 +167,7 @@ class TestStart:
 
 
 @frozen
-class Watched:
+class Watched(Event):
     """The suite itself ends this process with exit code 1 if a test takes too long.
 
     Attributes:
@@ -176,7 +182,7 @@ class Watched:
 
 
 @frozen
-class Acted:
+class Acted(Event):
     """The mutant is at work: proof that mutated code ran.
 
     Attributes:
@@ -190,7 +196,7 @@ class Acted:
 
 
 @frozen
-class PlacesReached:
+class PlacesReached(Event):
     """Places of the program text that a test reached; those before any test, if ``test`` is empty.
 
     ``elsewhere``: whether that was in processes below the tests.
@@ -202,7 +208,7 @@ class PlacesReached:
 
 
 @frozen
-class TextsSeen:
+class TextsSeen(Event):
     """What a recording saw of the program text, over all tests.
 
     Attributes:
@@ -215,7 +221,7 @@ class TextsSeen:
 
 
 @frozen
-class NotInstrumented:
+class NotInstrumented(Event):
     """A file whose mutants cannot run, because it was imported without its alternatives."""
 
     file: str
@@ -223,7 +229,7 @@ class NotInstrumented:
 
 
 @frozen
-class KnownLater:
+class KnownLater(Event):
     """At a site stood an operation, and in another test something that nothing tells to be one."""
 
     span: Span
@@ -231,7 +237,7 @@ class KnownLater:
 
 
 @frozen
-class BranchEnd:
+class BranchEnd(Event):
     """A branch has finished a test: the one in which it was forked, or a later one.
 
     Attributes:
@@ -250,7 +256,7 @@ class BranchEnd:
 
 
 @frozen
-class BranchFinished:
+class BranchFinished(Event):
     """A branch has gone to the end of the session.
 
     Attributes:
@@ -265,7 +271,7 @@ class BranchFinished:
 
 
 @frozen
-class BranchDied:
+class BranchDied(Event):
     """A branch ended without saying how its test ended.
 
     Attributes:
@@ -291,7 +297,7 @@ class BranchDied:
 
 
 @frozen
-class ForkEnded:
+class ForkEnded(Event):
     """A process that this one forked has ended.
 
     Attributes:
@@ -307,7 +313,7 @@ class ForkEnded:
 
 
 @frozen
-class Unbranched:
+class Unbranched(Event):
     """It was not safe to fork at the first hit, in this test: these mutants need a process of their own.
 
     The test is empty before any.
@@ -319,7 +325,7 @@ class Unbranched:
 
 
 @frozen
-class Undiverged:
+class Undiverged(Event):
     """Mutants of the program text that were reached in a trunk's test and always had the original's value.
 
     The trunk itself has run this test for them.
@@ -334,14 +340,14 @@ class Undiverged:
 
 
 @frozen
-class TokensHeld:
+class TokensHeld(Event):
     """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
 
     held: int
 
 
 @frozen
-class Problem:
+class Problem(Event):
     """Something in the vocabulary does not fit the program.
 
     Attributes:
@@ -359,7 +365,7 @@ class Problem:
 
 
 @frozen
-class Remark:
+class Remark(Event):
     """Something about the vocabulary that the user should know; the program can be tested all the same.
 
     Attributes:
@@ -377,7 +383,7 @@ class Remark:
 
 
 @frozen
-class Serving:
+class Serving(Event):
     """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``.
 
     ``copy``: the process that it has forked for the job that came last.
@@ -388,7 +394,7 @@ class Serving:
 
 
 @frozen
-class Began:
+class Began(Event):
     """A process below the tests has begun to tell.
 
     Attributes:
@@ -407,7 +413,7 @@ class Began:
 
 
 @frozen
-class Called:
+class Called(Event):
     """A call of an operation below the tests, or of the program before any test began.
 
     Attributes:
@@ -423,7 +429,7 @@ class Called:
 
 
 @frozen
-class Noted:
+class Noted(Event):
     """A call of the original that the robot refused, or that returned the robot's own memory.
 
     Attributes:
@@ -436,7 +442,7 @@ class Noted:
 
 
 @frozen
-class Did:
+class Did(Event):
     """What the mutant did since the last time: counts are to be added up.
 
     Attributes:
@@ -458,7 +464,7 @@ class Did:
 
 
 @frozen
-class Used:
+class Used(Event):
     """What the process used of the running test's budget by now: the last one counts.
 
     ``exceeded`` is the limit that was exceeded, in words.
@@ -471,7 +477,7 @@ class Used:
 
 
 @frozen
-class Raised:
+class Raised(Event):
     """An exception that nobody caught ended the process, or one of its threads.
 
     Attributes:
@@ -488,7 +494,7 @@ class Raised:
 
 
 @frozen
-class Found:
+class Found(Event):
     """Targets of the vocabulary, modules that it names, and nodes, that the process has."""
 
     targets: tuple[str, ...] = ()
@@ -497,14 +503,14 @@ class Found:
 
 
 @frozen
-class Signalled:
+class Signalled(Event):
     """The process sends a signal to another, or to a group (negative), or to ``ANYBODY``."""
 
     pid: int
 
 
 @frozen
-class SessionEnd:
+class SessionEnd(Event):
     """The process ends in an orderly way: the last of its events.
 
     Attributes:
@@ -521,7 +527,7 @@ class SessionEnd:
 
 
 @frozen
-class Untrusted:
+class Untrusted(Event):
     """What a process reports cannot be relied on: said of it by whoever reads its events.
 
     Attributes:
@@ -531,40 +537,8 @@ class Untrusted:
     reason: str
 
 
-Event = (
-    SiteSeen
-    | TestStart
-    | Watched
-    | Acted
-    | PlacesReached
-    | TextsSeen
-    | NotInstrumented
-    | KnownLater
-    | TestEnd
-    | BranchEnd
-    | BranchFinished
-    | BranchDied
-    | Unbranched
-    | Undiverged
-    | TokensHeld
-    | Problem
-    | Remark
-    | Serving
-    | ForkEnded
-    | Began
-    | Called
-    | Noted
-    | Did
-    | Used
-    | Raised
-    | Found
-    | Signalled
-    | SessionEnd
-    | Untrusted
-)
-
 #: the kinds of event by their names
-EVENTS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Event)}
+EVENTS: dict[str, type[Any]] = {kind.__name__: kind for kind in Event.__subclasses__()}
 
 
 def event_to_data(event: Event) -> dict[str, Any]:

@@ -21,7 +21,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum
 from functools import cached_property
 from time import perf_counter  # tests may replace those of the module
@@ -465,7 +465,7 @@ class TestRecording:
         tape, recording = self._tape, self._tape.recording
         recording.is_simulated = tape.is_simulated
         recording.fault = tape.seconds(recording.fault)
-        timed = (replace(one, began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
+        timed = (one._replace(began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
         recording.calls = sorted(timed, key=lambda one: one.began or 0.0)
         try:
             return to_text(recording)
