@@ -19,11 +19,12 @@ import os
 import runpy
 import sys
 import warnings
-from collections.abc import Sequence
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
 from types import CodeType, ModuleType
 from typing import Any, Protocol
+
+from mutabot.languages.python import head_size
 
 
 class Step(Protocol):
@@ -159,19 +160,8 @@ class _AsScript:
             if isinstance(node, ast.expr | ast.stmt):
                 node.lineno = node.end_lineno = 1
                 node.col_offset = node.end_col_offset = 0
-        tree.body[_beginning(tree.body) : _beginning(tree.body)] = forget
+        size = head_size(tree.body)
+        tree.body[size:size] = forget
 
     def give_up(self, path: str, error: Exception) -> None:
         """It runs as a module that was found."""
-
-
-def _beginning(body: Sequence[ast.stmt]) -> int:
-    """Where the first statement may stand: behind the docstring and what must come first."""
-    count = 0
-    for number, statement in enumerate(body):
-        is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
-        is_future = isinstance(statement, ast.ImportFrom) and statement.module == "__future__"
-        if not (is_future or (is_text and number == 0)):
-            break
-        count += 1
-    return count

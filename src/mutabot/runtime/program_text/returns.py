@@ -18,8 +18,9 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import Any, TypeVar
+from typing import Any
 
+from mutabot.languages.python import placed
 from mutabot.model import Role
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.observation.probes import plain, text_of_error
@@ -33,7 +34,6 @@ _TRANSLATED = ("jit", "vectorize", "kernel", "cfunc", "stencil")
 _LIBRARIES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
-_Node = TypeVar("_Node", bound=ast.AST)
 
 
 class Returns:
@@ -186,18 +186,10 @@ def _add_notes(function: Function) -> None:
     for node in _own_nodes(function):
         if isinstance(node, ast.Return) and node.value is not None:
             note = ast.Call(ast.Name(RETURNED, ast.Load()), [node.value], [])
-            node.value = _at(note, node)
+            node.value = placed(note, node)
     has_text = ast.get_docstring(function, clean=False) is not None
     head, body = function.body[:has_text], function.body[has_text:]
     if body:
         tells = ast.Expr(ast.Call(ast.Name(RAISED, ast.Load()), [], []))
         handler = ast.ExceptHandler(None, None, [tells, ast.Raise()])
-        function.body = [*head, _at(ast.Try(body, [handler], [], []), body[0])]
-
-
-def _at(made: _Node, place: ast.expr | ast.stmt) -> _Node:
-    """New nodes at the position of what they stand for."""
-    for node in ast.walk(made):
-        if isinstance(node, ast.expr | ast.stmt | ast.ExceptHandler) and not hasattr(node, "lineno"):
-            ast.copy_location(node, place)
-    return made
+        function.body = [*head, placed(ast.Try(body, [handler], [], []), body[0])]
