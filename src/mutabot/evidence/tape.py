@@ -1,8 +1,8 @@
-"""The tape of the running test: what feeds write on, and the session reads; and its film.
+"""The tape of the running test, on which feeds write and which the session reads; and its film.
 
 There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing. A
-film holds pictures of one test, one after the other in a file, each as what differs from the one before,
-compressed: most of a work cell stands still.
+film holds the pictures of one test, each as its difference from the one before, compressed: most of a work
+cell stands still.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Calls and replies as operators see them: quantities and their values, nothing of Python syntax.
-
-Where randomness starts: every (campaign seed, round, test) has a seed of its own.
-"""
+"""Calls and replies as operators see them, in quantities and their values; and the seeds of randomness."""
 
 from __future__ import annotations
 

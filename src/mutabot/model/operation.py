@@ -1,7 +1,4 @@
-"""Operations: the high-level things a robot program does through its API.
-
-What operations are that have a name on a middleware: a topic to publish on, a service to call.
-"""
+"""Operations: what a robot program does through its API, by calls or under names on a middleware."""
 
 from __future__ import annotations
 

@@ -1,9 +1,7 @@
-"""Units a vocabulary may use, and their conversion to SI.
+"""Units that a vocabulary may use, with their conversion to SI, and orientations.
 
-Orientations: rotation vectors, quaternions and Euler angles, and how far two of them are apart.
-
-Everything goes through unit quaternions (w, x, y, z). Two orientations are as far apart as the angle of the
-one rotation that leads from the first to the second, between 0 and half a turn: 2·atan2(|v|, |w|) of the
+Orientations are unit quaternions (w, x, y, z). Two orientations are as far apart as the angle of the one
+rotation that leads from the first to the second, between 0 and half a turn: 2·atan2(|v|, |w|) of the
 quaternion between them. Euler angles are read out after Bernardes and Viollet, "Quaternion to Euler angles
 conversion: A direct, general and computationally efficient method", PLoS ONE 17 (2022) e0276302.
 """

@@ -1,7 +1,4 @@
-"""The program's time: read where it is simulated, and as mutants ask for it.
-
-Simulated time is read at every call that advances the simulation, or counted in fixed steps.
-"""
+"""The program's time: read at every call that advances the simulation, or counted in fixed steps."""
 
 from __future__ import annotations
 

@@ -1,10 +1,8 @@
-"""Import hook: program files are compiled with their alternatives in them.
+"""Compile program files with their alternatives, or with witnesses that note which values occur.
 
-What a baseline sees at each place of the program: kinds of values, and variables of the same type.
-
-There the text of a place ``E`` with number ``p`` becomes ``__mutabot__[0](p) or __mutabot__[p](E)``:
-the first notes that the place is reached, whatever comes of ``E``. A place is looked at a few times per test;
-from then on the function there hands the value through, as cheap as a call can be.
+In a baseline the text of a place ``E`` with number ``p`` becomes ``__mutabot__[0](p) or __mutabot__[p](E)``:
+the first call notes that the place is reached, whatever becomes of ``E``. A place is examined a few times per
+test; from then on the function there passes the value through, as cheaply as a call can.
 """
 
 from __future__ import annotations

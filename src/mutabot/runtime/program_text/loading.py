@@ -1,15 +1,12 @@
-"""How source files are compiled while they are imported: whatever changes them takes its turn here.
+"""Change source files while Python compiles them, imported or run as scripts.
 
 Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
-``importlib``, ``runpy.run_module``. That is the one place that is patched; loader, spec and module stay what
-they are without it. Files that are run without being imported come here by way of ``scripts``. Of a file that
-a step wants, no compiled form is read or written.
+``importlib``, ``runpy.run_module``. That one place is patched; loader, spec and module stay as they are. Of
+a file that a step wants, no compiled form is read or written.
 
-Program files that are run rather than imported: as the script of a process, or by ``runpy.run_path``.
-
-Python compiles these without asking a loader. The script of a process it runs by way of a loader if a path
-hook claims it, as it does with a zip file; what the script sees of itself is then put right before its first
-statement. ``runpy`` compiles in one function, which is patched.
+Python compiles the script of a process, and ``runpy.run_path`` its file, without a loader. Python runs a
+script by a loader if a path hook claims it, as it does with a zip file; what the script sees of itself is
+then put right before its first statement. ``runpy`` compiles in one function, which is patched.
 """
 
 from __future__ import annotations
