@@ -348,8 +348,6 @@ RUNTIME = "__mutabot__"
 
 #: indexes of the controls: the original goes on as it is; the place raises
 IDENTITY, FATAL = -1, -2
-#: stands for a mutant that is more than one alternative
-AT_ONCE = -3
 
 
 def kept_name(index: int) -> str:

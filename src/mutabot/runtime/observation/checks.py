@@ -16,6 +16,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from types import ModuleType
 from typing import Any
 
@@ -75,12 +76,19 @@ class Looks:
 
     def compared(self, place: str, text: str, left: Any, operator: str, right: Any) -> None:
         """``left operator right`` was evaluated."""
-        self._note(place, text, margin(left, operator, right), lambda: _words(left, operator, right))
+        with suppress(Exception):  # whatever the user's values do when they are examined, the test goes on
+            self._note(place, text, margin(left, operator, right), lambda: _words(left, operator, right))
 
     def called(
         self, place: str, text: str, function: Any, args: tuple[Any, ...], named: Any, first: int = 0
     ) -> None:
         """A function that decides about a check has returned; ``first``: how many arguments are ``self``."""
+        with suppress(Exception):  # as above
+            self._called(place, text, function, args, named, first)
+
+    def _called(
+        self, place: str, text: str, function: Any, args: tuple[Any, ...], named: Any, first: int
+    ) -> None:
         name = getattr(function, "__name__", "")
         library = (getattr(function, "__module__", None) or "").partition(".")[0]
         operator = _COMPARING.get(name) if library in _LIBRARIES else None
