@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mutabot.faults import FaultProvider, Original, Planned, Preparation, Project, TextSeen
-from mutabot.languages.registry import program_files
+from mutabot.languages.front_end import program_files
 from mutabot.model.mutant import Place, ProgramText
 
 from .extension import OF_TEXT, PROVIDER

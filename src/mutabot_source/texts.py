@@ -14,9 +14,9 @@ from typing import cast
 import libcst as cst
 from libcst.metadata import MetadataWrapper, ParentNodeProvider, PositionProvider
 
+from mutabot.languages.front_end import front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
-from mutabot.languages.registry import front_end_of
 from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPlace
 
 from . import registry

@@ -118,13 +118,13 @@ def test_it_is_told_what_happened(recorded: tuple[Path, dict[str, Outcome]]) -> 
     dropped = found["arm.grip#2:call:skip"]
     assert dropped.verdict is Verdict.SURVIVED
     (diverged,) = dropped.diverged
-    assert diverged.story.startswith("part was never let go by gripper, in the original at 1.1 s")
+    assert diverged.story.startswith("gripper and part never separated (original: at 1.1 s)")
     assert diverged.fault == pytest.approx(1.0)
     assert diverged.is_simulated
     (part,) = [one for one in diverged.apart if one.name == "part"]
     assert part.final == pytest.approx(0.25)
     missed = found["arm.grip#1:call:skip"].diverged[0]
-    assert missed.story.startswith("gripper and part never touched, in the original at ")
+    assert missed.story.startswith("gripper and part never touched (original: at ")
 
 
 def test_a_mutant_that_was_killed_is_recorded_up_to_its_end(
@@ -148,7 +148,7 @@ def test_what_differs_in_nothing_is_not_kept(
     folder, same = tmp_path / "project", recorded[1]["arm.grip#2:call:repeat"]
     shutil.copytree(recorded[0], folder)
     again = same.diverged[0]  # it takes a step longer
-    assert again.story == "all went the same way, at other times"
+    assert again.story == "the same movements happened at other times"
     mission = (folder / "mission.py").read_text()
     (folder / "mission.py").write_text(
         mission.replace("arm.move_by(-0.25)", "arm.move_by(-0.25); arm.move_by(1e-9)")

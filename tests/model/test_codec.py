@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from mutabot import model
 from mutabot.model import Call, Reply, job
 from mutabot.model.codec import from_data, to_data
-from mutabot.model.events import Event, event_from_data, event_to_data
+from mutabot.model.events import EVENTS, event_from_data, event_to_data
 from mutabot.model.path import Step
 
 #: plain data that operators may put anywhere; tuples are lists after JSON
@@ -27,11 +27,14 @@ plain: st.SearchStrategy[Any] = (
 few = settings(max_examples=25, deadline=None)
 #: these hold callables and never leave the process
 STAY_INSIDE = {Call, Reply}
-KINDS = [
-    kind
-    for kind in [*vars(model).values(), *vars(job).values(), *get_args(Event)]
-    if isinstance(kind, type) and is_dataclass(kind)
-]
+NAMED = [getattr(model, name) for name in dir(model)]
+KINDS = list(
+    dict.fromkeys(
+        kind
+        for kind in [*NAMED, *vars(job).values(), *EVENTS.values()]
+        if isinstance(kind, type) and is_dataclass(kind)
+    )
+)
 
 
 def values_of(kind: Any) -> st.SearchStrategy[Any]:
@@ -87,7 +90,7 @@ def test_every_dataclass_survives_the_way_over_json(kind: type[Any]) -> None:
     survives()
 
 
-@pytest.mark.parametrize("kind", get_args(Event))
+@pytest.mark.parametrize("kind", EVENTS.values())
 def test_every_report_line_survives_the_way_over_json_with_its_type(kind: type[Any]) -> None:
     @few
     @given(line=instances_of(kind))

@@ -10,8 +10,8 @@ from functools import lru_cache
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
-from mutabot.evidence.story import diverged, noise_between
-from mutabot.evidence.tracks import Seen
+from mutabot.evidence.story import diverged
+from mutabot.evidence.tracks import Seen, noise_between
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import UNFIT
 from mutabot.model import Diverged, Mutant

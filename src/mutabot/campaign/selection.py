@@ -13,7 +13,7 @@ from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.campaign.request import Request
 from mutabot.errors import SelectionError, nearest_name
 from mutabot.faults import known_families
-from mutabot.languages.registry import program_files
+from mutabot.languages.front_end import program_files
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Role, fits, is_like, line_of, means_numbers
 from mutabot.operators import registry

@@ -107,14 +107,12 @@ class Feed:
 
     def _now(self, tape: Tape) -> float | None:
         """The simulator's own time, s; None, and a problem, if it tells none."""
-        try:
+        with tape.reading("the simulated time cannot be read"):
             now = float(self._time())
-            why = "" if isfinite(now) else f"{now} is no time"
-        except Exception as error:  # the user's code may fail in any way, and his test must go on
-            now, why = 0.0, f"{type(error).__name__}: {error}"
-        if why:
-            tape.problem(f"the simulated time cannot be read: {why}")
-        return None if why else now
+            if isfinite(now):
+                return now
+            tape.problem(f"the simulated time cannot be read: {now} is no time")
+        return None
 
     def _tick(self, tape: Tape) -> None:
         now = self._now(tape)
@@ -176,31 +174,22 @@ class Feed:
         for source in self._sources:
             track = tape.track(source.name, source.kind, source.unit, source.size)
             length = len(track.values)
-            try:
-                if source.kind is Kind.VALUE:
-                    track.values.append(source.read())
-                else:
-                    track.values.extend(source.read())
-                told = len(track.values) - length
-                why = f"{told} numbers instead of {track.kind.width}" if told != track.kind.width else ""
-            except Exception as error:  # the user's code may fail in any way, and his test must go on
-                why = f"{type(error).__name__}: {error}"
-            if why:
-                del track.values[length:]
+            with tape.reading(f"{source.name} cannot be recorded"):
+                found = [source.read()] if source.kind is Kind.VALUE else list(source.read())
+                if len(found) == track.kind.width:
+                    track.values.extend(found)
+                    continue
+                why = f"{len(found)} numbers instead of {track.kind.width}"
                 tape.problem(f"{source.name} cannot be recorded: {why}")
+            del track.values[length:]
         tape.close_moment(now)
         if self._touching is not None:
             self._note_contacts(tape, now, self._touching)
 
     def _note_contacts(self, tape: Tape, now: float, read: Callable[[], Iterable[tuple[str, str]]]) -> None:
-        try:
-            pairs = ((str(one), str(other)) for one, other in read())
-            touching = frozenset((one, other) if one < other else (other, one) for one, other in pairs)
-        except Exception as error:  # as above
-            tape.problem(f"contacts cannot be recorded: {type(error).__name__}: {error}")
-            return
-        if touching == self._before:
-            return
+        touching = self._before
+        with tape.reading("contacts cannot be recorded"):
+            touching = frozenset((min(pair), max(pair)) for pair in ((str(a), str(b)) for a, b in read()))
         for what, changed in (("part", self._before - touching), ("touch", touching - self._before)):
             for pair in sorted(changed):
                 tape.note(now, what, ", ".join(pair))

@@ -1,4 +1,4 @@
-"""A recording: where tool and objects were over time, what touched what, what was told and read.
+"""A recording: where tool and objects were over time, what touched what, what was commanded and read.
 
 Plain data, made in the robot program's process and read outside of it. The standard library is enough.
 """
@@ -13,9 +13,7 @@ from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
-
-from mutabot.frozen import frozen
+from typing import Any, NamedTuple
 
 #: single precision: a position of some metres to a micrometre
 _TYPE = "f"
@@ -53,8 +51,7 @@ class Track:
     size: tuple[float, float, float] | None = None
 
 
-@frozen
-class Block:
+class Block(NamedTuple):
     """A box that never moves: a table, a conveyor, a wall. In m, world frame, edges along the axes.
 
     Attributes:
@@ -70,8 +67,7 @@ class Block:
     colour: tuple[float, ...] | None = None
 
 
-@frozen
-class Moment:
+class Moment(NamedTuple):
     """Something that happened.
 
     Attributes:
@@ -85,8 +81,7 @@ class Moment:
     text: str
 
 
-@frozen
-class Told:
+class Told(NamedTuple):
     """A call of an operation.
 
     Attributes:
@@ -136,12 +131,19 @@ class Recording:
     problems: list[str] = field(default_factory=list)
 
 
+#: the fields of a recording that are kept as JSON, as they are
+_PLAIN_FIELDS = ("blocks", "moments", "calls", "fault", "faulty_call", "is_simulated", "problems")
+
+
 def to_bytes(recording: Recording) -> bytes:
     """The recording as compressed bytes, to be kept."""
-    head = json.dumps(_head(recording), default=_plain, separators=(",", ":")).encode()
-    numbers = (recording.times, *(track.values for track in recording.tracks.values()))
-    data = b"".join([len(head).to_bytes(4, "little"), head, *map(_little, numbers)])
-    return zlib.compress(data, 1)
+    tracks = recording.tracks.values()
+    fields = {name: getattr(recording, name) for name in _PLAIN_FIELDS}
+    fields["tracks"] = [(one.name, one.kind, one.unit, one.size) for one in tracks]
+    fields["count"] = len(recording.times)
+    head = json.dumps(fields, default=_plain, separators=(",", ":")).encode()
+    numbers = (recording.times, *(track.values for track in tracks))
+    return zlib.compress(b"".join([len(head).to_bytes(4, "little"), head, *map(_little, numbers)]), 1)
 
 
 def from_bytes(data: bytes) -> Recording:
@@ -155,18 +157,12 @@ def from_bytes(data: bytes) -> Recording:
         tracks = {}
         for name, kind, unit, size in head["tracks"]:
             values, end = _numbers(_TYPE, data, end, count * Kind(kind).width)
-            tracks[name] = Track(name, Kind(kind), values, unit, _triple(size))
-        return Recording(
-            times,
-            tracks,
-            tuple(_block(*one) for one in head["blocks"]),
-            [Moment(*one) for one in head["moments"]],
-            [Told(*one) for one in head["calls"]],
-            head["fault"],
-            head["faulty_call"],
-            head["is_simulated"],
-            head["problems"],
-        )
+            tracks[name] = Track(name, Kind(kind), values, unit, _tuple(size))
+        fields = {name: head[name] for name in _PLAIN_FIELDS}
+        fields["blocks"] = tuple(Block(one[0], *map(_tuple, one[1:])) for one in fields["blocks"])
+        fields["moments"] = [Moment(*one) for one in fields["moments"]]
+        fields["calls"] = [Told(*one) for one in fields["calls"]]
+        return Recording(times, tracks, **fields)
     except (zlib.error, LookupError, TypeError) as error:
         raise ValueError(f"no recording: {error}") from error
 
@@ -179,23 +175,6 @@ def to_text(recording: Recording) -> str:
 def bytes_of(text: str) -> bytes:
     """What ``to_bytes`` would have made of the recording that ``to_text`` made this text of."""
     return base64.b64decode(text)
-
-
-def _head(recording: Recording) -> dict[str, Any]:
-    return {
-        "count": len(recording.times),
-        "tracks": [(one.name, one.kind, one.unit, one.size) for one in recording.tracks.values()],
-        "blocks": [(one.name, one.centre, one.size, one.colour) for one in recording.blocks],
-        "moments": [(one.time, one.what, one.text) for one in recording.moments],
-        "calls": [
-            (one.began, one.ended, one.operation, one.place, one.pattern, one.written, one.read, one.role)
-            for one in recording.calls
-        ],
-        "fault": recording.fault,
-        "faulty_call": recording.faulty_call,
-        "is_simulated": recording.is_simulated,
-        "problems": recording.problems,
-    }
 
 
 def _little(numbers: array[float]) -> bytes:
@@ -216,12 +195,8 @@ def _numbers(kind: str, data: bytes, start: int, count: int) -> tuple[array[floa
     return numbers, end
 
 
-def _block(name: str, centre: Any, size: Any, colour: Any) -> Block:
-    return Block(name, tuple(centre), tuple(size), None if colour is None else tuple(colour))
-
-
-def _triple(numbers: Any) -> tuple[float, float, float] | None:
-    return None if numbers is None else (numbers[0], numbers[1], numbers[2])
+def _tuple(numbers: Any) -> Any:
+    return None if numbers is None else tuple(numbers)
 
 
 def _plain(value: Any) -> Any:

@@ -1,8 +1,8 @@
-"""The tape of the running test: what feeds write on, and the session reads; and its film.
+"""The tape of the running test, on which feeds write and which the session reads; and its film.
 
 There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing. A
-film holds pictures of one test, one after the other in a file, each as what differs from the one before,
-compressed: most of a work cell stands still.
+film holds the pictures of one test, each as its difference from the one before, compressed: most of a work
+cell stands still.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import time
 import zlib
 from array import array
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, nullcontext, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -243,26 +243,31 @@ class Tape:
 
     def picture(self, now: float, read: Callable[[], Any]) -> None:
         """Take a picture, if the test is filmed. A camera that fails is not asked again."""
-        if self.film is None:
+        film, self.film = self.film, None
+        if film is None:
             return
-        try:
+        with self.reading("pictures cannot be taken"):
             found = read()
             if found is not None:
-                self.film.add(now, found)
-        except Exception as error:  # the user's code and graphics may fail in any way
-            self.film = None
-            self.problem(f"pictures cannot be taken: {type(error).__name__}: {error}")
-            return
-        if self.film.count >= MOST_PICTURES:
-            self.film = None
-            self.problem(
-                f"more than {MOST_PICTURES} pictures in a test: those after {now:.4g} s are left out"
-            )
+                film.add(now, found)
+            if film.count < MOST_PICTURES:
+                self.film = film
+                return
+            text = f"more than {MOST_PICTURES} pictures in a test: those after {now:.4g} s are left out"
+            self.problem(text)
 
     def block(self, block: Block) -> None:
         """Something that stands around."""
         if block not in self.recording.blocks:
             self.recording.blocks = (*self.recording.blocks, block)
+
+    @contextmanager
+    def reading(self, what: str) -> Iterator[None]:
+        """Whatever the user's code raises here becomes a problem with ``what``; his test must go on."""
+        try:
+            yield
+        except Exception as error:
+            self.problem(f"{what}: {type(error).__name__}: {error}")
 
     def problem(self, text: str) -> None:
         """Something cannot be recorded."""
@@ -271,16 +276,19 @@ class Tape:
 
     def _thin(self) -> None:
         """Keep every second moment."""
+        self.coarseness *= 2
         recording = self.recording
-        count = len(recording.times)
         recording.times = recording.times[::2]
         for track in recording.tracks.values():
-            width = track.kind.width
-            kept: array[float] = array("f")
-            for number in range(0, count, 2):
-                kept.extend(track.values[number * width : (number + 1) * width])
-            track.values = kept
-        self.coarseness *= 2
+            width, values = track.kind.width, track.values
+            track.values = array(
+                "f",
+                (
+                    one
+                    for number in range(0, len(values), 2 * width)
+                    for one in values[number : number + width]
+                ),
+            )
 
 
 _tape: Tape | None = None

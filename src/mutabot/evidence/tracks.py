@@ -1,6 +1,6 @@
-"""Tracks side by side: how far things were from where they are in the original, at the same time.
+"""Compare tracks: how far things were from their places in the original run at the same time.
 
-Paths of points are made simple before it is looked how far points lie beside one.
+Paths of points are simplified before the distance of points from a path is measured.
 """
 
 from __future__ import annotations
@@ -11,97 +11,76 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import acos, degrees, dist, inf, isnan, sqrt
+from typing import NamedTuple
 
-from mutabot.frozen import frozen
 from mutabot.model.outcome import Apart, Near
 
 from .recording import Block, Kind, Recording, Track
 
 Point = tuple[float, float, float]
-
-
-def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
-    """Some of the points, so that all others lie within ``tolerance`` (m) of the lines between these.
-
-    Source: D. H. Douglas, T. K. Peucker: Algorithms for the reduction of the number of points required to
-    represent a digitized line or its caricature. Cartographica 10 (1973), pp. 112-122.
-    """
-    if len(points) < 3:
-        return list(points)
-    kept = {0, len(points) - 1}
-    waiting = [(0, len(points) - 1)]
-    while waiting:
-        first, last = waiting.pop()
-        far, where = _farthest(points, first, last)
-        if far > tolerance:
-            kept.add(where)
-            waiting += [(first, where), (where, last)]
-    return [points[number] for number in sorted(kept)]
-
-
-def _farthest(points: Sequence[Point], first: int, last: int) -> tuple[float, int]:
-    """How far the points between two others are from the line between these at most, and which is."""
-    ax, ay, az = points[first]
-    bx, by, bz = points[last]
-    dx, dy, dz = bx - ax, by - ay, bz - az
-    length = dx * dx + dy * dy + dz * dz
-    far, where = 0.0, first
-    # written out: this is asked of every moment of every mutant
-    for number in range(first + 1, last):
-        px, py, pz = points[number]
-        px, py, pz = px - ax, py - ay, pz - az
-        share = (px * dx + py * dy + pz * dz) / length if length else 0.0
-        share = 0.0 if share < 0.0 else 1.0 if share > 1.0 else share
-        x, y, z = px - share * dx, py - share * dy, pz - share * dz
-        square = x * x + y * y + z * z
-        if square > far:
-            far, where = square, number
-    return sqrt(far), where
-
-
-def aside(points: Iterable[Point], path: Sequence[Point]) -> float:
-    """The largest distance of points from a path, m."""
-    if len(path) == 1:
-        return max(dist(point, path[0]) for point in points)
-    lines = [(*one, *_towards(one, other)) for one, other in pairwise(path)]
-    worst = 0.0
-    for point in points:
-        worst = max(worst, _square_beside(point, lines, worst))
-    return sqrt(worst)
-
-
-def _towards(one: Point, other: Point) -> tuple[float, float, float, float]:
-    """From a point to another, and the square of how far that is."""
-    dx, dy, dz = other[0] - one[0], other[1] - one[1], other[2] - one[2]
-    return dx, dy, dz, dx * dx + dy * dy + dz * dz
-
-
-def _square_beside(point: Point, lines: Iterable[tuple[float, ...]], enough: float) -> float:
-    """The square of a point's distance from lines; if it is at most ``enough``, anything that is no more."""
-    px, py, pz = point
-    least = inf
-    for ax, ay, az, dx, dy, dz, length in lines:
-        x, y, z = px - ax, py - ay, pz - az
-        share = (x * dx + y * dy + z * dz) / length if length else 0.0
-        if share > 0.0:
-            share = min(share, 1.0)
-            x, y, z = x - share * dx, y - share * dy, z - share * dz
-        square = x * x + y * y + z * z
-        if square < least:
-            least = square
-            if least <= enough:
-                break
-    return least
-
+#: a row of a track: the numbers of one moment
+Row = tuple[float, ...]
 
 #: differences that count as the same: m, degrees, and the share of a value's own range
 LENGTH, ANGLE, SHARE = 0.001, 0.5, 0.01
 #: what the name of an orientation ends with
 TURNED = " turned"
-#: by so much may one moment be told otherwise twice, s
+#: two times that differ by less are the same moment, s
 _SAME = 1e-6
-#: how much closer than in the original an approach must be to be told, m
+#: approaches are reported if they are closer than in the original by more than this, m
 _CLOSER = 0.005
+
+
+def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
+    """Leave out points that lie within ``tolerance`` (m) of the lines between the others.
+
+    Source: D. H. Douglas, T. K. Peucker: Algorithms for the reduction of the number of points required to
+    represent a digitized line or its caricature. Cartographica 10 (1973), pp. 112-122.
+    """
+    kept = {0, len(points) - 1}
+    waiting = [(0, len(points) - 1)]
+    while waiting:
+        first, last = waiting.pop()
+        segment = _segment(points[first], points[last])
+        far, where = max(
+            ((_square(points[number], segment), number) for number in range(first + 1, last)),
+            default=(0.0, first),
+        )
+        if sqrt(far) > tolerance:
+            kept.add(where)
+            waiting += [(first, where), (where, last)]
+    return [points[number] for number in sorted(kept)]
+
+
+def aside(points: Iterable[Point], path: Sequence[Point]) -> float:
+    """Return the largest distance of points from a path, m."""
+    segments = [_segment(one, other) for one, other in pairwise(path)] or [_segment(path[0], path[0])]
+    worst = 0.0
+    for point in points:
+        least = inf
+        for segment in segments:
+            least = min(least, _square(point, segment))
+            if least <= worst:  # this point cannot be the farthest
+                break
+        worst = max(worst, least)
+    return sqrt(worst)
+
+
+def _segment(one: Point, other: Point) -> tuple[float, ...]:
+    """A line's start, its direction, and the square of its length."""
+    x, y, z = one
+    dx, dy, dz = other[0] - x, other[1] - y, other[2] - z
+    return x, y, z, dx, dy, dz, dx * dx + dy * dy + dz * dz
+
+
+def _square(point: Point, segment: tuple[float, ...]) -> float:
+    """The square of a point's distance from a segment, written out: many are asked of every mutant."""
+    ax, ay, az, dx, dy, dz, length = segment
+    x, y, z = point[0] - ax, point[1] - ay, point[2] - az
+    share = (x * dx + y * dy + z * dz) / length if length else 0.0
+    share = 0.0 if share < 0.0 else 1.0 if share > 1.0 else share
+    x, y, z = x - share * dx, y - share * dy, z - share * dz
+    return x * x + y * y + z * z
 
 
 @dataclass(frozen=True)
@@ -110,36 +89,28 @@ class Path:
 
     Attributes:
         track: its numbers.
-        times: when, s.
+        times: the times of its rows, s.
     """
 
     track: Track
     times: Sequence[float]
 
     @cached_property
-    def least(self) -> dict[Block, tuple[float, float]]:
-        """Its least distances from blocks, m, and when, as far as anybody has asked."""
-        return {}
+    def _present(self) -> list[tuple[float, Row]]:
+        """The moments at which it was there, with their numbers."""
+        values = [iter(self.track.values)] * self.track.kind.width
+        rows = zip(self.times, zip(*values, strict=True), strict=False)
+        return [(time, row) for time, row in rows if not isnan(row[0])]
 
     @cached_property
-    def rows(self) -> list[tuple[float, ...]]:
+    def rows(self) -> list[Row]:
         """The numbers of each moment at which it was there."""
-        width = self.track.kind.width
-        rows = list(zip(*[iter(self.track.values)] * width, strict=True))[: len(self.times)]
-        return [row for row in rows if not isnan(row[0])] if self._is_away else rows
+        return [row for _, row in self._present]
 
     @cached_property
     def when(self) -> Sequence[float]:
-        """The moments at which it was there: the recording's own, if it always was."""
-        if not self._is_away:
-            return self.times
-        width, values = self.track.kind.width, self.track.values
-        return [time for number, time in enumerate(self.times) if not isnan(values[number * width])]
-
-    @cached_property
-    def _is_away(self) -> bool:
-        """Whether there are moments at which it was not there."""
-        return any(map(isnan, self.track.values[:: self.track.kind.width]))
+        """The moments at which it was there."""
+        return [time for time, _ in self._present]
 
     @cached_property
     def points(self) -> list[Point]:
@@ -164,7 +135,7 @@ def paths_of(recording: Recording) -> dict[str, Path]:
 
 @dataclass(frozen=True)
 class Seen:
-    """A recording, and what is worked out of it once."""
+    """A recording, and its paths, which are worked out once."""
 
     recording: Recording
 
@@ -174,72 +145,13 @@ class Seen:
         return paths_of(self.recording)
 
 
-def differences(
-    original: dict[str, Path],
-    mutant: dict[str, Path],
-    noise: Mapping[str, float] | None = None,
-    until: float = inf,
-) -> list[Apart]:
-    """What was apart by more than its tolerance, worst first.
-
-    Args:
-        noise: by how much each is apart in equal runs of the original.
-        until: s from when on nothing is compared.
-    """
-    found = []
-    together = _Together()
-    for name in original.keys() & mutant.keys():
-        before, after = original[name], mutant[name]
-        if before.track.kind is not after.track.kind:
-            continue
-        moments = together.of(before, after)
-        rows = [one for one in _differing(before, after, moments) if one[0] <= until]
-        last = next((time for time, _, _ in reversed(moments) if time <= until), -inf)
-        for measure in _measures(before) if rows else ():
-            tolerance = max(measure.tolerance, 2.0 * (noise or {}).get(measure.name, 0.0))
-            one = _apart(measure, before, after, rows, tolerance, last)
-            if one is not None:
-                found.append(one)
-    return sorted(found, key=lambda one: (-one.worst, one.name))
-
-
-def noise_of(one: dict[str, Path], other: dict[str, Path]) -> dict[str, float]:
-    """By how much each thing is apart in two equal runs."""
-    found = {}
-    together = _Together()
-    for name in one.keys() & other.keys():
-        rows = _differing(one[name], other[name], together.of(one[name], other[name]))
-        for measure in _measures(one[name]):
-            gaps = (measure.between(before, after) for _, before, after in rows)
-            found[measure.name] = max(gaps, default=0.0)
-    return found
-
-
-def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Sequence[Block]) -> list[Near]:
-    """Closest approaches that are closer than in the original, closest first."""
-    found = []
-    for name in original.keys() & mutant.keys():
-        if original[name].track.kind is Kind.VALUE:
-            continue
-        if original[name].rows == mutant[name].rows:
-            continue
-        for block in blocks:
-            least, at = _least(mutant[name], block)
-            before, _ = _least(original[name], block)
-            if least < before - _CLOSER:
-                found.append(Near(name, block.name, least, at, before))
-    return sorted(found, key=lambda one: (one.distance, one.body, one.obstacle))
-
-
-@frozen
-class _Measure:
+class _Measure(NamedTuple):
     """One way to tell two rows apart."""
 
     name: str
     unit: str
     tolerance: float
-    between: Callable[[Sequence[float], Sequence[float]], float]
-    is_position: bool = False
+    between: Callable[[Row, Row], float]
 
 
 def _measures(path: Path) -> Iterator[_Measure]:
@@ -249,101 +161,101 @@ def _measures(path: Path) -> Iterator[_Measure]:
         tolerance = SHARE * (max(values) - min(values)) or 1e-6
         yield _Measure(track.name, track.unit, tolerance, lambda one, other: abs(one[0] - other[0]))
         return
-    yield _Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]), True)
+    yield _Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]))
     if track.kind is Kind.POSE:
         yield _Measure(f"{track.name}{TURNED}", "deg", ANGLE, _turned)
 
 
-def _turned(one: Sequence[float], other: Sequence[float]) -> float:
+def _turned(one: Row, other: Row) -> float:
     """The angle between two orientations, deg."""
     dot = abs(sum(a * b for a, b in zip(one[3:7], other[3:7], strict=True)))
     return degrees(2.0 * acos(min(1.0, dot)))
 
 
-#: a moment, and the numbers of the rows that hold then
-_Moment = tuple[float, int, int]
-#: a moment at which things are not the same, and how they are
-_Differing = tuple[float, tuple[float, ...], tuple[float, ...]]
+def differences(
+    original: dict[str, Path], mutant: dict[str, Path], noise: Mapping[str, float], until: float = inf
+) -> list[Apart]:
+    """Return what was apart by more than its tolerance, worst first.
 
-
-class _Together:
-    """Moments of two recordings: things that are always there share them."""
-
-    def __init__(self) -> None:
-        self._known: dict[tuple[int, int], list[_Moment]] = {}
-
-    def of(self, before: Path, after: Path) -> list[_Moment]:
-        """Those of two paths, which both live as long as this."""
-        key = id(before.when), id(after.when)
-        if key not in self._known:
-            self._known[key] = _together(before.when, after.when)
-        return self._known[key]
-
-
-def _differing(before: Path, after: Path, moments: Iterable[_Moment]) -> list[_Differing]:
-    """What is not the same, at all moments of either; what has ended stays as it was."""
-    rows, others = before.rows, after.rows
-    return [
-        (time, one, other) for time, here, there in moments if (one := rows[here]) != (other := others[there])
-    ]
-
-
-def _together(one: Sequence[float], other: Sequence[float]) -> list[_Moment]:
-    """All moments of either, with the numbers of the rows that hold then, as ``Path.at`` has them."""
-    if one == other:
-        return [(time, number, number) for number, time in enumerate(one)]
+    Args:
+        noise: by how much each thing is apart in equal runs of the original.
+        until: the last time that is compared, s.
+    """
     found = []
-    here = there = 0
-    last, end = len(one) - 1, len(other) - 1
-    for time in sorted({*one, *other}):
-        until = time + _SAME
-        while here < last and one[here + 1] <= until:
-            here += 1
-        while there < end and other[there + 1] <= until:
-            there += 1
-        found.append((time, here, there))
+    for name in original.keys() & mutant.keys():
+        before, after = original[name], mutant[name]
+        if before.track.kind is not after.track.kind:
+            continue
+        rows = [(time, one, other) for time, one, other in _together(before, after) if time <= until]
+        if any(one != other for _, one, other in rows):
+            apart = (_apart(measure, before, after, rows, noise) for measure in _measures(before))
+            found += [one for one in apart if one is not None]
+    return sorted(found, key=lambda one: (-one.worst, one.name))
+
+
+def noise_between(one: Seen, other: Seen) -> dict[str, float]:
+    """Return by how much each thing is apart in two equal runs of the original."""
+    found = {}
+    for name in one.paths.keys() & other.paths.keys():
+        rows = list(_together(one.paths[name], other.paths[name]))
+        for measure in _measures(one.paths[name]):
+            gaps = (measure.between(first, second) for _, first, second in rows if first != second)
+            found[measure.name] = max(gaps, default=0.0)
     return found
+
+
+def _together(before: Path, after: Path) -> Iterator[tuple[float, Row, Row]]:
+    """The rows of both that hold at each moment of either; what has ended stays as it was."""
+    if before.when == after.when:
+        yield from zip(before.when, before.rows, after.rows, strict=True)
+        return
+    for time in sorted({*before.when, *after.when}):
+        yield time, before.rows[before.at(time)], after.rows[after.at(time)]
 
 
 def _apart(
     measure: _Measure,
     before: Path,
     after: Path,
-    rows: Iterable[_Differing],
-    tolerance: float,
-    last: float,
+    rows: Sequence[tuple[float, Row, Row]],
+    noise: Mapping[str, float],
 ) -> Apart | None:
-    """How far apart things were, if by more than the tolerance; ``last`` is the last moment of all."""
-    gaps = [(time, measure.between(one, other)) for time, one, other in rows]
+    """How far apart a thing was, if by more than the tolerance."""
+    tolerance = max(measure.tolerance, 2.0 * noise.get(measure.name, 0.0))
+    gaps = [(time, measure.between(one, other) if one != other else 0.0) for time, one, other in rows]
     first = next((time for time, gap in gaps if gap > tolerance), None)
     if first is None:
         return None
     at, largest = max(gaps, key=lambda one: one[1])
-    final = gaps[-1][1] if gaps[-1][0] == last else 0.0
     beside = _aside(measure, before, after)
-    return Apart(measure.name, measure.unit, first, largest, at, final, beside, tolerance)
+    return Apart(measure.name, measure.unit, first, largest, at, gaps[-1][1], beside, tolerance)
 
 
 def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
-    """How far something went where it never is in the original."""
-    if measure.is_position:
-        return aside(after.outline, before.outline)
-    if before.track.kind is not Kind.VALUE:
-        return None
-    usual = [row[0] for row in before.rows]
-    least, most = min(usual), max(usual)
-    return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
+    """How far something left the path or range that it has in the original; None for orientations."""
+    if before.track.kind is Kind.VALUE:
+        usual = [row[0] for row in before.rows]
+        least, most = min(usual), max(usual)
+        return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
+    return None if measure.name.endswith(TURNED) else aside(after.outline, before.outline)
+
+
+def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Sequence[Block]) -> list[Near]:
+    """Return the closest approaches that are closer than in the original, closest first."""
+    found = []
+    for name in original.keys() & mutant.keys():
+        before, after = original[name], mutant[name]
+        if before.track.kind is Kind.VALUE or before.rows == after.rows:
+            continue
+        for block in blocks:
+            (least, at), (usual, _) = _least(after, block), _least(before, block)
+            if least < usual - _CLOSER:
+                found.append(Near(name, block.name, least, at, usual))
+    return sorted(found, key=lambda one: (one.distance, one.body, one.obstacle))
 
 
 def _least(path: Path, block: Block) -> tuple[float, float]:
     """The least distance of a path from a block, m, and when."""
-    known = path.least.get(block)
-    if known is None:
-        known = path.least[block] = _sought(path, block)
-    return known
-
-
-def _sought(path: Path, block: Block) -> tuple[float, float]:
     size, (x, y, z) = path.track.size or (0.0, 0.0, 0.0), block.centre
     dx, dy, dz = (0.5 * (one + other) for one, other in zip(size, block.size, strict=True))
     least, when = inf, 0.0
@@ -353,4 +265,4 @@ def _sought(path: Path, block: Block) -> tuple[float, float]:
         square = (gx * gx if gx > 0 else 0.0) + (gy * gy if gy > 0 else 0.0) + (gz * gz if gz > 0 else 0.0)
         if square < least:
             least, when = square, time
-    return float(least**0.5), when
+    return sqrt(least), when

@@ -1,18 +1,19 @@
-"""The contract of a language's front end: what mutabot must know of the language to have sites in it.
+"""The contract of a language's front end, and the front ends there are.
 
-A site is a call at its exact place. Beside the running program somebody must say where the call stands that
-is under way, and outside, without running anything, what is written there. Both is asked of the front end of
-the file's language, and nothing else is.
+A site is a call at its exact place. A front end tells where the running call stands, and, without running
+anything, what is written there.
 
-A language is one file in this folder with its front end as ``FRONT_END``; it is found there. It runs beside
-the robot program too, so it may import the standard library and ``mutabot.model`` only. ``python.py`` is the
-one there is; a program in another language is run by an interpreter in Python, whose frames its front end
-knows. Mutants of the program text are Python's alone, as the operators on it are.
+A language is one file in this folder with its front end as ``FRONT_END``. It runs beside the robot program
+too, so it may import the standard library and ``mutabot.model`` only. An interpreter in Python runs a program
+in another language; its front end knows the interpreter's frames. Only Python has mutants of its text.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from functools import cache
+from importlib import import_module
+from pathlib import Path
 from types import FrameType
 from typing import NamedTuple, Protocol
 
@@ -64,3 +65,28 @@ class FrontEnd(Protocol):
 
         Asked at every call of an operation; of Python once for each place.
         """
+
+
+@cache
+def front_ends() -> tuple[FrontEnd, ...]:
+    """All of them; Python is the last, since the frames of an interpreter are Python's as well."""
+    names = {file.stem for file in Path(__file__).parent.glob("*.py")} - {"__init__", "front_end", "python"}
+    return tuple(import_module(f"{__package__}.{name}").FRONT_END for name in (*sorted(names), "python"))
+
+
+def front_end_of(file: str) -> FrontEnd:
+    """That of a file's language, by how the file ends; files of no known language are taken for Python."""
+    return next((one for one in front_ends() if file.endswith(one.suffixes)), front_ends()[-1])
+
+
+def program_files(root: Path, program: Iterable[str]) -> list[str]:
+    """The program's files among the configured files and folders, relative to ``root``, each once."""
+    suffixes = tuple(suffix for one in front_ends() for suffix in one.suffixes)
+    files: dict[str, None] = {}
+    for name in program:
+        path = root / name
+        found = (
+            [file for file in path.rglob("*") if file.name.endswith(suffixes)] if path.is_dir() else [path]
+        )
+        files |= dict.fromkeys(file.relative_to(root).as_posix() for file in sorted(found))
+    return list(files)

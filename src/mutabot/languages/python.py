@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import CodeType, FrameType
+from typing import TypeVar
 
 from mutabot.model.mutant import Extent
 
 from .front_end import Name, Position
 
+_Node = TypeVar("_Node", bound=ast.AST)
 _TEXT_LIMIT = 60
 #: code objects that are part of the function around them
-_COMPREHENSIONS = (
-    ".<locals>.<listcomp>",
-    ".<locals>.<setcomp>",
-    ".<locals>.<dictcomp>",
-    ".<locals>.<genexpr>",
-)
+_COMPREHENSIONS = tuple(f".<locals>.<{kind}>" for kind in ("listcomp", "setcomp", "dictcomp", "genexpr"))
 
 
 class Python:
@@ -76,6 +73,24 @@ def unused_calls(source: str) -> frozenset[Extent]:
 def extent_of(node: ast.expr | ast.stmt) -> Extent:
     """Where a node stands."""
     return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
+
+
+def head_size(body: Sequence[ast.stmt]) -> int:
+    """How many statements must stay first in a body: the docstring and imports from ``__future__``."""
+    has_text = bool(body) and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant)
+    size = int(has_text)
+    while size < len(body) and getattr(body[size], "module", None) == "__future__":
+        size += 1
+    return size
+
+
+def placed(made: _Node, place: ast.AST) -> _Node:
+    """A new node at the position of another; parts that have a position keep it."""
+    ast.copy_location(made, place)
+    for part in ast.iter_child_nodes(made):
+        if isinstance(part, ast.expr | ast.stmt | ast.ExceptHandler) and not hasattr(part, "lineno"):
+            placed(part, place)
+    return made
 
 
 def _position(code: CodeType, instruction: int) -> Position:

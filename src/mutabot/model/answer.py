@@ -1,13 +1,12 @@
-"""Answers by value: what a command returned, as JSON-like data, and back as a fresh object each time.
+"""Keep what a command returned as JSON-like data, and restore a fresh object from it each time.
 
-Only what is sure to be the same after a copy is kept: plain values, containers of them, arrays, enumerations,
-and objects whose whole state is made of these. An object that the call knew already (the instance, an
-argument) is kept as a reference to it. A part of the robot API is never copied: its copy would be a robot
-that nobody commands. A future is kept as one that is never done.
+Only what a copy surely preserves is kept: plain values, containers of them, arrays, enumerations, and objects
+whose whole state is made of these. An object that the call knew already (the instance, an argument) is kept
+as a reference to it. A part of the robot API is never copied: its copy would be a robot that nobody commands.
+A future is kept as one that is never done.
 
-Members of enumerations, of Python's and of pybind11's, as vocabularies write them.
-
-A vocabulary names a member by its name, by its number or other value, or as it prints (``Mode.AUTO``).
+A vocabulary names a member of an enumeration, of Python's or of pybind11's, by its name, by its number or
+other value, or as it prints (``Mode.AUTO``).
 """
 
 from __future__ import annotations
@@ -72,54 +71,24 @@ def written_of(member: Any, values: Sequence[Any], path: str) -> Any:
     Raises PathError if its enumeration has no member for one of the values, or one member for two of them.
     """
     kind: Any = type(member)
-    found = _members(kind, tuple(map(_Typed, values)), path)
-    for value, one in zip(values, found, strict=True):
-        if one == member:
-            return value
-    return name_of(member)
+    members = [member_of(kind, value) for value in values]
+    if None in members:
+        raise _wrong(kind, _unknown(kind, values[members.index(None)]), path)
+    twice = [name_of(one) for one in members if members.count(one) > 1]
+    if twice:
+        raise _wrong(kind, f"values name {twice[0]} of {kind.__name__} twice", path)
+    return values[members.index(member)] if member in members else name_of(member)
 
 
-class _Typed:
-    """A value that is equal only to one of the same type: 1 is not true."""
-
-    __slots__ = ("value",)
-
-    def __init__(self, value: Any) -> None:
-        self.value = value
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Typed) and (type(self.value), self.value) == (
-            type(other.value),
-            other.value,
-        )
-
-    def __hash__(self) -> int:
-        return hash((type(self.value), self.value))
-
-
-@cache
-def _members(kind: Any, values: tuple[_Typed, ...], path: str) -> tuple[Any, ...]:
-    """The members that these values stand for. Raises PathError."""
-    found: list[Any] = []
-    for one in values:
-        member = member_of(kind, one.value)
-        if member is None:
-            raise _unknown(kind, one.value, path)
-        if member in found:
-            raise _error(kind, f"values name {name_of(member)} of {kind.__name__} twice", path)
-        found.append(member)
-    return tuple(found)
-
-
-def _unknown(kind: type[Any], value: Any, path: str) -> PathError:
+def _unknown(kind: type[Any], value: Any) -> str:
     known = list(kind.__members__)
     near = nearest_name(str(value), known)
     listed = ", ".join(known[:_MOST]) + (" …" if len(known) > _MOST else "")
     hint = f"did you mean {near!r}?" if near else f"it has {listed}"
-    return _error(kind, f"{kind.__name__} has no member {value!r}, which values name; {hint}", path)
+    return f"{kind.__name__} has no member {value!r}, which values name; {hint}"
 
 
-def _error(kind: type[Any], text: str, path: str) -> PathError:
+def _wrong(kind: type[Any], text: str, path: str) -> PathError:
     return PathError(text, path="", step=path, found=kind.__name__)
 
 
@@ -142,49 +111,39 @@ def _combined(kind: type[Any], members: Mapping[str, Any], written: Any) -> Any 
     return kind(int(written)) if is_known else None
 
 
+#: futures of the standard library: kinds by module and class; modules that nobody has imported stay so
+_FUTURES = (("asyncio", "Task"), ("asyncio", "Future"), ("concurrent.futures", "Future"))
+
+
 def future_class(value: Any) -> str | None:
     """The kind of future that a value is; None if it is none."""
-    # these modules are slow to import, and where nobody has done so there are no futures of theirs
-    if isinstance(value, _imported("asyncio", "Task")):
-        return "asyncio.Task"
-    if isinstance(value, _imported("asyncio", "Future")):
-        return "asyncio.Future"
-    if type(value) in _imported("concurrent.futures", "Future"):
-        return "concurrent.futures.Future"
+    for module, name in _FUTURES:
+        kind = getattr(sys.modules.get(module), name, None)
+        if kind is not None and (type(value) is kind or (module == "asyncio" and isinstance(value, kind))):
+            return f"{module}.{name}"
     name = class_name(type(value))
     return next((one.name for one in brought("futures").values() if one.reference == name), None)
 
 
-def _imported(module: str, name: str) -> tuple[type, ...]:
-    """A class, if its module is imported."""
-    found = getattr(sys.modules.get(module), name, None)
-    return () if found is None else (found,)
-
-
 def never_done(kind: str, here: Mapping[str, Any]) -> Any:
     """A new future of this kind that nobody ever completes. Raises LookupError where there can be none."""
-    if kind == "concurrent.futures.Future":
-        import concurrent.futures  # noqa: PLC0415  # as above
-
-        return concurrent.futures.Future()
     known = brought("futures").get(kind)
-    if known is not None:
-        if known.reference.partition(":")[0] not in sys.modules:
-            raise LookupError(f"{known.reference} is not imported")
-        return known.load()()
-    import asyncio  # noqa: PLC0415  # as above
+    if kind == "concurrent.futures.Future" or known is not None:
+        reference = known.reference if known is not None else "concurrent.futures:Future"
+        if known is not None and reference.partition(":")[0] not in sys.modules:
+            raise LookupError(f"{reference} is not imported")
+        return _named(reference)()
+    import asyncio  # noqa: PLC0415  # slow, and few answers are futures
 
     try:
         loop = asyncio.get_running_loop()
     except RuntimeError:
         raise LookupError(f"a future of kind {kind} needs an event loop, and none is running") from None
-    if kind != "asyncio.Task":
-        return loop.create_future()
 
     async def never() -> None:
         await loop.create_future()
 
-    return loop.create_task(never())
+    return loop.create_task(never()) if kind == "asyncio.Task" else loop.create_future()
 
 
 #: characters that an answer may take as data; it goes to every process that runs its mutant
@@ -245,22 +204,11 @@ def restore(data: Any, here: Mapping[str, Any]) -> Any:
     if not isinstance(data, dict):
         return data
     ((form, content),) = data.items()
-    if form in _REFERENCES:
-        return _REFERENCES[form](content, here)
-    if form in _LEAVES:
-        return _LEAVES[form](content)
-    match form:
-        case "namespace":
-            return SimpleNamespace(**{key: restore(item, here) for key, item in content.items()})
-        case "namedtuple":
-            return tuple.__new__(_named(content[0]), [restore(item, here) for item in content[1]])
-        case "object":
-            name, attributes, slots = content
-            return _object(name, attributes, slots, here)
-        case "dict" | "OrderedDict":
-            return _MADE_BY[form]((restore(key, here), restore(item, here)) for key, item in content)
-        case _:
-            return _MADE_BY[form](restore(item, here) for item in content)
+    if form in _FORMS:
+        return _FORMS[form](content, here)
+    if form in ("dict", "OrderedDict"):
+        return _MADE_BY[form]((restore(key, here), restore(item, here)) for key, item in content)
+    return _MADE_BY[form](restore(item, here) for item in content)
 
 
 class _Keeper:
@@ -372,10 +320,10 @@ def _slots(kind: type[Any]) -> list[str]:
 
 def _object(name: str, attributes: dict[str, Any], slots: dict[str, Any], here: Mapping[str, Any]) -> Any:
     made = object.__new__(_named(name))
-    for slot, item in slots.items():
-        object.__setattr__(made, slot, restore(item, here))
+    for slot, item in _attributes(slots, here).items():
+        object.__setattr__(made, slot, item)
     if attributes:
-        made.__dict__.update({key: restore(item, here) for key, item in attributes.items()})
+        made.__dict__.update(_attributes(attributes, here))
     return made
 
 
@@ -414,19 +362,25 @@ def _named(name: str) -> Any:
     return found
 
 
-#: objects that were there before
-_REFERENCES: dict[str, Callable[[Any, Mapping[str, Any]], Any]] = {
+def _attributes(content: Mapping[str, Any], here: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: restore(item, here) for key, item in content.items()}
+
+
+#: what makes each form of data an object again
+_FORMS: dict[str, Callable[[Any, Mapping[str, Any]], Any]] = {
     "pending": never_done,
     "here": lambda name, here: here[name],
     "name": lambda name, here: _named(name),
     "call": lambda name, here: _named(name)(),
     "member": lambda content, here: member_of(_named(content[0]), content[1]),
-}
-#: values without parts
-_LEAVES: dict[str, Callable[[Any], Any]] = {
-    "bytes": base64.b64decode,
-    "bytearray": lambda content: bytearray(base64.b64decode(content)),
-    "array": lambda content: _array(*content),
-    "numbers": lambda content: array(content[0], base64.b64decode(content[1])),
-    "scalar": lambda content: _array(*content)[()],
+    "bytes": lambda content, here: base64.b64decode(content),
+    "bytearray": lambda content, here: bytearray(base64.b64decode(content)),
+    "array": lambda content, here: _array(*content),
+    "numbers": lambda content, here: array(content[0], base64.b64decode(content[1])),
+    "scalar": lambda content, here: _array(*content)[()],
+    "namespace": lambda content, here: SimpleNamespace(**_attributes(content, here)),
+    "namedtuple": lambda content, here: tuple.__new__(
+        _named(content[0]), [restore(item, here) for item in content[1]]
+    ),
+    "object": lambda content, here: _object(content[0], content[1], content[2], here),
 }

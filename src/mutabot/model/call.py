@@ -1,7 +1,4 @@
-"""Calls and replies as operators see them: quantities and their values, nothing of Python syntax.
-
-Where randomness starts: every (campaign seed, round, test) has a seed of its own.
-"""
+"""Calls and replies as operators see them, in quantities and their values; and the seeds of randomness."""
 
 from __future__ import annotations
 
@@ -38,32 +35,20 @@ class NotToldError(LookupError):
     """What tells where the robot is has told nothing yet, or does not tell this quantity."""
 
 
-async def _unknown(quantity: Quantity) -> float:
-    raise LookupError(f"no reading tells where {quantity.name} is now")
+def _nobody(why: str) -> Callable[..., Any]:
+    """Stands where nothing answers a question of an operator's."""
+
+    def raises(*_: object) -> Any:
+        raise LookupError(why)
+
+    return raises
 
 
-def _nothing(mishap: Mishap) -> str:
-    return ""
-
-
-def _no_time() -> float:
-    raise LookupError("nothing tells the time of the simulation")
-
-
-async def _no_wait(seconds: float) -> None:
-    raise LookupError("nothing lets the program's time pass")
-
-
-def _no_previous() -> Mapping[str, Value] | None:
-    raise LookupError("nobody knows what the call before this one was told")
-
-
-def _no_defer(call: Call) -> None:
-    raise LookupError("nobody makes calls later")
-
-
-def _no_refusal(error: BaseException) -> bool:
-    return False
+_NO_READING = _nobody("no reading tells where the robot is now")
+_NO_CLOCK = _nobody("nothing tells the time of the simulation")
+_NO_WAIT = _nobody("nothing lets the program's time pass")
+_NO_PREVIOUS = _nobody("nobody knows what the call before this one was told")
+_NO_DEFER = _nobody("nobody makes calls later")
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,17 +143,17 @@ class Call:
     pattern: Pattern | None = None
     values: Mapping[str, Value] = field(default_factory=dict)
     reversed: bool = False
-    current: Callable[[Quantity], Awaitable[float]] = _unknown
+    current: Callable[[Quantity], Awaitable[float]] = _NO_READING
     idle: Reply | None = None
     payload: Any = None
     away: str = ""
     mishaps: Mapping[Mishap, float] = field(default_factory=dict)
-    cannot: Callable[[Mishap], str] = _nothing
-    time: Callable[[], float] = _no_time
-    wait: Callable[[float], Awaitable[None]] = _no_wait
-    previous: Callable[[], Mapping[str, Value] | None] = _no_previous
-    defer: Callable[[Call], None] = _no_defer
-    is_refusal: Callable[[BaseException], bool] = _no_refusal
+    cannot: Callable[[Mishap], str] = lambda mishap: ""
+    time: Callable[[], float] = _NO_CLOCK
+    wait: Callable[[float], Awaitable[None]] = _NO_WAIT
+    previous: Callable[[], Mapping[str, Value] | None] = _NO_PREVIOUS
+    defer: Callable[[Call], None] = _NO_DEFER
+    is_refusal: Callable[[BaseException], bool] = lambda error: False
 
     @property
     def is_command(self) -> bool:

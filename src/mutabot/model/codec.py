@@ -1,12 +1,10 @@
-"""Plain data to JSON-like data and back, by the type hints of the dataclasses.
+"""Turn dataclasses into JSON-like data and back, by their type hints.
 
-By hand, since every process beside a robot program would pay for more: beyond the standard library it takes
-0.1 ms to import, msgspec 10 ms and cattrs 22 ms, and both ask for the fields that are left out when None.
+Written by hand because every process beside a robot program imports it: 0.1 ms, where msgspec takes 10 ms and
+cattrs 22 ms.
 
-Data that every reader can take, whatever the user's objects hold: what leaves a process is made so here.
-
-Texts become UTF-8 without surrogates, and are cut where they are endless, as are numbers and nesting. Nothing
-else is changed: data that is fine already goes through as it is, and data that went through once stays so.
+What leaves a process is data that every reader can take, whatever the user's objects hold: texts become UTF-8
+without surrogates, and endless texts, numbers and nesting are cut. Data that is fine passes unchanged.
 """
 
 from __future__ import annotations
@@ -73,11 +71,13 @@ def _decoder(kind: Any) -> Decoder:
     origin, arguments = get_origin(kind), get_args(kind)
     if origin in (Union, types.UnionType):
         options = [option for option in arguments if option is not type(None)]
-        return _optional(_decoder(options[0] if len(options) == 1 else Any))
+        inner = _decoder(options[0] if len(options) == 1 else Any)
+        return lambda data: None if data is None else inner(data)
     if origin in (tuple, list):
         return _sequence_decoder(origin, arguments)
     if origin is not None and issubclass(origin, Mapping):
-        return _mapping_decoder(_decoder(arguments[1]))
+        item = _decoder(arguments[1])
+        return lambda data: {key: item(value) for key, value in _checked(data, (dict,), "an object").items()}
     if isinstance(kind, type) and is_dataclass(kind):
         return _dataclass_decoder(kind)
     if isinstance(kind, type) and issubclass(kind, Enum):
@@ -89,41 +89,19 @@ def _as_it_is(data: Any) -> Any:
     return data
 
 
-def _unfit(data: Any, wanted: str) -> TypeError:
-    return TypeError(f"{wanted} was expected, not {type(data).__name__}")
-
-
-def _str(data: Any) -> Any:
-    if isinstance(data, str):
+def _checked(data: Any, kinds: tuple[type[Any], ...], wanted: str) -> Any:
+    if type(data) in kinds:
         return data
-    raise _unfit(data, "a text")
+    raise TypeError(f"{wanted} was expected, not {type(data).__name__}")
 
 
-def _bool(data: Any) -> Any:
-    if data is True or data is False:
-        return data
-    raise _unfit(data, "true or false")
-
-
-def _int(data: Any) -> Any:
-    if isinstance(data, int) and data is not True and data is not False:
-        return data
-    raise _unfit(data, "a whole number")
-
-
-def _float(data: Any) -> Any:
-    if isinstance(data, float):
-        return data
-    if isinstance(data, int) and data is not True and data is not False:
-        return float(data)
-    raise _unfit(data, "a number")
-
-
-_PLAIN_DECODERS: dict[Any, Decoder] = {str: _str, bool: _bool, int: _int, float: _float}
-
-
-def _optional(decode: Decoder) -> Decoder:
-    return lambda data: None if data is None else decode(data)
+#: JSON writes a number without a fraction as a whole one
+_PLAIN_DECODERS: dict[Any, Decoder] = {
+    str: lambda data: _checked(data, (str,), "a text"),
+    bool: lambda data: _checked(data, (bool,), "true or false"),
+    int: lambda data: _checked(data, (int,), "a whole number"),
+    float: lambda data: float(_checked(data, (float, int), "a number")),
+}
 
 
 def _sequence_decoder(origin: Any, arguments: tuple[Any, ...]) -> Decoder:
@@ -137,29 +115,14 @@ def _sequence_decoder(origin: Any, arguments: tuple[Any, ...]) -> Decoder:
 
 
 def _list(data: Any) -> Any:
-    if isinstance(data, list | tuple):
-        return data
-    raise _unfit(data, "a list")
-
-
-def _mapping_decoder(item: Decoder) -> Decoder:
-    def decode(data: Any) -> Any:
-        if not isinstance(data, dict):
-            raise _unfit(data, "an object")
-        return {key: item(value) for key, value in data.items()}
-
-    return decode
+    return _checked(data, (list, tuple), "a list")
 
 
 def _dataclass_decoder(kind: Any) -> Decoder:
     def decode(data: Any) -> Any:
-        if not isinstance(data, dict):
-            raise _unfit(data, "an object")
         decoders, left_out = _fields(kind)  # not before now: a class may refer to itself
-        values: dict[str, Any] = {name: None for name in left_out if name not in data}
-        for name, value in data.items():
-            values[name] = decoders[name](value)
-        return kind(**values)
+        told = _checked(data, (dict,), "an object").items()
+        return kind(**dict.fromkeys(left_out) | {name: decoders[name](value) for name, value in told})
 
     return decode
 
@@ -172,13 +135,11 @@ def _fields(kind: type[Any]) -> tuple[dict[str, Decoder], tuple[str, ...]]:
     left_out = tuple(
         field.name
         for field in fields(kind)
-        if field.default is MISSING and field.default_factory is MISSING and _may_be_none(hints[field.name])
+        if field.default is MISSING
+        and field.default_factory is MISSING
+        and (hints[field.name] is Any or type(None) in get_args(hints[field.name]))
     )
     return decoders, left_out
-
-
-def _may_be_none(hint: Any) -> bool:
-    return hint is Any or type(None) in get_args(hint)
 
 
 #: the field whose text mutabot itself makes: of no use if it is cut

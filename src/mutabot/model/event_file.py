@@ -1,11 +1,9 @@
 """Files of events: one for each process, one event a line, numbered from 1 and sealed.
 
-A file needs nobody who listens, and what is in it stays when its process dies. The seal shows a reader that a
-line is whole, from us, and of this process; the number, that none is missing and none comes twice. The tests'
-code can write into any file, by mistake or because a mutant makes it. The key of the seals is known to the
-processes themselves, so this guards against accidents and not against code that wants to deceive.
-
-Where the processes of a job tell what they do, and which signals say what about their ends.
+A file needs nobody who listens, and its content stays when its process dies. The seal shows a reader that a
+line is whole, ours, and of this process; the number shows that none is missing and none comes twice. The
+tests' code can write into any file, by mistake or because of a mutant. Processes know the key of the seals,
+so this guards against accidents and not against code that wants to deceive.
 """
 
 from __future__ import annotations

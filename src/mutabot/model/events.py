@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import Any, get_args
+from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
@@ -21,8 +21,14 @@ from mutabot.model.source_units import Executed
 TRACE_LIMIT = 5000
 
 
+class Event:
+    """Something that a process tells: the classes below are all there are."""
+
+    __slots__ = ()
+
+
 @frozen
-class TestEnd:
+class TestEnd(Event):
     """A test has ended.
 
     Attributes:
@@ -141,7 +147,7 @@ class TestEnd:
 
 
 @frozen
-class SiteSeen:
+class SiteSeen(Event):
     """A site was reached for the first time in this session; traces refer to it by ``index``.
 
     ``direct`` is whether the call that stands there is that of the operation itself, rather than of something
@@ -157,7 +163,7 @@ class SiteSeen:
 
 
 @frozen
-class TestStart:
+class TestStart(Event):
     """A test begins: its fixtures are next."""
 
     __test__ = False
@@ -166,7 +172,7 @@ class TestStart:
 
 
 @frozen
-class Watched:
+class Watched(Event):
     """The suite itself ends this process with exit code 1 if a test takes too long.
 
     Attributes:
@@ -181,7 +187,7 @@ class Watched:
 
 
 @frozen
-class Acted:
+class Acted(Event):
     """The mutant is at work: proof that mutated code ran.
 
     Attributes:
@@ -195,7 +201,7 @@ class Acted:
 
 
 @frozen
-class PlacesReached:
+class PlacesReached(Event):
     """Places of the program text that a test reached; those before any test, if ``test`` is empty.
 
     ``elsewhere``: whether that was in processes below the tests.
@@ -207,7 +213,7 @@ class PlacesReached:
 
 
 @frozen
-class TextsSeen:
+class TextsSeen(Event):
     """What a recording saw of the program text, over all tests.
 
     Attributes:
@@ -220,7 +226,7 @@ class TextsSeen:
 
 
 @frozen
-class NotInstrumented:
+class NotInstrumented(Event):
     """A file whose mutants cannot run, because it was imported without its alternatives."""
 
     file: str
@@ -228,7 +234,7 @@ class NotInstrumented:
 
 
 @frozen
-class KnownLater:
+class KnownLater(Event):
     """At a site stood an operation, and in another test something that nothing tells to be one."""
 
     span: Span
@@ -236,7 +242,7 @@ class KnownLater:
 
 
 @frozen
-class BranchEnd:
+class BranchEnd(Event):
     """A branch has finished a test: the one in which it was forked, or a later one.
 
     Attributes:
@@ -255,7 +261,7 @@ class BranchEnd:
 
 
 @frozen
-class BranchFinished:
+class BranchFinished(Event):
     """A branch has gone to the end of the session.
 
     Attributes:
@@ -270,7 +276,7 @@ class BranchFinished:
 
 
 @frozen
-class BranchDied:
+class BranchDied(Event):
     """A branch ended without saying how its test ended.
 
     Attributes:
@@ -296,7 +302,7 @@ class BranchDied:
 
 
 @frozen
-class ForkEnded:
+class ForkEnded(Event):
     """A process that this one forked has ended.
 
     Attributes:
@@ -312,7 +318,7 @@ class ForkEnded:
 
 
 @frozen
-class Unbranched:
+class Unbranched(Event):
     """It was not safe to fork at the first hit, in this test: these mutants need a process of their own.
 
     The test is empty before any.
@@ -324,7 +330,7 @@ class Unbranched:
 
 
 @frozen
-class Undiverged:
+class Undiverged(Event):
     """Mutants of the program text that were reached in a trunk's test and always had the original's value.
 
     The trunk itself has run this test for them.
@@ -339,14 +345,14 @@ class Undiverged:
 
 
 @frozen
-class TokensHeld:
+class TokensHeld(Event):
     """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
 
     held: int
 
 
 @frozen
-class Problem:
+class Problem(Event):
     """Something in the vocabulary does not fit the program.
 
     Attributes:
@@ -364,7 +370,7 @@ class Problem:
 
 
 @frozen
-class Remark:
+class Remark(Event):
     """Something about the vocabulary that the user should know; the program can be tested all the same.
 
     Attributes:
@@ -382,7 +388,7 @@ class Remark:
 
 
 @frozen
-class Serving:
+class Serving(Event):
     """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``.
 
     ``copy``: the process that it has forked for the job that came last.
@@ -393,7 +399,7 @@ class Serving:
 
 
 @frozen
-class Began:
+class Began(Event):
     """A process below the tests has begun to tell.
 
     Attributes:
@@ -412,7 +418,7 @@ class Began:
 
 
 @frozen
-class Called:
+class Called(Event):
     """A call of an operation below the tests, or of the program before any test began.
 
     Attributes:
@@ -428,7 +434,7 @@ class Called:
 
 
 @frozen
-class Noted:
+class Noted(Event):
     """A call of the original that the robot refused, or that returned the robot's own memory.
 
     Attributes:
@@ -441,7 +447,7 @@ class Noted:
 
 
 @frozen
-class Did:
+class Did(Event):
     """What the mutant did since the last time: counts are to be added up.
 
     Attributes:
@@ -463,7 +469,7 @@ class Did:
 
 
 @frozen
-class Used:
+class Used(Event):
     """What the process used of the running test's budget by now: the last one counts.
 
     ``exceeded`` is the limit that was exceeded, in words.
@@ -476,7 +482,7 @@ class Used:
 
 
 @frozen
-class Raised:
+class Raised(Event):
     """An exception that nobody caught ended the process, or one of its threads.
 
     Attributes:
@@ -493,7 +499,7 @@ class Raised:
 
 
 @frozen
-class Found:
+class Found(Event):
     """Targets of the vocabulary, modules that it names, and nodes, that the process has."""
 
     targets: tuple[str, ...] = ()
@@ -502,14 +508,14 @@ class Found:
 
 
 @frozen
-class Signalled:
+class Signalled(Event):
     """The process sends a signal to another, or to a group (negative), or to ``ANYBODY``."""
 
     pid: int
 
 
 @frozen
-class SessionEnd:
+class SessionEnd(Event):
     """The process ends in an orderly way: the last of its events.
 
     Attributes:
@@ -526,7 +532,7 @@ class SessionEnd:
 
 
 @frozen
-class Untrusted:
+class Untrusted(Event):
     """What a process reports cannot be relied on: said of it by whoever reads its events.
 
     Attributes:
@@ -536,40 +542,8 @@ class Untrusted:
     reason: str
 
 
-Event = (
-    SiteSeen
-    | TestStart
-    | Watched
-    | Acted
-    | PlacesReached
-    | TextsSeen
-    | NotInstrumented
-    | KnownLater
-    | TestEnd
-    | BranchEnd
-    | BranchFinished
-    | BranchDied
-    | Unbranched
-    | Undiverged
-    | TokensHeld
-    | Problem
-    | Remark
-    | Serving
-    | ForkEnded
-    | Began
-    | Called
-    | Noted
-    | Did
-    | Used
-    | Raised
-    | Found
-    | Signalled
-    | SessionEnd
-    | Untrusted
-)
-
 #: the kinds of event by their names
-EVENTS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Event)}
+EVENTS: dict[str, type[Any]] = {kind.__name__: kind for kind in Event.__subclasses__()}
 
 
 def event_to_data(event: Event) -> dict[str, Any]:

@@ -1,7 +1,7 @@
-"""What crosses the process border: a job description in, events out.
+"""The job: what the controller tells the process that runs the robot program.
 
-The controller writes one ``Job`` as JSON; the process that runs the robot program answers with lines of
-JSON, each one of the classes in ``model.events``.
+The controller writes one ``Job`` as JSON into the home of that process, which answers with the events of
+``model.events``.
 """
 
 from __future__ import annotations

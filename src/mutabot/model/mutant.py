@@ -1,12 +1,8 @@
-"""Mutants: a fault at a site, the moments at which it acts, and what people choose them by.
+"""Mutants: a fault at a site, the moments at which it acts, and alternatives in the program text.
 
-Without a moment it acts at each call of its site. In a control loop that is no fault any robot has: a policy
-that is wrong at 300 of 300 steps is noticed by every test.
-
-Alternatives: what a place in the program text could read instead.
-
-Made outside, where the program text is looked at; put in place inside, where the program runs. Plain data
-that crosses the process border as JSON.
+Without a moment a mutant acts at each call of its site. In a control loop no robot has such a fault: a policy
+that is wrong at 300 of 300 steps is noticed by every test. Alternatives are made where the program text is
+examined, and put in place where the program runs; they cross the process border as plain data.
 """
 
 from __future__ import annotations
@@ -352,8 +348,6 @@ RUNTIME = "__mutabot__"
 
 #: indexes of the controls: the original goes on as it is; the place raises
 IDENTITY, FATAL = -1, -2
-#: stands for a mutant that is more than one alternative
-AT_ONCE = -3
 
 
 def kept_name(index: int) -> str:

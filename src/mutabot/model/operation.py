@@ -1,7 +1,4 @@
-"""Operations: the high-level things a robot program does through its API.
-
-What operations are that have a name on a middleware: a topic to publish on, a service to call.
-"""
+"""Operations: what a robot program does through its API, by calls or under names on a middleware."""
 
 from __future__ import annotations
 
@@ -57,16 +54,7 @@ class Form(StrEnum):
 #: forms whose argument holds all that is written, and its name
 WRITTEN = {Form.PUBLISH: "message", Form.CALL: "request", Form.GOAL: "goal"}
 #: forms that entries of a vocabulary speak of; all others go with them
-MAIN = frozenset(
-    {
-        *WRITTEN,
-        Form.RECEIVE,
-        Form.PARAMETER,
-        Form.TICK,
-        Form.SLEEP,
-        Form.TRANSFORM,
-    }
-)
+MAIN = frozenset({*WRITTEN, Form.RECEIVE, Form.PARAMETER, Form.TICK, Form.SLEEP, Form.TRANSFORM})
 #: forms of what comes by itself and is given to a callback, or waited for: it may come late, twice or never
 COMING = frozenset({Form.RECEIVE, Form.FEEDBACK, Form.TICK})
 #: forms for whose answer the program waits, or which it is told later

@@ -1,4 +1,4 @@
-"""Paths into arguments and results: attribute, index, key and slice.
+"""Paths into arguments and results: attribute, index, key and slice; and the names of classes.
 
     .pose.x      attribute of an attribute
     [0]          index
@@ -7,8 +7,6 @@
     target[0].z  the same, starting at an argument's name
 
 Replacing a value copies what lies on the way and leaves the original object untouched.
-
-How classes are named, in vocabularies, journals and messages alike.
 """
 
 from __future__ import annotations

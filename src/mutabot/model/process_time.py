@@ -1,11 +1,10 @@
-"""How much of the time that a process may take it has used, on a machine that others use as well.
+"""Measure how much time a process has used on a shared machine, and find where it hangs.
 
-Time in which its tasks stood in the queue for a processor is none that it has used. So a limit of wall clock
-means on a busy machine what it means on a quiet one, as far as the kernel keeps account of that: a task that
-waits for a message asks for nothing; one that wants to compute and has no processor looks just as idle to
-whoever counts only what it got.
+Time for which its tasks waited for a processor does not count. So a limit of wall clock means the same on a
+busy machine as on a quiet one, as far as the kernel keeps accounts: a task that waits for a message asks for
+nothing; one that wants to compute and has no processor looks just as idle to a plain clock.
 
-Where a process hangs: it writes its stack into a file when it gets a signal, before it is ended.
+A process that hangs writes its stack into a file when it gets a signal, before it is ended.
 """
 
 from __future__ import annotations

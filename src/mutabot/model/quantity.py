@@ -1,14 +1,11 @@
-"""Quantities: what one argument, or one part of a result, means.
+"""Quantities: the meaning of one argument or of one part of a result, and which of its values are the same.
 
-An orientation's numbers may be attributes, as a message's quaternion has ``x``, ``y``, ``z`` and ``w``. A
-stamp of ROS 2 has ``sec`` and ``nanosec``, one of ROS 1 ``secs`` and ``nsecs``. Of a number of seconds since
-1970 some hundred nanoseconds are lost, so a stamp is written anew only where it is to be another one.
+Orientations may be attributes of an object, as the ``x``, ``y``, ``z`` and ``w`` of a message's quaternion
+are. A stamp of ROS 2 has ``sec`` and ``nanosec``, one of ROS 1 ``secs`` and ``nsecs``. Seconds since 1970
+lose some hundred nanoseconds as one number, so a stamp is written anew only where its value changes.
 
-Whether two values of a quantity are the same for the robot: one in the place of the other is no fault.
-
-Plan, engines and operators of all families ask here, so that what one leaves out no other plants.
-
-Readings that come in steps, as times of a simulation do.
+Two values are the same if the robot, or the program that reads them, cannot tell them apart. Plan, engines
+and operators of all families ask here, so that none plants a fault that another leaves out.
 """
 
 from __future__ import annotations
@@ -290,14 +287,11 @@ class Quantity:
 
 def told_apart(one: Value, other: Value, text: Callable[[Value, int], str], digits: int) -> tuple[str, str]:
     """Two values as texts, with as many significant digits as tell them apart, but at least ``digits``."""
-    usual = text(one, digits), text(other, digits)
-    if usual[0] != usual[1] or text(one, _MOST_DIGITS) == text(other, _MOST_DIGITS):
-        return usual
     for more in range(digits, _MOST_DIGITS + 1):
         texts = text(one, more), text(other, more)
         if texts[0] != texts[1]:
             return texts
-    return usual
+    return text(one, digits), text(other, digits)
 
 
 def is_reading_of(reading: Quantity, written: Quantity) -> bool:
@@ -343,11 +337,8 @@ def same(one: Value, other: Value) -> bool:
     """
     if one is other:
         return True
-    if (
-        isinstance(one, float)
-        and isinstance(other, float)
-        and isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
-    ):
+    are_floats = isinstance(one, float) and isinstance(other, float)
+    if are_floats and isclose(one, other, rel_tol=_RELATIVE, abs_tol=_ABSOLUTE):
         return True
     if hasattr(one, "tolist"):
         one = one.tolist()

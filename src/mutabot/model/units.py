@@ -1,9 +1,7 @@
-"""Units a vocabulary may use, and their conversion to SI.
+"""Units that a vocabulary may use, with their conversion to SI, and orientations.
 
-Orientations: rotation vectors, quaternions and Euler angles, and how far two of them are apart.
-
-Everything goes through unit quaternions (w, x, y, z). Two orientations are as far apart as the angle of the
-one rotation that leads from the first to the second, between 0 and half a turn: 2·atan2(|v|, |w|) of the
+Orientations are unit quaternions (w, x, y, z). Two orientations are as far apart as the angle of the one
+rotation that leads from the first to the second, between 0 and half a turn: 2·atan2(|v|, |w|) of the
 quaternion between them. Euler angles are read out after Bernardes and Viollet, "Quaternion to Euler angles
 conversion: A direct, general and computationally efficient method", PLoS ONE 17 (2022) e0276302.
 """
@@ -55,57 +53,34 @@ class Unit(NamedTuple):
 
 
 _DEGREE = math.pi / 180.0
-#: by the names that vocabularies write; a test holds them against pint's
+#: by dimension, how many of the SI's unit each unit is; a test holds them against pint's
+_FACTORS: dict[Dimension, dict[str, float]] = {
+    Dimension.LENGTH: {"m": 1.0, "cm": 0.01, "mm": 0.001, "um": 1e-6, "inch": 0.0254},
+    Dimension.ANGLE: {"rad": 1.0, "mrad": 0.001, "deg": _DEGREE},
+    Dimension.TIME: {"s": 1.0, "ms": 0.001, "us": 1e-6, "min": 60.0},
+    Dimension.RATIO: {"fraction": 1.0, "percent": 0.01},
+    Dimension.SPEED: {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "mm/min": 0.001 / 60.0},
+    Dimension.ANGULAR_SPEED: {"rad/s": 1.0, "deg/s": _DEGREE, "rpm": 2.0 * math.pi / 60.0},
+    Dimension.ACCELERATION: {"m/s^2": 1.0, "mm/s^2": 0.001},
+    Dimension.ANGULAR_ACCELERATION: {"rad/s^2": 1.0, "deg/s^2": _DEGREE},
+    Dimension.JERK: {"m/s^3": 1.0, "mm/s^3": 0.001},
+    Dimension.ANGULAR_JERK: {"rad/s^3": 1.0, "deg/s^3": _DEGREE},
+    Dimension.FORCE: {"N": 1.0, "kN": 1000.0},
+    Dimension.TORQUE: {"Nm": 1.0, "Nmm": 0.001},
+    Dimension.MASS: {"kg": 1.0, "g": 0.001},
+    Dimension.TEMPERATURE: {"K": 1.0, "degC": 1.0, "degF": 5.0 / 9.0},
+    Dimension.VOLTAGE: {"V": 1.0, "mV": 0.001},
+    Dimension.CURRENT: {"A": 1.0, "mA": 0.001},
+    Dimension.PRESSURE: {"Pa": 1.0, "kPa": 1000.0, "mbar": 100.0, "bar": 1e5, "psi": 6894.757293168361},
+    Dimension.FREQUENCY: {"Hz": 1.0, "kHz": 1000.0},
+}
+#: where the scales of temperatures begin, in K
+_ZEROS = {"degC": 273.15, "degF": 273.15 - 32.0 * 5.0 / 9.0}
+#: by the names that vocabularies write
 UNITS: dict[str, Unit] = {
-    "m": Unit(Dimension.LENGTH, 1.0),
-    "cm": Unit(Dimension.LENGTH, 0.01),
-    "mm": Unit(Dimension.LENGTH, 0.001),
-    "um": Unit(Dimension.LENGTH, 1e-6),
-    "inch": Unit(Dimension.LENGTH, 0.0254),
-    "rad": Unit(Dimension.ANGLE, 1.0),
-    "mrad": Unit(Dimension.ANGLE, 0.001),
-    "deg": Unit(Dimension.ANGLE, _DEGREE),
-    "s": Unit(Dimension.TIME, 1.0),
-    "ms": Unit(Dimension.TIME, 0.001),
-    "us": Unit(Dimension.TIME, 1e-6),
-    "min": Unit(Dimension.TIME, 60.0),
-    "fraction": Unit(Dimension.RATIO, 1.0),
-    "percent": Unit(Dimension.RATIO, 0.01),
-    "m/s": Unit(Dimension.SPEED, 1.0),
-    "cm/s": Unit(Dimension.SPEED, 0.01),
-    "mm/s": Unit(Dimension.SPEED, 0.001),
-    "mm/min": Unit(Dimension.SPEED, 0.001 / 60.0),
-    "rad/s": Unit(Dimension.ANGULAR_SPEED, 1.0),
-    "deg/s": Unit(Dimension.ANGULAR_SPEED, _DEGREE),
-    "rpm": Unit(Dimension.ANGULAR_SPEED, 2.0 * math.pi / 60.0),
-    "m/s^2": Unit(Dimension.ACCELERATION, 1.0),
-    "mm/s^2": Unit(Dimension.ACCELERATION, 0.001),
-    "rad/s^2": Unit(Dimension.ANGULAR_ACCELERATION, 1.0),
-    "deg/s^2": Unit(Dimension.ANGULAR_ACCELERATION, _DEGREE),
-    "m/s^3": Unit(Dimension.JERK, 1.0),
-    "mm/s^3": Unit(Dimension.JERK, 0.001),
-    "rad/s^3": Unit(Dimension.ANGULAR_JERK, 1.0),
-    "deg/s^3": Unit(Dimension.ANGULAR_JERK, _DEGREE),
-    "N": Unit(Dimension.FORCE, 1.0),
-    "kN": Unit(Dimension.FORCE, 1000.0),
-    "Nm": Unit(Dimension.TORQUE, 1.0),
-    "Nmm": Unit(Dimension.TORQUE, 0.001),
-    "kg": Unit(Dimension.MASS, 1.0),
-    "g": Unit(Dimension.MASS, 0.001),
-    "K": Unit(Dimension.TEMPERATURE, 1.0),
-    "degC": Unit(Dimension.TEMPERATURE, 1.0, 273.15),
-    "degF": Unit(Dimension.TEMPERATURE, 5.0 / 9.0, 273.15 - 32.0 * 5.0 / 9.0),
-    "V": Unit(Dimension.VOLTAGE, 1.0),
-    "mV": Unit(Dimension.VOLTAGE, 0.001),
-    "A": Unit(Dimension.CURRENT, 1.0),
-    "mA": Unit(Dimension.CURRENT, 0.001),
-    "Pa": Unit(Dimension.PRESSURE, 1.0),
-    "kPa": Unit(Dimension.PRESSURE, 1000.0),
-    "mbar": Unit(Dimension.PRESSURE, 100.0),
-    "bar": Unit(Dimension.PRESSURE, 1e5),
-    "psi": Unit(Dimension.PRESSURE, 6894.757293168361),
-    "Hz": Unit(Dimension.FREQUENCY, 1.0),
-    "kHz": Unit(Dimension.FREQUENCY, 1000.0),
+    name: Unit(dimension, factor, _ZEROS.get(name, 0.0))
+    for dimension, factors in _FACTORS.items()
+    for name, factor in factors.items()
 }
 
 

@@ -1,7 +1,4 @@
-"""Evidence of a mutant at work: what it met, did and was refused.
-
-What a test may use: operations, simulated time, memory.
-"""
+"""Evidence of a mutant at work, the exceptions that it causes, and the budget of a test."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the vocabulary fits the program: what it names is there, and can be used the way it is meant."""
+"""Check that the vocabulary fits the program: what it names exists and can be used as it says."""
 
 from __future__ import annotations
 
@@ -67,10 +67,8 @@ class Inspection:
         if (source, finding.key) in self._told:
             return
         self._told.add((source, finding.key))
-        if finding.is_remark:
-            self._send(Remark(source, finding.key, finding.text))
-        else:
-            self._send(Problem(source, finding.key, finding.text, finding.name, finding.known))
+        problem = Problem(source, finding.key, finding.text, finding.name, finding.known)
+        self._send(Remark(source, finding.key, finding.text) if finding.is_remark else problem)
 
     def look_ahead(self, interception: Interception) -> None:
         """The tests are about to begin: say what can be said about the targets that are there already."""
@@ -125,17 +123,15 @@ class Inspection:
 
     def _check_exceptions(self) -> None:
         """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
-        for key in ("refusals", "checks", "failures"):
-            for name in getattr(self._vocabulary, key):
-                self._check_exception("vocabulary", key, name)
-        for operation in self._vocabulary.operations:
-            for name in operation.refusals:
-                self._check_exception(operation.source, "refusals", name)
-
-    def _check_exception(self, source: str, key: str, name: str) -> None:
-        found = self._look_up(source, f"{key} {name}", name)
-        if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
-            self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
+        keys = ("refusals", "checks", "failures")
+        named = [("vocabulary", key, name) for key in keys for name in getattr(self._vocabulary, key)]
+        named += [
+            (one.source, "refusals", name) for one in self._vocabulary.operations for name in one.refusals
+        ]
+        for source, key, name in named:
+            found = self._look_up(source, f"{key} {name}", name)
+            if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
+                self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
 
     def _check_probes(self) -> None:
         for probe in self._vocabulary.probes:
@@ -158,13 +154,11 @@ class Inspection:
         return None
 
     def _source_of(self, target: str) -> str:
+        sources = {probe.target: probe.source for probe in self._vocabulary.probes}
+        if self._vocabulary.clock is not None:
+            sources[self._vocabulary.clock.tick] = self._vocabulary.clock.source
         operation = self._vocabulary.operation(target)
-        if operation is not None:
-            return operation.source
-        clock = self._vocabulary.clock
-        if clock is not None and clock.tick == target:
-            return clock.source
-        return next((probe.source for probe in self._vocabulary.probes if probe.target == target), "")
+        return operation.source if operation is not None else sources.get(target, "")
 
 
 def why_not_asked(reading: str, asker: type | None) -> str | None:
@@ -177,23 +171,15 @@ def why_not_asked(reading: str, asker: type | None) -> str | None:
     module, _, qualname = reading.partition(":")
     owner, name, _ = resolve(sys.modules[module], qualname)
     if asker is not None and "." in qualname and hasattr(asker, name):
-        return _why_not_called(asker, name, reading)
-    if isinstance(owner, type) and is_bound(owner, name):
+        owner = asker
+    elif isinstance(owner, type) and is_bound(owner, name):
         of = f"the operation is called on {asker.__name__}" if asker else "the operation is a function"
         return (
             f"{reading} is read from an object of {owner.__name__}, but {of}; "
             f"name {'a method of that class' if asker else 'a function'} that needs no arguments"
         )
-    return _why_not_called(owner, name, reading)
-
-
-def _why_not_called(owner: Any, name: str, reading: str) -> str | None:
     found = getattr(owner, name)
-    if not callable(found):
-        return None
-    needed = needed_arguments(found)
+    needed = needed_arguments(found) if callable(found) else []
     if isinstance(owner, type) and is_bound(owner, name):
         needed = needed[1:]  # self
-    if not needed:
-        return None
-    return f"{reading} needs {', '.join(needed)}, but it is asked without arguments"
+    return f"{reading} needs {', '.join(needed)}, but it is asked without arguments" if needed else None

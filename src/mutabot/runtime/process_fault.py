@@ -7,7 +7,8 @@ each process of the tests when the first of them begins. What it raises is an er
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from random import Random
@@ -80,21 +81,6 @@ class Fatal(ProcessFault):
 
 
 @dataclass(slots=True)
-class _Placed:
-    """A mutant's fault; None before the first test, or if it cannot be made, with the reason."""
-
-    mutant: Mutant
-    how: InProcess
-    fault: ProcessFault | None = None
-    failure: str | None = None
-
-    @property
-    def evidence(self) -> Evidence:
-        found = self.fault.evidence if self.fault is not None else Evidence()
-        return found if self.failure is None else replace(found, failure=self.failure)
-
-
-@dataclass(slots=True)
 class ProcessFaults:
     """All such faults in this process.
 
@@ -105,50 +91,58 @@ class ProcessFaults:
 
     on_act: Callable[[str], None]
     fatal: FatalFault | None = None
-    _placed: list[_Placed] = field(default_factory=list)
+    _placed: dict[str, tuple[Mutant, InProcess]] = field(default_factory=dict)
+    _faults: dict[str, ProcessFault] = field(default_factory=dict)
+    _failures: dict[str, str] = field(default_factory=dict)
 
     def add(self, mutant: Mutant, how: InProcess) -> None:
         """From the next test on, this is in place."""
-        self._placed.append(_Placed(mutant, how))
+        self._placed[mutant.id] = mutant, how
 
     @property
     def evidence(self) -> list[Evidence]:
         """What each of them did in the running test."""
-        return [one.evidence for one in self._placed]
+        found = []
+        for id in self._placed:
+            evidence = self._faults[id].evidence if id in self._faults else Evidence()
+            found.append(replace(evidence, failure=self._failures.get(id, evidence.failure)))
+        return found
 
     def start_test(self, test: str, random_of: Callable[[Mutant], Random]) -> None:
         """A test begins."""
         self.fatal = None
-        for one in self._placed:
-            try:
-                fault = self._fault_of(one)
+        for id, (mutant, how) in self._placed.items():
+            with self._told(mutant, "put in place"):
+                fault = self._faults.get(id) or self._made(mutant, how)
                 fault.evidence = Evidence()
-                fault.start_test(test, random_of(one.mutant))
-            except FatalFault as error:
-                self.fatal = error
-            except Exception as error:  # a provider may fail in any way, which says nothing of the tests
-                one.failure = f"{one.mutant.operator} cannot be put in place: {type(error).__name__}: {error}"
+                fault.start_test(test, random_of(mutant))
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""
-        for one in self._placed:
-            try:
-                if one.fault is not None:
-                    one.fault.end_test()
-            except Exception as error:  # what comes after cannot be believed
-                one.failure = f"{one.mutant.operator} cannot be taken away: {type(error).__name__}: {error}"
+        for id, fault in self._faults.items():
+            with self._told(self._placed[id][0], "taken away"):
+                fault.end_test()
 
-    def _fault_of(self, one: _Placed) -> ProcessFault:
+    @contextmanager
+    def _told(self, mutant: Mutant, what: str) -> Iterator[None]:
+        """A provider may fail in any way: that is an error of its mutant, and says nothing of the tests."""
+        try:
+            yield
+        except FatalFault as error:
+            self.fatal = error
+        except Exception as error:
+            why = f"{mutant.operator} cannot be {what}: {type(error).__name__}: {error}"
+            self._failures[mutant.id] = why
+
+    def _made(self, mutant: Mutant, how: InProcess) -> ProcessFault:
         """The fault, which is made when the first test begins."""
-        if one.fault is None:
-            module, _, name = one.how.reference.partition(":")
-            kind = getattr(import_module(module), name)
-            fault: ProcessFault = kind(one.mutant, one.how.data)
-            if not isinstance(fault, ProcessFault):
-                raise TypeError(f"{one.how.reference} is no mutabot.runtime.process_fault.ProcessFault")
-            fault.on_act = lambda: self.on_act(one.mutant.id)
-            one.fault = fault
-        return one.fault
+        module, _, name = how.reference.partition(":")
+        fault: ProcessFault = getattr(import_module(module), name)(mutant, how.data)
+        if not isinstance(fault, ProcessFault):
+            raise TypeError(f"{how.reference} is no mutabot.runtime.process_fault.ProcessFault")
+        fault.on_act = lambda: self.on_act(mutant.id)
+        self._faults[mutant.id] = fault
+        return fault
 
 
 def _plain(value: Any) -> Any:

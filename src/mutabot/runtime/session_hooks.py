@@ -27,7 +27,7 @@ from mutabot.runtime.isolation.fork_parent import ForkParent
 from mutabot.runtime.isolation.forkable import track_event_loops
 from mutabot.runtime.isolation.forked_run import ForkedRun
 from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
-from mutabot.runtime.observation.compared import Assertions, Comparisons
+from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.program_text.returns import Returns
@@ -161,8 +161,7 @@ class SessionHooks:
     def look_at_checks(self) -> None:
         """Note what tests check."""
         looks, root = self.tests.looks, self.job.root
-        Assertions(root, self._is_of_tests, looks).install()
-        Comparisons(root, looks).install()
+        Checks(root, self._is_of_tests, looks).install()
         self.session.call_sites.hook_pytest()
 
     def record_units(self) -> None:

@@ -17,7 +17,7 @@ from mutabot.model.path import class_name
 from mutabot.runtime import FOLDER
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.observation.compared import FILE as AROUND_COMPARISONS
+from mutabot.runtime.observation.checks import FILE as AROUND_COMPARISONS
 from mutabot.runtime.targets.target import is_named
 
 #: where an object lies in memory differs from run to run and says nothing

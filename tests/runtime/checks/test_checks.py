@@ -20,7 +20,6 @@ START = """
     import math
     import unittest
     from collections import namedtuple
-    from dataclasses import dataclass
 
     import numpy as np
     import pytest
@@ -47,11 +46,6 @@ START = """
 """
 
 HELPERS = """
-    @dataclass(frozen=True)
-    class Loads:
-        left: float
-        right: float
-
     Pair = namedtuple("Pair", "one other")
 
     def is_near(value, wanted, by=0.1):
@@ -69,15 +63,11 @@ ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "abs(sensor().x - 0.26) <= 0.05": ("0.01 <= 0.05", 0.04),
     "math.isclose(sensor().x, 0.26, abs_tol=0.05)": ("0.25 ≈ 0.26", 0.04),
     "np.allclose([sensor().x], [0.26], rtol=0, atol=0.05)": ("[0.25] ≈ [0.26]", 0.04),
-    "is_near(sensor().x, 0.26, by=0.05)": ("is_near(0.25, 0.26, by=0.05)", 0.04),
+    "is_near(sensor().x, 0.26, by=0.05)": ("is_near(0.25, 0.26, by=0.05)", None),
     "sensor().x == 0.25": ("0.25 == 0.25", None),
     "str(sensor().x) in ('0.25', 'a')": ("'0.25' in ('0.25', 'a')", None),
     "{'x': [sensor().x]} == {'x': [0.25]}": ("{'x': [0.25]} == {'x': [0.25]}", None),
-    "Loads(sensor().x, 1) == Loads(0.25, 1)": (
-        "Loads(left=0.25, right=1) == Loads(left=0.25, right=1)",
-        None,
-    ),
-    "Pair(1, 2) == Pair(1, 2)": ("Pair(one=1, other=2) == Pair(one=1, other=2)", None),
+    "Pair(1, 2) == Pair(1, 2)": ("", None),
     "isinstance(sensor(), Sensor)": ("", None),
     "sensor() is not None": ("", None),
 }

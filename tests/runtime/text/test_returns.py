@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.observation.probes import LEAVES, MOST, plain
+from mutabot.runtime.observation.probes import LONGEST, MOST, plain
 from mutabot.runtime.program_text.returns import LIMIT, Returns
 
 PROGRAM = '''
@@ -197,7 +197,7 @@ def test_values_become_plain_data(value: object, data: object) -> None:
 
 
 def test_large_values_are_told_apart_by_a_digest() -> None:
-    one, other = list(range(LEAVES + 1)), list(range(LEAVES + 2))
+    one, other = list(range(LONGEST)), list(range(LONGEST + 1))
     assert plain(one) == plain(list(one)) != plain(other)
     assert plain("a" * 1000) == plain("a" * 1000) != plain("a" * 999 + "b")
 

@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mutabot.languages.front_end import Name
+from mutabot.languages.front_end import Name, front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of, unused_calls
-from mutabot.languages.registry import front_end_of
 from mutabot.model import Role, Site, Span
 from mutabot.model.events import SiteSeen
 from mutabot.model.mutant import Extent

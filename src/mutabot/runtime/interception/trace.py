@@ -12,9 +12,8 @@ from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.evidence.recording import Told
-from mutabot.languages.front_end import Position
+from mutabot.languages.front_end import Position, front_ends
 from mutabot.languages.python import FRONT_END as PYTHON
-from mutabot.languages.registry import front_ends
 from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen

@@ -1,253 +1,62 @@
-"""The checks of the running test, as they are made, and by how much each of them held."""
+"""Note the checks of the running test: what each compared, and by how much it held.
+
+Pytest works out each part of an assertion once and keeps it in a variable. After a comparison, and after a
+call that decides, an inserted line hands on these variables: nothing of the assertion is evaluated again, and
+pytest's message about one that fails stays the same. The comparisons of unittest and numpy.testing are
+wrapped, and noted when they have held.
+"""
 
 from __future__ import annotations
 
 import ast
 import functools
 import inspect
-import itertools
+import linecache
 import math
-import operator
+import os
 import sys
-import textwrap
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from types import FunctionType
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from types import ModuleType
 from typing import Any
+
+import wrapt
 
 from mutabot.model.outcome import Check
 
-#: arrays with more elements than this are not looked at
-_MOST = 1000
-_LONGEST_VALUE = 100
-_PLAIN = (str, bytes, int, float, bool, complex, range, type(None))
-_ARITHMETIC: dict[type[ast.AST], Callable[..., float]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-    ast.Pow: operator.pow, ast.Mod: operator.mod, ast.USub: operator.neg, ast.UAdd: operator.pos,
-}  # fmt: skip
-_FUNCTIONS: dict[str, Callable[..., float]] = {
-    "abs": abs, "min": min, "max": max, "fabs": math.fabs, "sqrt": math.sqrt, "hypot": math.hypot,
-    "radians": math.radians, "degrees": math.degrees,
-}  # fmt: skip
-
-
-def margin(left: Any, operator: str, right: Any) -> float | None:
-    """How far the sides of ``left operator right`` are apart; None if it is no matter of more or less.
-
-    Arrays and sequences count by their element that is nearest to end otherwise.
-    """
-    if operator in ("==", "!="):
-        for value, other in ((left, right), (right, left)):
-            if is_approximate(other):
-                return _of_approximate(value, other)
-        return None
-    if operator not in ("<", "<=", ">", ">="):
-        return None
-    pairs = _pairs(left, right)
-    found = [abs(other - value) for value, other in pairs] if pairs else []
-    return _least(found)
-
-
-def of_tolerance(value: Any, expected: Any, absolute: float, relative: float) -> float | None:
-    """How far the sides of ``|value - expected| <= absolute + relative * |expected|`` are apart."""
-    pairs = _pairs(value, expected) or ()
-    return _least([abs(absolute + relative * abs(wanted) - abs(one - wanted)) for one, wanted in pairs])
-
-
-def is_approximate(value: Any) -> bool:
-    """Whether it is what ``pytest.approx`` makes."""
-    kind = type(value)  # its module has moved between releases of pytest
-    return kind.__module__.startswith("_pytest.") and kind.__name__.startswith("Approx")
-
-
-def in_words(value: Any) -> str | None:
-    """A plain value as people read it; None for others."""
-    if is_approximate(value):
-        expected = in_words(value.expected)
-        return f"approx({expected})" if expected is not None else None
-    number = _number(value)
-    if number is not None and not isinstance(value, bool | int):
-        return f"{number:.6g}"
-    if type(value) in _PLAIN:
-        return _short(repr(value))
-    if type(value) in (list, tuple) and len(value) <= _MOST:
-        return _gathered("[]" if type(value) is list else "()", [("", one) for one in value])
-    if type(value) is dict and len(value) <= _MOST and all(type(key) in _PLAIN for key in value):
-        return _gathered("{}", [(f"{key!r}: ", one) for key, one in value.items()])
-    if _is_array(value) and value.size <= _MOST:
-        return in_words(value.tolist())
-    parts = _fields_of(value)
-    return _gathered(f"{type(value).__name__}()", parts) if parts is not None else None
-
-
-def _fields_of(value: Any) -> list[tuple[str, Any]] | None:
-    """The fields of a dataclass or named tuple that are plainly kept; None for all else."""
-    kind: Any = type(value)
-    if isinstance(value, tuple) and kind.__bases__ == (tuple,) and hasattr(kind, "_fields"):
-        return [(f"{name}=", one) for name, one in zip(kind._fields, tuple.__iter__(value), strict=True)]
-    names = getattr(kind, "__dataclass_fields__", None)
-    if names is None or kind.__getattribute__ is not object.__getattribute__:
-        return None
-    kept = vars(value) if hasattr(value, "__dict__") else {}
-    return [(f"{name}=", kept[name]) for name in names] if kept.keys() >= names.keys() else None
-
-
-def _gathered(brackets: str, parts: list[tuple[str, Any]]) -> str | None:
-    texts = [(name, in_words(one)) for name, one in parts]
-    if any(text is None for _, text in texts):
-        return None
-    return _short(f"{brackets[:-1]}{', '.join(f'{name}{text}' for name, text in texts)}{brackets[-1]}")
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST - 1]}…"
-
-
-def _of_approximate(value: Any, approximate: Any) -> float | None:
-    pairs = _approximate_pairs(value, approximate.expected)
-    found: list[float] = []
-    for one, wanted in pairs or ():
-        scalar = approximate._approx_scalar(wanted) if hasattr(approximate, "_approx_scalar") else approximate
-        found.append(abs(scalar.tolerance - abs(one - wanted)))
-    return _least(found)
-
-
-def _approximate_pairs(value: Any, expected: Any) -> list[tuple[float, float]] | None:
-    if isinstance(expected, Mapping):
-        if type(value) is not dict or value.keys() != expected.keys():
-            return None
-        return _pairs(list(value.values()), [expected[key] for key in value])
-    return _pairs(value, expected)
-
-
-def _least(found: list[float]) -> float | None:
-    finite = [one for one in found if math.isfinite(one)]
-    return min(finite) if finite else None
-
-
-def _pairs(left: Any, right: Any) -> list[tuple[float, float]] | None:
-    """Numbers that stand against each other; None if there is anything else."""
-    ones, others = _numbers(left), _numbers(right)
-    if ones is None or others is None:
-        return None
-    if len(ones) == 1 != len(others):
-        ones *= len(others)
-    elif len(others) == 1 != len(ones):
-        others *= len(ones)
-    return list(zip(ones, others, strict=True)) if len(ones) == len(others) else None
-
-
-def _numbers(value: Any) -> list[float] | None:
-    number = _number(value)
-    if number is not None:
-        return [number]
-    if _is_array(value):
-        value = value.ravel().tolist() if value.size <= _MOST else None
-    if type(value) not in (list, tuple) or len(value) > _MOST:
-        return None
-    found: list[float] = []
-    for one in value:
-        numbers = _numbers(one)
-        if numbers is None:
-            return None
-        found += numbers
-    return found
-
-
-def _number(value: Any) -> float | None:
-    if type(value) in (int, float, bool):
-        return float(value)
-    numpy = sys.modules.get("numpy")
-    if numpy is not None and isinstance(value, numpy.number) and not numpy.iscomplexobj(value):
-        return float(value)
-    return None
-
-
-def _is_array(value: Any) -> bool:
-    numpy = sys.modules.get("numpy")
-    return numpy is not None and type(value) is numpy.ndarray and value.dtype.kind in "biuf"
-
-
-def margin_of_helper(function: Any, arguments: tuple[Any, ...], named: Mapping[str, Any]) -> float | None:
-    """How far the sides of the comparison are apart that a function returns; None for any other function."""
-    if not isinstance(function, FunctionType) or len(arguments) > 10:
-        return None
-    test = _returned(function)
-    if test is None:
-        return None
-    try:
-        given = inspect.signature(function).bind(*arguments, **named)
-        given.apply_defaults()
-        if any(type(one) not in (int, float) for one in given.arguments.values()):
-            return None
-        return _margin(test, given.arguments)
-    except (ArithmeticError, LookupError, TypeError, ValueError):
-        return None
-
-
-@functools.lru_cache(maxsize=256)
-def _returned(function: FunctionType) -> ast.expr | None:
-    """The comparison that a function returns, if it does nothing else."""
-    try:
-        tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
-    except (OSError, SyntaxError, TypeError):
-        return None
-    found = tree.body[0]
-    if not isinstance(found, ast.FunctionDef) or found.decorator_list:
-        return None
-    body = found.body[1:] if ast.get_docstring(found) is not None else found.body
-    is_one = len(body) == 1 and isinstance(body[0], ast.Return)
-    value = body[0].value if is_one and isinstance(body[0], ast.Return) else None
-    return value if isinstance(value, ast.Compare | ast.BoolOp) else None
-
-
-def _margin(test: ast.expr, given: Mapping[str, Any]) -> float:
-    """The least of all comparisons'. Raises LookupError for what is no matter of more or less."""
-    if isinstance(test, ast.BoolOp):
-        return min(_margin(value, given) for value in test.values)
-    if not isinstance(test, ast.Compare):
-        raise LookupError(type(test).__name__)
-    if not all(isinstance(one, ast.Lt | ast.LtE | ast.Gt | ast.GtE) for one in test.ops):
-        raise LookupError("equality")
-    values = [_value(one, given) for one in (test.left, *test.comparators)]
-    return min(abs(right - left) for left, right in itertools.pairwise(values))
-
-
-def _value(node: ast.expr, given: Mapping[str, Any]) -> float:
-    match node:
-        case ast.Constant(value=int() | float() as value):
-            return value
-        case ast.Name(id=name):
-            return float(given[name])
-        case ast.BinOp(left=left, op=op, right=right):
-            return _ARITHMETIC[type(op)](_value(left, given), _value(right, given))
-        case ast.UnaryOp(op=op, operand=operand):
-            return _ARITHMETIC[type(op)](_value(operand, given))
-        case ast.Call(func=ast.Name(id="round"), args=[value, ast.Constant(value=int() as digits)]):
-            return round(_value(value, given), digits)
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(value=ast.Name(id="math"), attr=name)):
-            return _FUNCTIONS[name](*(_value(one, given) for one in node.args))
-    raise LookupError(type(node).__name__)
-
-
+#: this file, which is nobody's in tracebacks
+FILE = __file__
 #: checks of a test that are told; of others only how many there are
 MOST = 40
-_LONGEST = 160
-
-
-@dataclass(slots=True)
-class _Noted:
-    text: str
-    times: int = 0
-    seen: str = ""
-    spare: float | None = None
+#: elements of containers beyond which they are not looked at
+_MOST_ITEMS = 1000
+_LONGEST, _LONGEST_VALUE = 160, 100
+_PLAIN = (str, bytes, int, float, bool, complex, range, type(None))
+#: names in pytest's module of rewriting, which rewritten files know as ``@pytest_ar``
+_COMPARED, _CALLED = "_mutabot_compared", "_mutabot_called"
+_REWRITING = "_pytest.assertion.rewrite"
+_OPERATORS: dict[type[ast.cmpop], str] = {
+    ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
+    ast.In: "in", ast.NotIn: "not in", ast.Is: "is", ast.IsNot: "is not",
+}  # fmt: skip
+#: functions that compare their first two arguments, and how
+_COMPARING = {
+    "assertGreater": ">", "assertGreaterEqual": ">=", "assertLess": "<", "assertLessEqual": "<=",
+    "assertEqual": "==", "assertNotEqual": "!=", "assertIn": "in", "assertNotIn": "not in",
+    "assert_equal": "==", "assert_array_equal": "==", "assert_array_less": "<",
+    "assertAlmostEqual": "≈", "assert_allclose": "≈", "assert_almost_equal": "≈",
+    "assert_array_almost_equal": "≈", "isclose": "≈", "allclose": "≈",
+}  # fmt: skip
+_LIBRARIES = frozenset({"math", "numpy", "unittest"})
+#: assertions with these words in their names run what they are given
+_RUNS_SOMETHING = ("raises", "warn", "logs", "gc_cycles")
 
 
 class Looks:
     """What the checks of the running test compared."""
 
     def __init__(self) -> None:
-        self._noted: dict[tuple[str, str], _Noted] = {}
+        self._noted: dict[tuple[str, str], Check] = {}
         self._more: set[tuple[str, str]] = set()
 
     def clear(self) -> None:
@@ -263,69 +72,315 @@ class Looks:
     @property
     def checks(self) -> tuple[Check, ...]:
         """Those of the test until now."""
-        return tuple(
-            Check(place, one.text, one.seen, one.spare, one.times) for (place, _), one in self._noted.items()
-        )
+        return tuple(self._noted.values())
 
     def compared(self, place: str, text: str, left: Any, operator: str, right: Any) -> None:
-        """``left operator right`` was worked out."""
-        self._note(place, text, margin(left, operator, right), lambda: _compared(left, operator, right))
-
-    def near(
-        self, place: str, text: str, value: Any, expected: Any, absolute: float, relative: float = 0.0
-    ) -> None:
-        """``value`` was compared with ``expected`` by a tolerance."""
-        spare = of_tolerance(value, expected, absolute, relative)
-        self._note(place, text, spare, lambda: _compared(value, "≈", expected))
+        """``left operator right`` was evaluated."""
+        with suppress(Exception):  # whatever the user's values do when they are examined, the test goes on
+            self._note(place, text, margin(left, operator, right), lambda: _words(left, operator, right))
 
     def called(
-        self, place: str, text: str, function: Any, arguments: tuple[Any, ...], named: Mapping[str, Any]
+        self, place: str, text: str, function: Any, args: tuple[Any, ...], named: Any, first: int = 0
     ) -> None:
-        """A function was asked whether something is so."""
+        """A function that decides about a check has returned; ``first``: how many arguments are ``self``."""
+        with suppress(Exception):  # as above
+            self._called(place, text, function, args, named, first)
+
+    def _called(
+        self, place: str, text: str, function: Any, args: tuple[Any, ...], named: Any, first: int
+    ) -> None:
         name = getattr(function, "__name__", "")
-        tolerances = _TOLERANCES.get((getattr(function, "__module__", None), name))
-        if tolerances is not None and len(arguments) == 2 and named.keys() <= tolerances.keys():
-            given = [named.get(key, usual) for key, usual in tolerances.items()]
-            if all(type(one) in (int, float) for one in given):
-                relative, absolute = given
-                self.near(place, text, arguments[0], arguments[1], absolute, relative)
-                return
-        spare = margin_of_helper(function, arguments, named)
-        self._note(place, text, spare, lambda: _called(name, arguments, named))
+        library = (getattr(function, "__module__", None) or "").partition(".")[0]
+        operator = _COMPARING.get(name) if library in _LIBRARIES else None
+        given = _given(function, args, named) if operator is not None else {}
+        if operator is None or len(given) < 2:
+            self._note(place, text, None, lambda: _call_words(name, args[first:], named))
+            return
+        left, right = list(given.values())[:2]
+        spare = within(left, right, *_tolerance(given)) if operator == "≈" else margin(left, operator, right)
+        self._note(place, text, spare, lambda: _words(left, operator, right))
 
     def _note(self, place: str, text: str, spare: float | None, words: Callable[[], str]) -> None:
         key = place, text
-        noted = self._noted.get(key)
-        if noted is None:
-            if len(self._noted) >= MOST:
-                self._more.add(key)
-                return
-            noted = self._noted[key] = _Noted(text[:_LONGEST], 0, words(), spare)
-        elif _is_nearer(spare, noted.spare):
-            noted.seen, noted.spare = words(), spare
-        noted.times += 1
+        before = self._noted.get(key)
+        if before is None and len(self._noted) >= MOST:
+            self._more.add(key)
+        elif before is None:
+            self._noted[key] = Check(place, text[:_LONGEST], words(), spare)
+        else:
+            is_nearer = spare is not None and (before.spare is None or spare < before.spare)
+            seen, least = (words(), spare) if is_nearer else (before.seen, before.spare)
+            self._noted[key] = Check(place, before.text, seen, least, before.times + 1)
 
 
-#: functions of two values and their tolerances: names and usual values, the relative one first
-_TOLERANCES: Mapping[tuple[str | None, str], Mapping[str, float]] = {
-    ("math", "isclose"): {"rel_tol": 1e-9, "abs_tol": 0.0},
-    ("numpy", "isclose"): {"rtol": 1e-5, "atol": 1e-8},
-    ("numpy", "allclose"): {"rtol": 1e-5, "atol": 1e-8},
-}
+def _given(function: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of a call by name, defaults included; none if they cannot be told."""
+    try:
+        bound = inspect.signature(function).bind(*args, **named)
+    except (TypeError, ValueError):
+        return {}
+    bound.apply_defaults()
+    return {name: value for name, value in bound.arguments.items() if name != "self"}
 
 
-def _is_nearer(spare: float | None, before: float | None) -> bool:
-    return spare is not None and spare < (math.inf if before is None else before)
+def _tolerance(given: Mapping[str, Any]) -> tuple[Any, Any]:
+    """The absolute and relative tolerance of a comparison, as the libraries document it."""
+    if given.get("delta") is not None:
+        return given["delta"], 0.0
+    if "places" in given:  # |first - second| rounds to 0
+        return 0.5 * 10.0 ** -(7 if given["places"] is None else given["places"]), 0.0
+    if "decimal" in given:  # |actual - desired| < 1.5 * 10**(-decimal)
+        return 1.5 * 10.0 ** -given["decimal"], 0.0
+    absolute, relative = given.get("atol", given.get("abs_tol")), given.get("rtol", given.get("rel_tol"))
+    return absolute or 0.0, relative or 0.0
 
 
-def _compared(left: Any, operator: str, right: Any) -> str:
+def margin(left: Any, operator: str, right: Any) -> float | None:
+    """Return how far the sides of ``left operator right`` are apart; None if that is no matter of degree.
+
+    Arrays and sequences count by their element that is nearest to end otherwise.
+    """
+    if operator in ("==", "!="):
+        for value, other in ((left, right), (right, left)):
+            if _is_approximate(other):
+                return _of_approximate(value, other)
+        return None
+    if operator not in ("<", "<=", ">", ">="):
+        return None
+    return _least(abs(other - value) for value, other in _pairs(left, right))
+
+
+def within(value: Any, expected: Any, absolute: Any, relative: Any) -> float | None:
+    """How far the sides of ``|value - expected| <= absolute + relative * |expected|`` are apart."""
+    if not {type(absolute), type(relative)} <= {int, float}:
+        return None
+    pairs = _pairs(value, expected)
+    return _least(abs(absolute + relative * abs(wanted) - abs(one - wanted)) for one, wanted in pairs)
+
+
+def _is_approximate(value: Any) -> bool:
+    """Whether ``pytest.approx`` made it; its module has moved between releases."""
+    kind = type(value)
+    return kind.__module__.startswith("_pytest.") and kind.__name__.startswith("Approx")
+
+
+def _of_approximate(value: Any, approximate: Any) -> float | None:
+    expected = approximate.expected
+    if isinstance(expected, Mapping):
+        if type(value) is not dict or value.keys() != expected.keys():
+            return None
+        value, expected = list(value.values()), [expected[key] for key in value]
+    scalar_of = getattr(approximate, "_approx_scalar", lambda wanted: approximate)
+    pairs = _pairs(value, expected)
+    return _least(abs(scalar_of(wanted).tolerance - abs(one - wanted)) for one, wanted in pairs)
+
+
+def _least(found: Iterator[float]) -> float | None:
+    return min((one for one in found if math.isfinite(one)), default=None)
+
+
+def _pairs(left: Any, right: Any) -> list[tuple[float, float]]:
+    """Numbers that stand against each other; none if there is anything else."""
+    ones, others = _numbers(left), _numbers(right)
+    if ones is None or others is None:
+        return []
+    size = max(len(ones), len(others))
+    ones, others = (side * size if len(side) == 1 else side for side in (ones, others))
+    return list(zip(ones, others, strict=True)) if len(ones) == len(others) else []
+
+
+def _numbers(value: Any) -> list[float] | None:
+    value = _without_numpy(value)
+    if type(value) in (int, float, bool):
+        return [float(value)]
+    if type(value) not in (list, tuple) or len(value) > _MOST_ITEMS:
+        return None
+    parts = [_numbers(one) for one in value]
+    return None if None in parts else [number for part in parts for number in part or ()]
+
+
+def _without_numpy(value: Any) -> Any:
+    """An array of numbers as a list, a number of numpy's as a plain one; numpy is not imported for this."""
+    numpy = sys.modules.get("numpy")
+    if numpy is None or not isinstance(value, numpy.ndarray | numpy.generic):
+        return value
+    return value.tolist() if value.dtype.kind in "biuf" and value.size <= _MOST_ITEMS else value
+
+
+def in_words(value: Any) -> str | None:
+    """Return a plain value as people read it; None for others, whose ``repr`` may have effects."""
+    value = _without_numpy(value)
+    kind = type(value)
+    text = None
+    if _is_approximate(value):
+        inner = in_words(value.expected)
+        text = None if inner is None else f"approx({inner})"
+    elif kind is float:
+        text = f"{value:.6g}"
+    elif kind in _PLAIN:
+        text = repr(value)
+    elif kind in (list, tuple) and len(value) <= _MOST_ITEMS:
+        text = _joined("[]" if kind is list else "()", [("", one) for one in value])
+    elif kind is dict and len(value) <= _MOST_ITEMS and all(type(key) in _PLAIN for key in value):
+        text = _joined("{}", [(f"{key!r}: ", one) for key, one in value.items()])
+    return text if text is None or len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"
+
+
+def _joined(brackets: str, parts: list[tuple[str, Any]]) -> str | None:
+    texts = [(name, in_words(one)) for name, one in parts]
+    if any(text is None for _, text in texts):
+        return None
+    return f"{brackets[:-1]}{', '.join(f'{name}{text}' for name, text in texts)}{brackets[-1]}"
+
+
+def _words(left: Any, operator: str, right: Any) -> str:
     sides = in_words(left), in_words(right)
     return f"{sides[0]} {operator} {sides[1]}" if None not in sides else ""
 
 
-def _called(name: str, arguments: tuple[Any, ...], named: Mapping[str, Any]) -> str:
-    parts = [("", in_words(one)) for one in arguments]
-    parts += [(f"{key}=", in_words(one)) for key, one in named.items()]
-    if not name or any(text is None for _, text in parts):
-        return ""
-    return f"{name}({', '.join(f'{key}{text}' for key, text in parts)})"
+def _call_words(name: str, args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
+    parts = [("", one) for one in args] + [(f"{key}=", one) for key, one in named.items()]
+    return (_joined(f"{name}()", parts) or "") if name else ""
+
+
+class Checks:
+    """Puts the noting of checks into test files, and around comparisons of unittest and numpy.testing.
+
+    Args:
+        root: absolute path of the project.
+        wants: whether the assertions of a file are the tests' own.
+        looks: where they are noted.
+    """
+
+    def __init__(self, root: str, wants: Callable[[str], bool], looks: Looks) -> None:
+        self._root = os.path.realpath(root)
+        self._wants = wants
+        self._looks = looks
+        self._told: list[tuple[str, str]] = []
+        self._is_inside = False
+
+    def install(self) -> None:
+        """Look at all test files, and the two libraries, that are imported from now on."""
+        wrapt.register_post_import_hook(lambda module: self._wrap(module.TestCase, 1), "unittest.case")
+        wrapt.register_post_import_hook(self._wrap_module, "numpy.testing")
+        rewriting: Any = sys.modules.get(_REWRITING)
+        if rewriting is None:
+            return
+        rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
+
+        def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
+            found = self._conditions(tree, source, path) if path is not None and self._wants(path) else {}
+            rewrite(tree, source, path, *rest)
+            if found:
+                _Inserter(found).visit(tree)
+
+        def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
+            # what pytest compiled in earlier sessions tells nothing
+            return None if self._wants(str(source)) else read(source, *rest, **named)
+
+        rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
+        looks, told = self._looks, self._told
+        setattr(rewriting, _COMPARED, lambda number, *parts: looks.compared(*told[number], *parts))
+        setattr(rewriting, _CALLED, lambda number, *parts: looks.called(*told[number], *parts))
+
+    def _conditions(self, tree: ast.Module, source: bytes, path: str) -> dict[_Position, int]:
+        """Numbers of the comparisons and calls that decide about assertions, by where they stand."""
+        text = source.decode("utf-8", "replace")
+        found: dict[_Position, int] = {}
+        for node in ast.walk(tree):
+            for part in _deciding(node.test) if isinstance(node, ast.Assert) else ():
+                words = " ".join((ast.get_source_segment(text, part) or "").split())
+                found[_position(part)] = len(self._told)
+                self._told.append((self._place(path, part.lineno), words))
+        return found
+
+    def _place(self, file: str, line: int) -> str:
+        return f"{os.path.relpath(os.path.realpath(file), self._root)}:{line}"
+
+    def _wrap_module(self, module: ModuleType) -> None:
+        self._wrap(module, 0)
+
+    def _wrap(self, owner: Any, first: int) -> None:
+        """Wrap the comparisons of a module or class; ``first``: how many arguments are none of them."""
+        for name in dir(owner):
+            function = getattr(owner, name)
+            runs = any(one in name.lower() for one in _RUNS_SOMETHING)
+            if name.startswith("assert") and callable(function) and not runs:
+                setattr(owner, name, self._noting(function, first))
+
+    def _noting(self, function: Callable[..., Any], first: int) -> Callable[..., Any]:
+        @functools.wraps(function)
+        def compare(*arguments: Any, **named: Any) -> Any:
+            if self._is_inside:  # they use each other
+                return function(*arguments, **named)
+            self._is_inside = True
+            try:
+                result = function(*arguments, **named)
+            finally:
+                self._is_inside = False
+            frame = sys._getframe(1)
+            file, line = frame.f_code.co_filename, frame.f_lineno
+            text = " ".join(linecache.getline(file, line).split()) or function.__name__
+            self._looks.called(self._place(file, line), text, function, arguments, named, first)
+            return result
+
+        return compare
+
+
+#: where an expression stands: line and column, from and to
+_Position = tuple[int, int, int | None, int | None]
+
+
+def _deciding(test: ast.expr) -> Iterator[ast.Compare | ast.Call]:
+    """The comparisons and calls of which an assertion is made up."""
+    if isinstance(test, ast.BoolOp):
+        for value in test.values:
+            yield from _deciding(value)
+    elif isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        yield from _deciding(test.operand)
+    elif isinstance(test, ast.Compare | ast.Call):
+        yield test
+
+
+def _position(node: ast.expr) -> _Position:
+    return node.lineno, node.col_offset, node.end_lineno, node.end_col_offset
+
+
+class _Inserter(ast.NodeTransformer):
+    """Puts lines after those that work out the conditions of assertions."""
+
+    def __init__(self, found: dict[_Position, int]) -> None:
+        self._found = found
+
+    def visit_Assign(self, node: ast.Assign) -> Any:  # the name that ast looks for
+        value, target = node.value, node.targets[0]
+        is_pytests = isinstance(target, ast.Name) and target.id.startswith("@py_")
+        if not isinstance(value, ast.Compare | ast.Call) or not is_pytests:
+            return node
+        number = self._found.get(_position(value))
+        if number is None or not all(isinstance(one, ast.Name | ast.Constant) for one in _parts(value)):
+            return node  # what is no variable would be evaluated twice
+        return [node, ast.fix_missing_locations(ast.copy_location(_line(number, value), node))]
+
+
+def _parts(value: ast.Compare | ast.Call) -> list[ast.expr]:
+    """What a comparison or call is made of."""
+    if isinstance(value, ast.Compare):
+        return [value.left, *value.comparators]
+    given = [one.value if isinstance(one, ast.Starred) else one for one in value.args]
+    return [value.func, *given, *(one.value for one in value.keywords)]
+
+
+def _line(number: int, value: ast.Compare | ast.Call) -> ast.Expr:
+    """The inserted line, which hands on the variables."""
+    if isinstance(value, ast.Compare):
+        operator = ast.Constant(_OPERATORS[type(value.ops[0])])
+        name, parts = _COMPARED, [value.left, operator, value.comparators[0]]
+    else:
+        keys: list[ast.expr | None] = [
+            None if one.arg is None else ast.Constant(one.arg) for one in value.keywords
+        ]
+        named = ast.Dict(keys, [one.value for one in value.keywords])
+        name, parts = _CALLED, [value.func, ast.Tuple(list(value.args), ast.Load()), named]
+    function = ast.Attribute(ast.Name("@pytest_ar", ast.Load()), name, ast.Load())
+    return ast.Expr(ast.Call(function, [ast.Constant(number), *parts], []))

@@ -1,11 +1,9 @@
-"""The program's time: read where it is simulated, and as mutants ask for it.
-
-Simulated time is read at every call that advances the simulation, or counted in fixed steps.
-"""
+"""The program's time: read at every call that advances the simulation, or counted in fixed steps."""
 
 from __future__ import annotations
 
 import inspect
+import reprlib
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -102,7 +100,8 @@ class ClockReader:
         except (TypeError, ValueError):
             number = float("nan")
         if not isfinite(number):
-            self._wrong(f"{self._where()} gives {_shown(value)}, which is no number")
+            where = f"the path {self.clock.time!r}" if self.clock.time else f"what {self.clock.tick} returns"
+            self._wrong(f"{where} gives {reprlib.repr(value)}, which is no number")
             return None
         return convert(number, self.clock.unit, "s")
 
@@ -110,40 +109,28 @@ class ClockReader:
         self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
     ) -> Any:
         """The object or argument at which the path begins. Raises PathError if the call has none."""
-        root = self._path.root or ""
-        if root == "self":
-            if instance is None:
-                raise self._missing(f"{self.clock.tick} is no method, so it has no self", ())
+        root, tick = self._path.root or "", self.clock.tick
+        known: tuple[str, ...] = ()
+        if root == "self" and instance is not None:
             return instance
-        try:
-            bound = inspect.signature(wrapped).bind(*args, **kwargs)
-        except (TypeError, ValueError):
-            raise self._missing(f"{self.clock.tick} does not tell its arguments", ()) from None
-        bound.apply_defaults()
-        if root not in bound.arguments:
-            raise self._missing(f"{self.clock.tick} has no argument {root!r}", tuple(bound.arguments))
-        return bound.arguments[root]
-
-    def _missing(self, text: str, known: tuple[str, ...]) -> PathError:
-        names = f"; it has {', '.join(known)}" if known else ""
-        root = self._path.root or ""
-        return PathError(f"{text}{names}", path=self.clock.time, step=root, found="", known=known)
+        if root == "self":
+            why = f"{tick} is no method, so it has no self"
+        else:
+            try:
+                bound = inspect.signature(wrapped).bind(*args, **kwargs)
+                bound.apply_defaults()
+                if root in bound.arguments:
+                    return bound.arguments[root]
+                known = tuple(bound.arguments)
+                why = f"{tick} has no argument {root!r}; it has {', '.join(known)}"
+            except (TypeError, ValueError):
+                why = f"{tick} does not tell its arguments"
+        raise PathError(why, path=self.clock.time, step=root, found="", known=known)
 
     def _wrong(self, text: str) -> None:
         self.on_problem(
             "time", f"{text}; name a path that gives the time as a number, or write step = … instead"
         )
-
-    def _where(self) -> str:
-        return f"the path {self.clock.time!r}" if self.clock.time else f"what {self.clock.tick} returns"
-
-
-def _shown(value: Any) -> str:
-    try:
-        text = repr(value)
-    except Exception:  # the user's object may fail to print itself in any way
-        text = f"a {type(value).__name__}"
-    return text if len(text) <= 60 else f"{text[:59]}…"
 
 
 @dataclass(slots=True)

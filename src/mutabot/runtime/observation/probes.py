@@ -1,12 +1,9 @@
-"""Probes: readings that mutabot itself takes, to compare a mutant's world with the original's.
+"""Read probes, turn the user's values into plain data, and record the world of the running test.
 
-Along the way of a test they are read after its commands: the first after every ``stride``-th command; once
-there are many, after every second of these, and so on. So the original and its mutants are read at the same
-moments, however busy the machine is.
-
-What the user's objects hold, as plain data that can be compared between processes.
-
-The recording of the running test: what feeds tell of the world.
+Probes are readings that mutabot itself takes to compare a mutant's world with the original's. During a test
+they are read after its commands: first after every ``stride``-th command; once there are many, after every
+second of these, and so on. So the original and its mutants are read at the same moments, however busy the
+machine is.
 """
 
 from __future__ import annotations
@@ -21,7 +18,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum
 from functools import cached_property
 from time import perf_counter  # tests may replace those of the module
@@ -175,12 +172,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
     if type(value) in _PLAIN:  # the most of them
         yield name, value
         return
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if is_dataclass(value) and not isinstance(value, type):
-        value = {field.name: getattr(value, field.name) for field in fields(value)}
-    elif hasattr(value, "_asdict"):
-        value = value._asdict()
+    value = _fields_of(value.tolist() if hasattr(value, "tolist") else value)
     if isinstance(value, Mapping | list | tuple) and not value:
         yield name, {} if isinstance(value, Mapping) else []
     elif isinstance(value, Mapping):
@@ -200,12 +192,21 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
         yield name, repr(value)
 
 
+def _fields_of(value: Any) -> Any:
+    """The fields of a dataclass or named tuple by name; anything else as it is."""
+    if hasattr(value, "_asdict"):
+        return value._asdict()
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: getattr(value, field.name, None) for field in fields(value)}
+    return value
+
+
 #: readings before the first thinning, and between any later two
 FIRST, NEXT = 100, 50
 #: seconds beyond which a reading is too slow to be repeated
 _SLOW = 0.05
-#: how often a quick reading is timed once more: the least counts
-_MORE = 2
+#: how often a reading is timed
+_TIMED = 3
 
 
 @dataclass(slots=True)
@@ -270,32 +271,25 @@ class Rehearsal:
 
 def rehearse(read: Callable[[], Reading]) -> tuple[Reading, Rehearsal]:
     """The probes, and whether they could be read along the way as well: reading them must change nothing."""
-    first, took, _ = _timed(read)
+    first = read()
     if not first.values:
         return first, Rehearsal()
-    drawn = _random_state()
-    second, took_again, seconds = _timed(read)
-    slow = min(took, took_again)  # the system may do other things meanwhile
-    if slow > _SLOW:
-        return first, Rehearsal(None, f"reading them takes {1e3 * slow:.0f} ms")
-    seconds = min(seconds, *(_timed(read)[2] for _ in range(_MORE)))
+    drawn, walls, used = _random_state(), [], []
+    for _ in range(_TIMED):  # the system may do other things meanwhile: the least counts
+        began = perf_counter(), time.thread_time()
+        again = read()
+        walls.append(perf_counter() - began[0])
+        used.append(time.thread_time() - began[1])
+        if walls[-1] > _SLOW and len(walls) > 1:
+            break
+    if min(walls) > _SLOW:
+        return first, Rehearsal(None, f"reading them takes {1e3 * min(walls):.0f} ms")
     if drawn != _random_state():
         return first, Rehearsal(None, "reading them draws random numbers")
-    for key in first.values.keys() | second.values.keys():
-        if not _is_same(first.values.get(key), second.values.get(key)):
+    for key in first.values.keys() | again.values.keys():
+        if repr(first.values.get(key)) != repr(again.values.get(key)):  # NaN is as good as NaN
             return first, Rehearsal(None, f"{key} changes when it is read twice")
-    return first, Rehearsal(seconds)
-
-
-def _timed(read: Callable[[], Reading]) -> tuple[Reading, float, float]:
-    """The probes, and the seconds that reading them took: of wall clock, and of processor time."""
-    began, used = perf_counter(), time.thread_time()
-    reading = read()
-    return reading, perf_counter() - began, time.thread_time() - used
-
-
-def _is_same(one: Any, other: Any) -> bool:
-    return repr(one) == repr(other)  # NaN is as good as NaN
+    return first, Rehearsal(min(used))
 
 
 def _random_state() -> Any:
@@ -304,13 +298,10 @@ def _random_state() -> Any:
     return random.getstate(), [part.tobytes() if hasattr(part, "tobytes") else part for part in state]
 
 
-#: values within one value that are told; of more only whether they are all the same
-LEAVES = 200
-#: values within one value beyond which it is not looked at
-MOST = 20_000
-#: characters of a text that are told
-_CHARACTERS = 300
-_DEPTH = 20
+#: characters of a value as JSON, and of a text, beyond which a digest stands for it
+LONGEST, _CHARACTERS = 4000, 300
+#: items of a container beyond which it is not looked at, and how deep
+MOST, _DEPTH = 20_000, 20
 _AS_TEXT = (complex, range, slice)
 #: modules whose objects are told as texts; they are not imported for this
 _TOLD = ("datetime", "decimal", "fractions")
@@ -324,13 +315,9 @@ def plain(value: Any) -> Any:
     What is no plain data becomes ``{"opaque": type}``, so that two of them are equal whatever they hold. A
     digest stands for what is large.
     """
-    reader = _Reader()
-    found = reader.read(value, 0)
-    if reader.leaves > MOST:
-        return opaque(value)
-    if reader.leaves > LEAVES:
-        return {"digest": _digest(json.dumps(found, sort_keys=True).encode())}
-    return found
+    found = _data_of(value, 0)
+    text = json.dumps(found, sort_keys=True) if isinstance(found, list | dict) else ""
+    return {"digest": _digest(text.encode())} if len(text) > LONGEST else found
 
 
 def text_of_error(error: BaseException) -> str:
@@ -339,49 +326,39 @@ def text_of_error(error: BaseException) -> str:
     return f"{kind.removeprefix('builtins:')}: {_ACCIDENTS.sub('…', str(error))[:_CHARACTERS]}"
 
 
-class _Reader:
-    def __init__(self) -> None:
-        self.leaves = 0
-
-    def read(self, value: Any, depth: int) -> Any:
-        self.leaves += 1
-        if value is None or isinstance(value, bool):
-            return value
-        if isinstance(value, Enum):
-            return f"{type(value).__name__}.{value.name}"
-        if isinstance(value, int | float):
-            return float(value) if isinstance(value, float) else int(value)
-        if isinstance(value, str | bytes | bytearray):
-            return _text(value)
-        if isinstance(value, _AS_TEXT) or type(value).__module__ in _TOLD:
-            return repr(value)
-        return opaque(value) if depth > _DEPTH or self.leaves > MOST else self._container(value, depth + 1)
-
-    def _container(self, value: Any, depth: int) -> Any:
-        if hasattr(value, "tolist") and hasattr(value, "dtype"):
-            return self._array(value, depth)
-        if hasattr(value, "_asdict"):
-            value = value._asdict()
-        elif is_dataclass(value) and not isinstance(value, type):
-            value = {field.name: getattr(value, field.name, None) for field in fields(value)}
-        if isinstance(value, Mapping):
-            return {_key(key): self.read(item, depth) for key, item in value.items()}
-        if isinstance(value, set | frozenset):
-            value = sorted(value, key=repr)
-        if isinstance(value, list | tuple):
-            return [self.read(item, depth) for item in value]
+def _data_of(value: Any, depth: int) -> Any:
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, Enum):
+        return f"{type(value).__name__}.{value.name}"
+    if isinstance(value, int | float):
+        return float(value) if isinstance(value, float) else int(value)
+    if isinstance(value, str | bytes | bytearray):
+        return _text(value)
+    if isinstance(value, _AS_TEXT) or type(value).__module__ in _TOLD:
+        return repr(value)
+    if hasattr(value, "tolist") and hasattr(value, "dtype"):
+        return _array(value, depth)
+    value = _fields_of(value)
+    if isinstance(value, set | frozenset):
+        value = sorted(value, key=repr)
+    if depth > _DEPTH or not isinstance(value, Mapping | list | tuple) or len(value) > MOST:
         return opaque(value)
+    if isinstance(value, Mapping):
+        return {_key(key): _data_of(item, depth + 1) for key, item in value.items()}
+    return [_data_of(item, depth + 1) for item in value]
 
-    def _array(self, value: Any, depth: int) -> Any:
-        if value.dtype.hasobject:
-            return opaque(value)
-        if getattr(value, "size", 1) <= LEAVES:
-            return self.read(value.tolist(), depth)
-        return {"array": list(value.shape), "digest": _digest(value.tobytes())}
+
+def _array(value: Any, depth: int) -> Any:
+    if value.dtype.hasobject:
+        return opaque(value)
+    if getattr(value, "size", 1) <= LIMIT:
+        return _data_of(value.tolist(), depth + 1)
+    return {"array": list(value.shape), "digest": _digest(value.tobytes())}
 
 
 def _key(key: Any) -> str:
-    return key if isinstance(key, str) else json.dumps(_Reader().read(key, 0))
+    return key if isinstance(key, str) else json.dumps(_data_of(key, 0))
 
 
 def _text(value: str | bytes | bytearray) -> Any:
@@ -466,7 +443,7 @@ class TestRecording:
         tape, recording = self._tape, self._tape.recording
         recording.is_simulated = tape.is_simulated
         recording.fault = tape.seconds(recording.fault)
-        timed = (replace(one, began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
+        timed = (one._replace(began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
         recording.calls = sorted(timed, key=lambda one: one.began or 0.0)
         try:
             return to_text(recording)

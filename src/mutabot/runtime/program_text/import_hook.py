@@ -1,10 +1,8 @@
-"""Import hook: program files are compiled with their alternatives in them.
+"""Compile program files with their alternatives, or with witnesses that note which values occur.
 
-What a baseline sees at each place of the program: kinds of values, and variables of the same type.
-
-There the text of a place ``E`` with number ``p`` becomes ``__mutabot__[0](p) or __mutabot__[p](E)``:
-the first notes that the place is reached, whatever comes of ``E``. A place is looked at a few times per test;
-from then on the function there hands the value through, as cheap as a call can be.
+In a baseline the text of a place ``E`` with number ``p`` becomes ``__mutabot__[0](p) or __mutabot__[p](E)``:
+the first call notes that the place is reached, whatever becomes of ``E``. A place is examined a few times per
+test; from then on the function there passes the value through, as cheaply as a call can.
 """
 
 from __future__ import annotations
@@ -20,7 +18,6 @@ from typing import Any
 
 from mutabot.model.mutant import RUNTIME, Instrumentation, ProgramText, Sighting
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text import loading as scripts
 from mutabot.runtime.program_text.foresee import Forms
 from mutabot.runtime.program_text.instrument import MismatchError, forms_of, instrumented
 from mutabot.runtime.program_text.switches import Alternatives, is_variable, kind_of
@@ -95,18 +92,6 @@ class _Witness:
         hits: evaluations that were looked at, over all tests.
     """
 
-    __slots__ = (
-        "_kinds",
-        "_owner",
-        "_types",
-        "_variable",
-        "_variables",
-        "hits",
-        "looks",
-        "looks_around",
-        "place",
-    )
-
     def __init__(self, owner: Sightings, place: int, variable: str | None) -> None:
         self._owner, self.place, self._variable = owner, place, variable
         self.hits = self.looks = self.looks_around = 0
@@ -131,9 +116,8 @@ class _Witness:
 
     def sighting(self) -> Sighting:
         """What was seen."""
-        return Sighting(
-            self.place, self.hits, tuple(sorted(self._kinds)), tuple(sorted(self._variables or ()))
-        )
+        kinds, variables = sorted(self._kinds), sorted(self._variables or ())
+        return Sighting(self.place, self.hits, tuple(kinds), tuple(variables))
 
     def _look_around(self, value: Any, frame: FrameType) -> None:
         names = set(_alike(value, frame)) - {self._variable} if is_variable(value) else set()
@@ -147,20 +131,14 @@ def _alike(value: Any, frame: FrameType) -> Iterator[str]:
     it a part of this one. So inside another function only such names of the module count as this one uses,
     since any other could be one of the function around it.
     """
-    kind, code = type(value), frame.f_code
-    for name, other in list(frame.f_locals.items()):
-        if type(other) is kind and _is_plain(name):
-            yield name
+    code = frame.f_code
     own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
     allowed = code.co_names if "<locals>" in code.co_qualname else frame.f_globals
-    for name, other in list(frame.f_globals.items()):
-        if type(other) is kind and _is_plain(name) and name in allowed and name not in own:
+    others = [one for one in list(frame.f_globals.items()) if one[0] in allowed and one[0] not in own]
+    for name, other in [*list(frame.f_locals.items()), *others]:
+        # comprehensions have names of their own, which are no identifiers
+        if type(other) is type(value) and name.isidentifier() and not name.startswith("__"):
             yield name
-
-
-def _is_plain(name: str) -> bool:
-    """Whether a program would use this name; comprehensions have names of their own."""
-    return name.isidentifier() and not name.startswith("__")
 
 
 class _ChangedError(MismatchError):
@@ -210,7 +188,7 @@ class ImportHook:
             if text is not None:
                 self._refuse(text, "it was imported before mutabot could look at it")
         loading.add(self)
-        scripts.hook_runpy()
+        loading.hook_runpy()
 
     def remove(self) -> None:
         """Import as ever from now on; text that is instrumented goes on as the original."""

@@ -13,7 +13,7 @@ import copy
 from collections.abc import Iterable
 from typing import TypeVar
 
-from mutabot.languages.python import extent_of
+from mutabot.languages.python import extent_of, head_size, placed
 from mutabot.model.mutant import RUNTIME, Alternative, Extent, TextPlace, kept_name
 from mutabot.runtime.program_text.foresee import Forms, form_of
 
@@ -50,7 +50,7 @@ def instrumented(
 
 def forms_of(place: TextPlace, original: ast.expr) -> Forms:
     """The original and the alternatives, for a look ahead; the tree of the original is changed."""
-    others = [_expression_of(one, place, original, observed=False) for one in place.alternatives]
+    others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
     return Forms(form_of(original), tuple(map(form_of, others)))
 
 
@@ -98,8 +98,9 @@ class _Instrumenter(ast.NodeTransformer):
 
     def _expression(self, node: ast.expr, place: TextPlace) -> ast.expr:
         if self._record:
-            return self._seen(node, place)
-        others = [_expression_of(alternative, place, node) for alternative in place.alternatives]
+            self.generic_visit(node)
+            return _seen(node, place, node)
+        others = [_filled(_expression(one), place, node) for one in place.alternatives]
         if not others:
             self.generic_visit(node)
             return node
@@ -107,19 +108,15 @@ class _Instrumenter(ast.NodeTransformer):
             self._originals[place.number] = copy.deepcopy(node)
         *firsts, tree = others
         for index in reversed(range(len(firsts))):
-            tree = _at(ast.IfExp(_is_index(place, index), firsts[index], tree), node)
+            tree = placed(ast.IfExp(_is_index(place, index), firsts[index], tree), node)
         tree = _observed(tree, place, node)
         self.generic_visit(node)
-        return _at(ast.IfExp(_is_chosen(place), tree, node), node)
-
-    def _seen(self, node: ast.expr, place: TextPlace) -> ast.expr:
-        self.generic_visit(node)
-        return _seen(node, place, node)
+        return placed(ast.IfExp(_is_chosen(place), tree, node), node)
 
     def _statement(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
         if self._record:
             return self._statement_seen(node, place)
-        others = [_statement_of(one, place, node) for one in place.alternatives]
+        others = [_filled(ast.parse(one.template).body[0], place, node) for one in place.alternatives]
         self.generic_visit(node)
         if not others:
             return [node]
@@ -127,30 +124,30 @@ class _Instrumenter(ast.NodeTransformer):
         tells = ast.Call(ast.Attribute(_switch(0), "tell", ast.Load()), [ast.Constant(place.number)], [])
         chain: list[ast.stmt] = [others[-1]]
         for index in reversed(range(len(others) - 1)):
-            chain = [_at(ast.If(_is_index(place, index), [others[index]], chain), node)]
+            chain = [placed(ast.If(_is_index(place, index), [others[index]], chain), node)]
         if raising:
-            return [_at(ast.If(_is_chosen(place), chain, []), node), node]
-        return [_at(ast.If(_is_chosen(place), [_at(ast.Expr(tells), node), *chain], [node]), node)]
+            return [placed(ast.If(_is_chosen(place), chain, []), node), node]
+        return [placed(ast.If(_is_chosen(place), [placed(ast.Expr(tells), node), *chain], [node]), node)]
 
     def _statement_seen(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
         self.generic_visit(node)
         if isinstance(node, ast.AugAssign):  # what is added tells the type
             node.value = _seen(node.value, place, node.value)
             return [node]
-        return [_at(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
+        return [placed(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
 
 
 def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
     """A value that its witness is shown, once it is noted that it is about to be computed."""
     entered = ast.Call(_switch(0), [ast.Constant(place.number)], [])
-    return _at(ast.BoolOp(ast.Or(), [entered, ast.Call(_switch(place.number), [value], [])]), node)
+    return placed(ast.BoolOp(ast.Or(), [entered, ast.Call(_switch(place.number), [value], [])]), node)
 
 
 def _observed(other: ast.expr, place: TextPlace, node: ast.expr) -> ast.expr:
     """Alternatives that say what they became, and how to compute the original where that has no effect."""
     became = ast.Attribute(_switch(place.number), "became", ast.Load())
     original: list[ast.expr] = [ast.Constant(ast.unparse(node))] if _is_pure(node) else []
-    return _at(ast.Call(became, [other, *original], []), node)
+    return placed(ast.Call(became, [other, *original], []), node)
 
 
 def _is_pure(node: ast.expr) -> bool:
@@ -172,16 +169,8 @@ def _is_index(place: TextPlace, index: int) -> ast.expr:
     return ast.Compare(actual, [ast.Eq()], [ast.Constant(index)])
 
 
-def _expression_of(
-    alternative: Alternative, place: TextPlace, node: ast.expr, *, observed: bool = True
-) -> ast.expr:
-    made = ast.parse(alternative.template, mode="eval").body
-    return _filled(made, place, node, observed=observed)
-
-
-def _statement_of(alternative: Alternative, place: TextPlace, node: ast.stmt) -> ast.stmt:
-    (made,) = ast.parse(alternative.template).body
-    return _filled(made, place, node)
+def _expression(alternative: Alternative) -> ast.expr:
+    return ast.parse(alternative.template, mode="eval").body
 
 
 def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = True) -> _Node:
@@ -202,7 +191,7 @@ def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = Tr
     filler = _Filler({kept_name(index): parts[extent] for index, extent in enumerate(place.kept)})
     if observed and isinstance(node, ast.expr) and place.extent in parts:
         was = ast.Attribute(_switch(place.number), "was", ast.Load())
-        whole = _at(ast.Call(was, [parts[place.extent]], []), node)
+        whole = placed(ast.Call(was, [parts[place.extent]], []), node)
         filler.parts[kept_name(place.kept.index(place.extent))] = whole
     result: _Node = filler.visit(_moved(made, node))
     return result
@@ -223,15 +212,6 @@ def _moved(made: _Node, node: ast.AST) -> _Node:
     return made
 
 
-def _at(made: _Node, node: ast.AST) -> _Node:
-    """The new node at the position of another; parts that have a position keep it."""
-    ast.copy_location(made, node)
-    for part in ast.iter_child_nodes(made):
-        if isinstance(part, ast.expr | ast.stmt) and not hasattr(part, "lineno"):
-            _at(part, node)
-    return made
-
-
 def is_ours(function: ast.expr) -> bool:
     """Whether what is called was put in here."""
     while isinstance(function, ast.Attribute | ast.Subscript):
@@ -243,18 +223,6 @@ def declare_global(tree: ast.Module, name: str) -> None:
     """Class bodies and modules look names up in their own namespace first; spare them that."""
     for node in list(ast.walk(tree)):
         if isinstance(node, ast.Module | ast.ClassDef) and node.body:
-            position = _after_head(node.body)
+            position = head_size(node.body)
             near = node.body[min(position, len(node.body) - 1)]
-            node.body.insert(position, _at(ast.Global([name]), near))
-
-
-def _after_head(body: list[ast.stmt]) -> int:
-    """Where the docstring and the imports from ``__future__`` end."""
-    position = 0
-    for statement in body:
-        is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
-        is_future = isinstance(statement, ast.ImportFrom) and statement.module == "__future__"
-        if not is_text and not is_future:
-            break
-        position += 1
-    return position
+            node.body.insert(position, placed(ast.Global([name]), near))

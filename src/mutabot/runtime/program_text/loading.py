@@ -1,15 +1,12 @@
-"""How source files are compiled while they are imported: whatever changes them takes its turn here.
+"""Change source files while Python compiles them, imported or run as scripts.
 
 Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
-``importlib``, ``runpy.run_module``. That is the one place that is patched; loader, spec and module stay what
-they are without it. Files that are run without being imported come here by way of ``scripts``. Of a file that
-a step wants, no compiled form is read or written.
+``importlib``, ``runpy.run_module``. That one place is patched; loader, spec and module stay as they are. Of
+a file that a step wants, no compiled form is read or written.
 
-Program files that are run rather than imported: as the script of a process, or by ``runpy.run_path``.
-
-Python compiles these without asking a loader. The script of a process it runs by way of a loader if a path
-hook claims it, as it does with a zip file; what the script sees of itself is then put right before its first
-statement. ``runpy`` compiles in one function, which is patched.
+Python compiles the script of a process, and ``runpy.run_path`` its file, without a loader. Python runs a
+script by a loader if a path hook claims it, as it does with a zip file; what the script sees of itself is
+then put right before its first statement. ``runpy`` compiles in one function, which is patched.
 """
 
 from __future__ import annotations
@@ -19,11 +16,12 @@ import os
 import runpy
 import sys
 import warnings
-from collections.abc import Sequence
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
 from types import CodeType, ModuleType
 from typing import Any, Protocol
+
+from mutabot.languages.python import head_size
 
 
 class Step(Protocol):
@@ -163,19 +161,8 @@ class _AsScript:
             if isinstance(node, ast.expr | ast.stmt):
                 node.lineno = node.end_lineno = 1
                 node.col_offset = node.end_col_offset = 0
-        tree.body[_beginning(tree.body) : _beginning(tree.body)] = forget
+        size = head_size(tree.body)
+        tree.body[size:size] = forget
 
     def give_up(self, path: str, error: Exception) -> None:
         """It runs as a module that was found."""
-
-
-def _beginning(body: Sequence[ast.stmt]) -> int:
-    """Where the first statement may stand: behind the docstring and what must come first."""
-    count = 0
-    for number, statement in enumerate(body):
-        is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
-        is_future = isinstance(statement, ast.ImportFrom) and statement.module == "__future__"
-        if not (is_future or (is_text and number == 0)):
-            break
-        count += 1
-    return count

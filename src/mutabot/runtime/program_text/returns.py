@@ -20,6 +20,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+from mutabot.languages.python import placed
 from mutabot.model import Role
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.observation.probes import plain, text_of_error
@@ -182,18 +183,11 @@ def is_translated(function: Function) -> bool:
 def _add_notes(function: Function, own: list[ast.AST]) -> None:
     for node in own:
         if isinstance(node, ast.Return) and node.value is not None:
-            node.value = _call(RETURNED, [node.value], node)
+            note = ast.Call(ast.Name(RETURNED, ast.Load()), [node.value], [])
+            node.value = placed(note, node)
     has_text = ast.get_docstring(function, clean=False) is not None
     head, body = function.body[:has_text], function.body[has_text:]
     if body:
-        place = body[0]
-        tells = ast.copy_location(ast.Expr(_call(RAISED, [], place)), place)
-        again = ast.copy_location(ast.Raise(), place)
-        handler = ast.copy_location(ast.ExceptHandler(None, None, [tells, again]), place)
-        function.body = [*head, ast.copy_location(ast.Try(body, [handler], [], []), place)]
-
-
-def _call(name: str, arguments: list[ast.expr], place: ast.stmt) -> ast.Call:
-    """A call at the position of what it stands for."""
-    function = ast.copy_location(ast.Name(name, ast.Load()), place)
-    return ast.copy_location(ast.Call(function, arguments, []), place)
+        tells = ast.Expr(ast.Call(ast.Name(RAISED, ast.Load()), [], []))
+        handler = ast.ExceptHandler(None, None, [tells, ast.Raise()])
+        function.body = [*head, placed(ast.Try(body, [handler], [], []), body[0])]

@@ -1,10 +1,8 @@
-"""The switches that instrumented program text looks at, and what happens when one is on.
+"""The switches of instrumented program text, what happens when one is on, and kinds of values.
 
 The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
 else E``. ``__mutabot__`` is a plain list with False at places that are off, so these cost one look-up. It is
 a built-in name: modules keep the names they have.
-
-Kinds of values: what an operator needs to know to keep to the right type.
 """
 
 from __future__ import annotations
@@ -193,9 +191,7 @@ class Alternatives:
         forms = self._forms_of(place)
         try:
             return _UNKNOWN if forms is None else value_of(forms.original, frame)
-        except (
-            Exception
-        ):  # it cannot be known; or the original would have raised this, the alternative did not
+        except Exception:  # it cannot be known; or only the original would have raised this
             return _UNKNOWN
 
     def _forms_of(self, place: int) -> Forms | None:
@@ -222,13 +218,11 @@ class Alternatives:
         self.idle[place] = self.idle.get(place, 0) + 1
 
     def _set(self, watched: Mapping[int, frozenset[int]]) -> None:
-        on = watched.keys() | self.active.keys()
-        for place in range(1, len(self.switches)):
-            self.switches[place] = (
-                Switch(self, place, self.active.get(place), watched.get(place, frozenset()))
-                if place in on
-                else False
-            )
+        switches: list[Any] = [False] * len(self.switches)
+        for place in watched.keys() | self.active.keys():
+            index, watching = self.active.get(place), watched.get(place, frozenset())
+            switches[place] = Switch(self, place, index, watching)
+        self.switches[1:] = switches[1:]  # at once: other threads may look at them
 
     # what templates may call (``HELPER``); none of it belongs to one operator
 
@@ -275,16 +269,9 @@ def _is_same(before: Any, after: Any) -> bool:
 
 
 _PLAIN: dict[type, str] = {
-    bool: "truth",
-    int: "integer",
-    float: "number",
-    complex: "number",
-    str: "text",
-    bytes: "text",
-    set: "set",
-    frozenset: "set",
-    type(None): "none",
-}
+    bool: "truth", int: "integer", float: "number", complex: "number", str: "text", bytes: "text",
+    set: "set", frozenset: "set", type(None): "none",
+}  # fmt: skip
 #: what stands for something else rather than for a value
 _NO_VARIABLE = (ModuleType, FunctionType, BuiltinFunctionType, MethodType, type, type(None))
 _ARRAYS = {"b": "truth", "i": "integer", "u": "integer", "f": "number", "c": "number"}
