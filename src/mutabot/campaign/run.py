@@ -46,7 +46,6 @@ from mutabot.model.codec import to_data
 _REMARKS = 8
 #: rows that could not be stored, as far as they are told one by one
 #: what else decides how a campaign ends, beside the user's own files
-_VERSIONS = ("pytest", "wrapt", "pytest-bdd")
 
 
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
