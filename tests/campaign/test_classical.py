@@ -204,8 +204,8 @@ def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_bran
     assert idle.shared == idle.simulated == 7.0  # eight ticks; the trunk ran them all
     assert (acting.hits, acting.acted, acting.example) == (4, 1, (-0.1, 0.1))
     early = ends["mission.py:way:step#2:UOI=neg"]
-    # after five ticks; the former went with -abs(step) until then, and has simulated no tick alone before
-    assert (early.shared, acting.shared) == (4.0, 4.0)
+    # the former differs at the first evaluation, before any tick; the latter after five of them
+    assert (early.shared, acting.shared) == (0.0, 4.0)
 
 
 @pytest.mark.whole

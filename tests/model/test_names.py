@@ -16,7 +16,7 @@ import mutabot.model
 def test_each_name_that_type_checkers_see_is_there_and_no_other(package: ModuleType) -> None:
     tree = ast.parse(inspect.getsource(package))
     (block,) = [node for node in tree.body if isinstance(node, ast.If)]
-    seen = {alias.asname for node in block.body for alias in getattr(node, "names", ())}
+    seen = {alias.asname or alias.name for node in block.body for alias in getattr(node, "names", ())}
     late = {name for names in package._HOMES.values() for name in names}
     assert late == seen
     assert all(getattr(package, name) is not None for name in late)

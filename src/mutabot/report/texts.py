@@ -127,7 +127,8 @@ def _mapped(value: Any, change: Callable[[str], str]) -> Any:
     if isinstance(value, Mapping):
         return {change(str(key)): _mapped(item, change) for key, item in value.items()}
     if isinstance(value, tuple | list):
-        return type(value)(_mapped(item, change) for item in value)
+        items = [_mapped(item, change) for item in value]
+        return value._make(items) if hasattr(value, "_make") else type(value)(items)
     if is_dataclass(value) and not isinstance(value, type):
         change = legible if isinstance(value, _OWN) else change
         made = {one.name: _mapped(getattr(value, one.name), change) for one in fields(value)}

@@ -75,15 +75,3 @@ def test_another_test_has_noted_nothing(monkeypatch: pytest.MonkeyPatch) -> None
     assert noted.values() == {"x": 1}
     monkeypatch.setenv("PYTEST_CURRENT_TEST", "another.py::test (call)")
     assert noted.values() == {}
-
-
-def test_after_every_command_it_is_looked(robot: Any) -> None:
-    noted.watch(
-        [("noted_robot", "Arm", "move"), ("noted_robot", "", "absent")], [], ["noted_robot:Arm.speed"]
-    )
-    noted.watch([("noted_robot", "Arm", "move")], [], ["noted_robot:Arm.speed"])  # once is enough
-    arm = robot.Arm()
-    assert [arm.move(), robot.Arm.move(arm)] == ["moved", "moved"]
-    noted.note({})
-    found = {"max args[0].speed": 4.0, "min args[0].speed": 3.0, "step args[0].speed": None}
-    assert noted.values() == found

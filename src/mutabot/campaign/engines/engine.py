@@ -152,8 +152,9 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
         tests.setdefault(reason, []).append(test)
     for reason, (first, *others) in tests.items():
         more = f" and {len(others)} more" if others else ""
-        where = f"in {first}{more}" if first else "while the program is imported"
-        campaign.progress.note(f"no branches {where}: {reason}; mutants there run in processes of their own")
+        apart = f"{reason}; mutants there run in processes of their own"
+        where = f"no branches in {first}{more}: {apart}"
+        campaign.progress.note(where if first else f"no branches while the program is imported: {apart}")
     for why, number in Counter(left.why_apart.values()).items():
         campaign.progress.note(f"{number} mutants: each {why}, in a process of its own")
     for note in left.notes:

@@ -210,9 +210,9 @@ class _Reruns:
             self.doubts.unreliable.update(self.doubts.outcomes[key].test or "" for key in wrong - raced)
         if repeated or due:
             left = f"; {len(due)} were left, as repeats may take {seconds:.0f} s" if due else ""
-            kinds = "kills in doubt and ends left to chance" if raced else "kills in doubt"
+            kinds = "doubtful kills and races" if raced else "doubtful kills"
             again = f"{len(repeated) - len(changed)} of {len(repeated)}"
-            self.campaign.progress.note(f"repeats: {again} {kinds} come out again{left}")
+            self.campaign.progress.note(f"re-runs: {again} {kinds} confirmed{left}")
 
     def _due(self, raced: Collection[Key], changed: Collection[Key]) -> list[Key]:
         """What is to be repeated next."""

@@ -161,8 +161,14 @@ def _happened(
         columns = ("*difference", ">from", ">at most", ">at", ">at the end", ">off its path")
         yield Section("How far apart", columns, [_apart_row(one) for one in diverged.apart])
     if evidence is not None:
-        does = result.change or ("not sent" if result.mutant.operator == "skip" else "fault")
+        does = result.change or ("not sent" if _is_withheld(result) else "fault")
         yield from _timeline(*evidence.pair(result.mutant.id, number, diverged.test), does)
+
+
+def _is_withheld(result: MutantResult) -> bool:
+    """Whether the mutant made no call where the program made one."""
+    examples = [one.example for one in result.outcomes if one.example is not None]
+    return bool(examples) and all(len(one) == 2 and one[1] == [] for one in examples)
 
 
 def _sentences(diverged: Diverged) -> Iterator[str]:

@@ -165,7 +165,7 @@
   function fault(one, outcome) {
     const [before, after] = (outcome && outcome.example) || [];
     const isValue = one.quantity && after !== undefined;
-    return { name: isValue ? one.quantity : null, value: after, isSkipped: one.operator === "skip",
+    return { name: isValue ? one.quantity : null, value: after, isSkipped: !one.quantity && Array.isArray(after) && !after.length,
       text: isValue ? `${one.quantity} ${value(after, one.unit)} instead of ${value(before, one.unit)}` : one.description };
   }
 
