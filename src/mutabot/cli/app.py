@@ -44,6 +44,30 @@ _OWN = {
     "thresholds": ("results:thresholds", "Show how large a fault the tests miss."),
     "report": ("results:report", "Write pages, or formats of other tools."),
 }
+#: options and a command of earlier versions, and what serves instead
+_GONE = {
+    "--selection": "use --only @FILE",
+    "--when": "use -o when=MOMENT",
+    "--baseline": "use -o baseline_repetitions=N",
+    "--table": "`mutabot results` prints the table",
+    "--serve": "`mutabot live` runs a campaign with its page",
+    "--confirm": "use --verify N",
+    "--repeats": "kills that may be a coincidence are re-run anyway",
+    "--no-repeats": "use -o repeats=false",
+    "--one-per-site": "use --sample",
+    "--sites-only": "--since runs what a change can have altered",
+    "--whole-ladders": "every magnitude is run only where the search needs it",
+    "--mixed": "workers run with the same versions as this machine",
+    "--view": "`mutabot motion MUTANT --rerun` shows what was recorded",
+    "--write": "apply the diff that `mutabot suggest` prints",
+    **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
+    **dict.fromkeys(("--steps", "--sort", "--picture"), "`mutabot thresholds --json` has every magnitude"),
+    **dict.fromkeys(("--video", "--rerun", "--rrd", "--mcap"), "use `mutabot motion MUTANT`"),
+    **dict.fromkeys(
+        ("--tls-ca", "--tls-cert", "--tls-key"), "use -o cluster.ca=FILE, cluster.cert or cluster.key"
+    ),
+    "compare": "`make comparison` in a clone of mutabot compares families of mutants",
+}
 #: settings of every command, mutabot's own and those of packages
 SETTINGS: dict[str, Any] = {
     "context_settings": {"help_option_names": ["-h", "--help"]},
@@ -187,20 +211,23 @@ def _code_of(arguments: Sequence[str]) -> int:
 
 
 def _usage_error(error: Any) -> int:
-    missing = _missing_package(error)
-    if missing is not None:
-        typer.echo(f"mutabot: {missing}", err=True)
+    instead = _instead(error)
+    if instead is not None:
+        typer.echo(f"mutabot: {instead}", err=True)
     else:
         error.message = shortened(str(getattr(error, "message", "")), _LONGEST)
         error.show()
     return ExitCode.USAGE
 
 
-def _missing_package(error: Any) -> str | None:
-    """Name the package that brings an option or a command that the parser does not know."""
+def _instead(error: Any) -> str | None:
+    """Say what replaces an option or a command that is gone, or which package brings one."""
     option: str = getattr(error, "option_name", None) or ""
     found = re.match(r"No such command '([^']*)'", getattr(error, "message", ""))
     command = found[1] if found is not None else ""
+    for name, what in ((option, option), (command, f"the command {command}")):
+        if name in _GONE:
+            return f"{what} is gone; {_GONE[name]}"
     missing = not_installed(option.removeprefix("--"), "executors") or not_installed(command, "commands")
     return None if missing is None else f"{option or f'the command {command}'} {missing}"
 
