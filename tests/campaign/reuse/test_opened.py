@@ -81,9 +81,7 @@ def test_a_watch_that_missed_something_knows_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.whole
-def test_notes_count_if_they_are_opened_or_beside_one_that_is_or_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_notes_count_if_they_are_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kept: list[Dependencies] = []
 
     class Noting(Dependencies):
@@ -92,13 +90,11 @@ def test_notes_count_if_they_are_opened_or_beside_one_that_is_or_named(
             kept.append(self)
 
     monkeypatch.setattr(campaign, "Dependencies", Noting)
-    robot = 'SPARE = "spare.log"\n'
     write_project(tmp_path, MISSION, TESTS, more=FILES)
-    (tmp_path / "robot.py").write_text((tmp_path / "robot.py").read_text() + robot)
     (tmp_path / "linked.txt").symlink_to(tmp_path / "robot.toml")
     campaign.run_campaign(request_for(tmp_path), Quiet())
     (dependencies,) = kept
-    notes = {"points/first.txt", "points/second.txt", "limit.out", "spare.log", "linked.txt"}
+    notes = {"points/first.txt", "limit.out", "linked.txt"}
     assert set(dependencies.files) == notes | {
         "scene.xml", "mission.py", "robot.py", "tests/test_mission.py",
     }  # fmt: skip
