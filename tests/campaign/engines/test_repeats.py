@@ -65,7 +65,7 @@ def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(
     message = found[FALSE].message or ""
     assert message.startswith(f"killed by check in {FLAKY}: assert ")
     assert message.endswith("; run once more: survived")
-    assert "repeats: 0 of 1 kills in doubt come out again" in progress.lines
+    assert "re-runs: 0 of 1 doubtful kills confirmed" in progress.lines
     assert results.repeats.doubted == Repeated(1, 1, 1)
     estimate = false_kills(results.repeats)
     assert estimate is not None
@@ -105,12 +105,12 @@ def test_more_kills_are_repeated_once_one_does_not_come_out_again(
         text = f"import mission\nfrom robot import Arm\n{tests}"
         folder = write_project(tmp_path / str(comes_again), mission, text)
         _, _, progress = campaign(folder, repeats=True)
-        lines[comes_again] = next(line for line in progress.lines if line.startswith("repeats:"))
-    told = r"repeats: (\d) of \1 kills in doubt come out again; (\d) were left, .* 2 s"
+        lines[comes_again] = next(line for line in progress.lines if line.startswith("re-runs:"))
+    told = r"re-runs: (\d) of \1 doubtful kills confirmed; (\d) were left, .* 2 s"
     left = re.fullmatch(told, lines[True])
     assert left is not None
     assert int(left[1]) + int(left[2]) == len(names)
-    assert lines[False] == "repeats: 0 of 6 kills in doubt come out again"
+    assert lines[False] == "re-runs: 0 of 6 doubtful kills confirmed"
 
 
 def test_a_kill_that_came_out_again_is_not_repeated_by_the_next_campaign(
@@ -120,10 +120,10 @@ def test_a_kill_that_came_out_again_is_not_repeated_by_the_next_campaign(
     write_project(tmp_path, MISSION, TESTS)
     _, found, progress = campaign(tmp_path, repeats=True)
     assert (found[FALSE].verdict, found[FALSE].repeats) == (Verdict.KILLED, 1)
-    assert "repeats: 1 of 1 kills in doubt come out again" in progress.lines
+    assert "re-runs: 1 of 1 doubtful kills confirmed" in progress.lines
     results, found, progress = campaign(tmp_path, repeats=True)
     assert (found[FALSE].verdict, found[FALSE].repeats) == (Verdict.KILLED, 1)
-    assert not [line for line in progress.lines if line.startswith("repeats:")]
+    assert not [line for line in progress.lines if line.startswith("re-runs:")]
     assert results.repeats.certain == 1
 
 

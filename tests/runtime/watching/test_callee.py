@@ -56,7 +56,7 @@ def test_docstrings_of_native_methods_tell_arguments(name: str, doc: str, expect
     assert callee.is_documented == (expected is not None)
 
 
-class Arm:
+class ArmOfTest:
     def move_by(self, dx: float, speed: float = 0.1) -> None: ...
 
 
@@ -67,8 +67,8 @@ def lift(height: float) -> None: ...
 def robot(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """A module with a class and a function."""
     module: Any = ModuleType("robot_of_test")
-    monkeypatch.setattr(Arm, "__module__", module.__name__)
-    module.Arm, module.lift = Arm, lift
+    monkeypatch.setattr(ArmOfTest, "__module__", module.__name__)
+    module.ArmOfTest, module.lift = ArmOfTest, lift
     monkeypatch.setitem(sys.modules, module.__name__, module)
     return module  # type: ignore[no-any-return]
 
@@ -82,23 +82,23 @@ def seen(value: Any, name: str, *args: Any) -> Call:
 
 
 def test_a_mock_of_a_patched_class_stands_for_the_class(robot: Any) -> None:
-    with mock.patch.object(robot, "Arm"):
+    with mock.patch.object(robot, "ArmOfTest"):
         monkeys = ModuleType("program_of_test")
-        monkeys.__dict__["Arm"] = Arm  # another module has it under its name
+        monkeys.__dict__["ArmOfTest"] = ArmOfTest  # another module has it under its name
         with mock.patch.dict(sys.modules, {monkeys.__name__: monkeys}):
-            call = seen(robot.Arm(), "move_by", 0.5)
+            call = seen(robot.ArmOfTest(), "move_by", 0.5)
     assert (call.target, list(call.arguments), call.stands_in) == (
-        "robot_of_test:Arm.move_by",
+        "robot_of_test:ArmOfTest.move_by",
         ["dx", "speed"],
         True,
     )
 
 
 def test_a_mock_with_a_specification_stands_for_the_class_even_while_it_is_patched(robot: Any) -> None:
-    arm = mock.create_autospec(Arm, instance=True)
-    with mock.patch.object(robot, "Arm", return_value=arm):
-        call = seen(robot.Arm(), "move_by", 0.5)
-    assert call.target == "robot_of_test:Arm.move_by"
+    arm = mock.create_autospec(ArmOfTest, instance=True)
+    with mock.patch.object(robot, "ArmOfTest", return_value=arm):
+        call = seen(robot.ArmOfTest(), "move_by", 0.5)
+    assert call.target == "robot_of_test:ArmOfTest.move_by"
     assert call.arguments["dx"].parts["dx"].values == [0.5]
 
 
