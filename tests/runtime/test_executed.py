@@ -32,9 +32,11 @@ MISSION = """
 TESTS = """
     import subprocess
     import sys
+    from pathlib import Path
+    sys.path.append(str(Path(__file__).parents[1] / "lib" / "site-packages"))
+    import asks_its_system
     import mission
     import pytest
-    from pathlib import Path
     from robot import Arm
 
     def made():
@@ -63,12 +65,22 @@ TESTS = """
         subprocess.run([sys.executable, "-c", ""], check=True)
 """
 
+#: an installed package that starts a process while it is imported, as glfw does to know a version
+ASKS = """
+    import subprocess
+    import sys
+    subprocess.run([sys.executable, "-c", "print(3)"], check=True, capture_output=True)
+"""
+
 
 @pytest.fixture(scope="module")
 def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
     """What tests of a project execute in the baseline, in the order of the file."""
     folder = write_project(
-        tmp_path_factory.mktemp("executed"), MISSION, TESTS, more={"tests/goals.txt": "0.5\n"}
+        tmp_path_factory.mktemp("executed"),
+        MISSION,
+        TESTS,
+        more={"tests/goals.txt": "0.5\n", "lib/site-packages/asks_its_system.py": ASKS},
     )
     request = request_for(folder, engine="replay")
     with at_it(request, Quiet()) as opened:
@@ -116,3 +128,9 @@ def test_a_file_that_is_opened_counts(executed: dict[str, set[str]]) -> None:
 def test_of_tests_that_start_processes_nothing_is_known(executed: dict[str, set[str]]) -> None:
     assert f"{ALL_FILES}:" in executed["test_starts"]
     assert f"{ALL_FILES}:" not in executed["test_shared_again"]
+
+
+def test_a_process_that_an_installed_package_starts_at_import_is_none_of_the_program(
+    executed: dict[str, set[str]],
+) -> None:
+    assert f"{ALL_FILES}:" not in executed["test_left"]

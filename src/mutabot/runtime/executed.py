@@ -68,6 +68,11 @@ class ExecutedUnits:
         self._loaded: set[str] = set()
         self._in_call = self._leaves = self._has_objects = False
 
+    @property
+    def has_started(self) -> bool:
+        """Whether a process was started outside of the call phases of tests, but for those of libraries."""
+        return (ALL_FILES, WHOLE) in self._common
+
     def install(self) -> None:
         """Record from now on."""
         setattr(builtins, RAN, self._ran)
@@ -186,8 +191,22 @@ class ExecutedUnits:
             name = self._name(arguments[0].co_filename)
             if name is not None and name not in self._loaded:
                 self._common.add((name, WHOLE))
-        elif event in _STARTS and not _is_by_us() and not _is_foreign(event, arguments):
+        elif event in _STARTS and not (
+            _is_by_us() or _is_foreign(event, arguments) or self._is_import_of_library()
+        ):
             self._common.add((ALL_FILES, WHOLE))
+
+    def _is_import_of_library(self) -> bool:
+        """Whether an installed package does it while it is imported, as ``glfw`` does to know a version."""
+        frame: FrameType | None = sys._getframe(2)
+        while frame is not None:
+            file = frame.f_code.co_filename
+            if "site-packages" in file and frame.f_code.co_name == "<module>":
+                return True
+            if self._name(file) is not None:
+                return False
+            frame = frame.f_back
+        return False
 
 
 def _is_by_us() -> bool:

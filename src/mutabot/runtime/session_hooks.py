@@ -242,7 +242,7 @@ class SessionHooks:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
         """All tests are collected: run them, or fork a copy of this process for every job."""
-        request = self._server.serve() if self._server is not None else None
+        request = self._server.serve(self.tests.units.has_started) if self._server is not None else None
         if request is not None:
             self._take_on(session, *request)
         if self._server is not None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
-import resource
 import select
 import signal
 import socket
@@ -28,11 +27,6 @@ _MESSAGE_BYTES = 1 << 12
 #: what a copy is to do: its folder with the job file in it, and the writing end of the pipe by which the
 #: controller is told that there are events
 ForkRequest = tuple[str, int]
-
-
-def _largest_child() -> int:
-    """Memory of the largest child process that has ended so far, KiB."""
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
 
 
 @dataclass(slots=True)
@@ -53,15 +47,15 @@ class ForkServer:
     home: str
     is_private: bool
     _known: frozenset[tuple[int, str]] = field(default_factory=open_now)
-    _largest: int = field(default_factory=_largest_child)
     _copies: dict[int, int] = field(default_factory=dict)
 
-    def serve(self) -> ForkRequest | None:
+    def serve(self, has_started: bool) -> ForkRequest | None:
         """Fork a copy for each job that comes, until no more can come.
 
+        ``has_started``: whether the program has started processes by now, of which no job would know.
         Returns what to do in a copy; None in the server when it is done.
         """
-        reason = self._why_not()
+        reason = STARTED if has_started else self._why_not()
         self.pipe.send(Serving(reason))
         if reason is not None:
             return None
@@ -83,9 +77,7 @@ class ForkServer:
         return None
 
     def _why_not(self) -> str | None:
-        if _largest_child() != self._largest:
-            return STARTED  # no job would know of what they did
-        if not self.is_private or not may_be_private():  # asking that starts a process as well
+        if not self.is_private or not may_be_private():
             return "its files are not private"
         return why_not((), self._known)
 
