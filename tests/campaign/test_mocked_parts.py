@@ -45,3 +45,25 @@ def test_mocks_end_no_campaign(tmp_path: Path, engine: str) -> None:
     found = run(write_project(tmp_path, MISSION, TESTS), engine=engine)
     assert found
     assert {one.verdict for one in found.values()} <= {Verdict.KILLED, Verdict.SURVIVED, Verdict.NO_EFFECT}
+
+
+def test_looking_at_what_mocks_answer_calls_no_mock(tmp_path: Path) -> None:
+    tests = """
+        from unittest import mock
+
+        import mission
+        from robot import Arm
+
+        def test_an_answer_that_is_a_mock():
+            arm = mock.MagicMock(spec=Arm)
+            mission.run(arm)
+            assert arm.mock_calls == [mock.call.move_by(0.25), mock.call.move_by(-0.5), mock.call.position()]
+
+        def test_a_class_that_is_specified():
+            with mock.patch("robot.Arm", autospec=True) as fake:
+                mission.run(fake())
+            fake.return_value.move_by.assert_called_with(-0.5)
+            assert fake.return_value.move_by.mock_calls == [mock.call(0.25), mock.call(-0.5)]
+    """
+    found = run(write_project(tmp_path, MISSION, tests))
+    assert {one.verdict for one in found.values()} >= {Verdict.KILLED}

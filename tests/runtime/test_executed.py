@@ -106,23 +106,17 @@ def test_a_test_depends_on_what_it_executes_and_on_what_runs_at_import(executed:
     assert of(executed["test_left"], NAMES[2]) == {"", "test_left"}
 
 
-def test_what_is_cached_counts_for_all_later_tests(executed: dict[str, set[str]]) -> None:
-    assert of(executed["test_right"]) == {"", "right", "far", "half"}
-    assert of(executed["test_shared"]) == {"", "right", "far", "half", "left"}
-    assert "test_right" not in of(executed["test_shared"], NAMES[2])
-
-
-def test_what_others_do_with_a_shared_fixture_counts_for_all_that_have_it(
-    executed: dict[str, set[str]],
-) -> None:
-    assert "left" in of(executed["test_shared_again"])
-    assert "left" not in of(executed["test_reads"])
-    assert {"made", "shared"} <= of(executed["test_shared_again"], NAMES[2])
+def test_what_a_test_executes_counts_for_all_tests_after_it(executed: dict[str, set[str]]) -> None:
+    assert of(executed["test_right"]) == {"", "left", "right", "far", "half"}
+    assert {"test_left", "test_right", "test_shared", "made", "shared"} <= of(
+        executed["test_shared"], NAMES[2]
+    )
+    assert "test_shared" not in of(executed["test_right"], NAMES[2])
 
 
 def test_a_file_that_is_opened_counts(executed: dict[str, set[str]]) -> None:
     assert "tests/goals.txt:" in executed["test_reads"]
-    assert "tests/goals.txt:" not in executed["test_shared_again"]
+    assert "tests/goals.txt:" not in executed["test_shared"]
 
 
 def test_of_tests_that_start_processes_nothing_is_known(executed: dict[str, set[str]]) -> None:

@@ -201,4 +201,4 @@ def _tuple(numbers: Any) -> Any:
 
 def _plain(value: Any) -> Any:
     """What stands for a value that JSON does not know."""
-    return value.tolist() if hasattr(value, "tolist") else repr(value)
+    return value.tolist() if hasattr(type(value), "tolist") else repr(value)

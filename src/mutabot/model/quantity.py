@@ -340,9 +340,9 @@ def same(one: Value, other: Value) -> bool:
     are_floats = isinstance(one, float) and isinstance(other, float)
     if are_floats and isclose(one, other, rel_tol=_RELATIVE, abs_tol=_ABSOLUTE):
         return True
-    if hasattr(one, "tolist"):
+    if hasattr(type(one), "tolist"):
         one = one.tolist()
-    if hasattr(other, "tolist"):
+    if hasattr(type(other), "tolist"):
         other = other.tolist()
     try:
         return bool(one == other) or bool(one != one and other != other)  # noqa: PLR0124  # NaN
@@ -421,7 +421,7 @@ def changes(
 
 
 def _plain(value: Value) -> Value:
-    return value.tolist() if hasattr(value, "tolist") else value
+    return value.tolist() if hasattr(type(value), "tolist") else value
 
 
 def _are_same(quantity: Quantity, one: Value, other: Value) -> bool:

@@ -177,6 +177,9 @@ def _is_quiet(node: ast.AST) -> bool:
     if isinstance(node, ast.ClassDef):
         return not node.decorator_list and not node.bases and all(map(_is_quiet, node.body))
     if isinstance(node, ast.Assign | ast.AnnAssign | ast.Expr):
+        targets = getattr(node, "targets", [getattr(node, "target", None)] if hasattr(node, "target") else [])
+        if not all(isinstance(one, ast.Name) and one.id != "pytest_plugins" for one in targets):
+            return False
         parts = ast.walk(node.value) if node.value is not None else ()
         return not any(isinstance(one, ast.Call | ast.Await) for one in parts)
     return isinstance(node, ast.Import | ast.ImportFrom | ast.Pass)
@@ -202,7 +205,11 @@ class _ModuleLevel(ast.NodeTransformer):
     def visit_FunctionDef(self, node: Function) -> Function | None:
         if not is_unit(node):
             return node
-        if self._are_tests and node.name.startswith("test"):
+        if (
+            self._are_tests
+            and node.name.startswith("test")
+            and not any(last_name(one) == "fixture" for one in node.decorator_list)
+        ):
             return None
         text = ast.get_docstring(node, clean=False) or ""
         node.body = node.body[:1] if ">>>" in text else []  # the examples of a docstring are tests
@@ -214,4 +221,8 @@ class _ModuleLevel(ast.NodeTransformer):
         had = len(node.body)
         self.generic_visit(node)
         own = [one for one in node.body if not isinstance(one, ast.Expr)]  # a docstring is one
-        return None if len(node.body) < had and not own and not node.decorator_list else node
+        return (
+            None
+            if len(node.body) < had and not own and not (node.decorator_list or node.bases or node.keywords)
+            else node
+        )

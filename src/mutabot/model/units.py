@@ -249,7 +249,7 @@ def to_values(
 
 
 def _numbers(values: Any) -> list[float] | None:
-    if hasattr(values, "tolist"):
+    if hasattr(type(values), "tolist"):
         values = values.tolist()
     if not isinstance(values, list | tuple):
         return None

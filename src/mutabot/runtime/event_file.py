@@ -133,7 +133,7 @@ class Held:
 
 def plain(value: Any) -> Any:
     """JSON-like stand-in for a value that JSON does not know."""
-    if hasattr(value, "tolist"):
+    if hasattr(type(value), "tolist"):
         return value.tolist()
     if isinstance(value, bytes):
         return value.decode("utf-8", "backslashreplace")

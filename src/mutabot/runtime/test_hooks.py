@@ -152,7 +152,7 @@ class TestHooks:
         """The test's fixtures are set up."""
         if self.session.returns is not None:
             self.session.returns.begin_call()
-        self.units.begin_call(self._shared_fixtures(item))
+        self.units.begin_call()
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
@@ -179,16 +179,6 @@ class TestHooks:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """A report counts for the suite: a plug-in that runs a test again does not report what it undoes."""
         self._logged = bool(self._logged) or report.failed
-
-    def _shared_fixtures(self, item: pytest.Item) -> list[str]:
-        """The fixtures of the project's that the test has and that outlive it."""
-        known = getattr(getattr(item, "_fixtureinfo", None), "name2fixturedefs", {})
-        return [
-            f"{one.baseid}::{one.argname}"
-            for some in known.values()
-            for one in some
-            if one.scope != "function" and self.units.is_of_project(getattr(one.func, "__code__", None))
-        ]
 
     def _executed(self, evidence: Evidence) -> Executed:
         """What was executed: in a test that a mutant neither reached nor failed, in that test alone."""

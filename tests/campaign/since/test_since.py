@@ -132,7 +132,8 @@ def test_without_a_journal_only_altered_mutants_are_run_and_that_is_said(project
     assert ran == of("right", ran)
     assert ran
     assert (
-        "not judged, though no change can have altered them: no journal holds an outcome" in project.notes()
+        "not judged; their tests execute nothing that has changed: no journal holds an outcome"
+        in project.notes()
     )
     with Journal.open(project.journal) as journal:
         results = read_results(journal)

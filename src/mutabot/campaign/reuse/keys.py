@@ -329,15 +329,42 @@ class Dependencies:
         return self._made[key][1]
 
     def _differing_units(self, was: Was, mutant: Mutant, round: int) -> list[str]:
+        is_all = was.executed is None or ALL_FILES in was.executed
+        whole, until = self.asked(was)
+        tests = (
+            self._baseline.tests_reaching(round, mutant)
+            if is_all
+            else self.tests(mutant, round, whole=whole, until=until)
+        )
+        group = self._groups.setdefault((str(round), *tests), (str(round), *tests))
+
         def differing() -> list[str]:
             names = self._names_of_all(was.tree, tests) if is_all else _names(was)
             notes = {name: self.notes.get(name, self.files.get(name, "")) for name in was.notes}
-            return [*_differing(names, was.tree, self.tree), *changes(was.notes, notes)]
+            found = [*_differing(names, was.tree, self.tree), *changes(was.notes, notes)]
+            return found or ([] if is_all else self._executed_now(names, tests, round))
 
-        is_all = was.executed is None or ALL_FILES in was.executed
-        tests = self._baseline.tests_reaching(round, mutant) if is_all else ()
-        together = self._groups.setdefault(tests, tests)
-        return self._once(differing, was.tree, was.found_in, was.executed, was.notes, together)
+        return self._once(differing, was.tree, was.found_in, was.executed, was.notes, group)
+
+    def _executed_now(
+        self, before: Mapping[str, set[str] | None], tests: Iterable[str], round: int
+    ) -> list[str]:
+        """Units that tests execute now and did not before: they may hide what was executed."""
+        ends = self._baseline.ends
+        executed = together(ends[round, test].executed for test in tests if (round, test) in ends)
+        if executed is None or ALL_FILES in executed:
+            return ["its tests start processes now"]
+        found = []
+        for name, lines in executed.items():
+            file, known = self.tree.file(name), before.get(name, set())
+            if file is None or known is None:
+                continue
+            now = file.names_at(lines)
+            new = {""} if now is None else now - known
+            if now is not None and is_test_file(name) and file.is_quiet:
+                new = new - {""}
+            found += [f"{file.shown(unit)} is executed now" for unit in sorted(new)]
+        return found
 
     def _names_of_all(self, tree: Tree, tests: Iterable[str]) -> dict[str, set[str] | None]:
         """All units that there were or are, bar those of other tests."""

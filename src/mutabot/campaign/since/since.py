@@ -295,4 +295,4 @@ def _tell(since: Since, short: str, progress: Progress) -> None:
     for why, count in since.run.items():
         progress.note(f"  {count} to run: {why}")
     for why, count in since.not_judged.items():
-        progress.note(f"  {count} not judged, though no change can have altered them: {why}")
+        progress.note(f"  {count} not judged; their tests execute nothing that has changed: {why}")

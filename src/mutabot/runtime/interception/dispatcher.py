@@ -289,6 +289,11 @@ def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
     function = wrapped.__func__ if type(wrapped) is MethodType else wrapped
     if type(function) is FunctionType and not function.__dict__:  # the most of them
         return bool(function.__code__.co_flags & inspect.CO_COROUTINE)
+    mocks = sys.modules.get("unittest.mock")
+    if mocks is not None and issubclass(type(function), mocks.NonCallableMock):
+        return issubclass(
+            type(function), mocks.AsyncMockMixin
+        )  # to ask it for its flags would count as calls
     if inspect.iscoroutinefunction(wrapped) or inspect.iscoroutinefunction(type(wrapped).__call__):
         return True
     coroutines = sys.modules.get("asyncio.coroutines")

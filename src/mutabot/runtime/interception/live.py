@@ -50,11 +50,11 @@ def _is_held(value: Any, known: int) -> bool:
         return False
     if sys.getrefcount(value) > known:
         return True
-    base = getattr(value, "base", None) if hasattr(value, "dtype") else None
+    base = getattr(value, "base", None) if hasattr(type(value), "dtype") else None
     if base is None or not getattr(getattr(value, "flags", None), "writeable", True):
         return False
     # a view of an array that nobody else has is as good as that array
-    return not hasattr(base, "dtype") or _is_held(base, _OF_ANSWER)
+    return not hasattr(type(base), "dtype") or _is_held(base, _OF_ANSWER)
 
 
 def _parts(answer: Any, path: Path) -> Iterator[Any]:

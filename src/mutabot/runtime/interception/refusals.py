@@ -140,7 +140,7 @@ def _same(value: Any, wanted: Any) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    return value.tolist() if hasattr(value, "dtype") and hasattr(value, "tolist") else value
+    return value.tolist() if hasattr(type(value), "tolist") else value
 
 
 @cache

@@ -171,7 +171,7 @@ def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values as they are now: a program may change its lists and arrays later."""
     return {
         name: value.tolist()
-        if hasattr(value, "tolist")
+        if hasattr(type(value), "tolist")
         else list(value)
         if isinstance(value, list)
         else value

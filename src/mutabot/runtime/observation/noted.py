@@ -132,7 +132,7 @@ def _parts(text: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
         if not isinstance(value, str) or len(value) <= _LABEL:
             yield text, value
         return
-    if hasattr(value, "tolist") and getattr(value, "size", 0) <= _LENGTH:
+    if hasattr(type(value), "tolist") and getattr(value, "size", 0) <= _LENGTH:
         value = value.tolist()
         if not isinstance(value, list):  # one number
             yield from _parts(text, value, depth)
@@ -144,7 +144,7 @@ def _parts(text: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
 
 
 def _items(value: Any) -> Iterator[tuple[str, Any]]:
-    if hasattr(value, "_fields"):
+    if hasattr(type(value), "_fields"):
         yield from ((f".{name}", getattr(value, name)) for name in value._fields)
     elif is_dataclass(value) and not isinstance(value, type):
         yield from ((f".{one.name}", getattr(value, one.name)) for one in fields(value))

@@ -172,7 +172,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
     if type(value) in _PLAIN:  # the most of them
         yield name, value
         return
-    value = _fields_of(value.tolist() if hasattr(value, "tolist") else value)
+    value = _fields_of(value.tolist() if hasattr(type(value), "tolist") else value)
     if isinstance(value, Mapping | list | tuple) and not value:
         yield name, {} if isinstance(value, Mapping) else []
     elif isinstance(value, Mapping):
@@ -194,7 +194,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 def _fields_of(value: Any) -> Any:
     """The fields of a dataclass or named tuple by name; anything else as it is."""
-    if hasattr(value, "_asdict"):
+    if hasattr(type(value), "_asdict"):
         return value._asdict()
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: getattr(value, field.name, None) for field in fields(value)}
@@ -337,7 +337,7 @@ def _data_of(value: Any, depth: int) -> Any:
         return _text(value)
     if isinstance(value, _AS_TEXT) or type(value).__module__ in _TOLD:
         return repr(value)
-    if hasattr(value, "tolist") and hasattr(value, "dtype"):
+    if hasattr(type(value), "tolist") and hasattr(type(value), "dtype"):
         return _array(value, depth)
     value = _fields_of(value)
     if isinstance(value, set | frozenset):
