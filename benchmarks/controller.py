@@ -262,7 +262,7 @@ def _play(
     playing = Campaign(request, campaign.baseline, player, Silent(look), evidence, campaign.proven)
 
     def key_of(outcome: Outcome) -> str:
-        key = dependencies.key_of(outcome, by_id[outcome.mutant])
+        key = dependencies.key_of(outcome, by_id[outcome.mutant], dependencies.stored(outcome.executed))
         journal.add_parts(dependencies.new_parts())
         return key
 

@@ -277,7 +277,7 @@ def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callabl
         executed = dependencies.stored(outcome.executed)
         if outcome.repeats and outcome.executed is None:  # it is in the journal, and was run once more
             before = journal.row(outcome.mutant, outcome.round)
-            executed = before.key.split()[-1] if before is not None else executed
+            executed = before.key.split()[-1] if before is not None and before.key else executed
         key = dependencies.key_of(outcome, by_id[outcome.mutant], executed)
         journal.add_parts(dependencies.new_parts())
         return key
