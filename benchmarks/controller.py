@@ -221,9 +221,9 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
         campaign, results = begin(request, recorder, Silent(), evidence)
         plan = selected(campaign, plan_of(request, campaign.baseline))
         for result in results:
-            round, repetition = result.task.key
+            number, repetition = result.task.key
             for end in result.ends:
-                journal.add_test(round, repetition, without_recording(end))
+                journal.add_test(number, repetition, without_recording(end))
         if evidence is not None:
             runs = [(*one.task.key, one.ends) for one in results]
             evidence.begin(runs, plan.mutants)
