@@ -18,7 +18,7 @@ AUDIT  := $(VENV)-audit
 LOCKS  := $(wildcard requirements*.lock)
 
 # tests of the core that need no example
-CORE    = $(addprefix tests/,model settings operators languages results journal vocabulary campaign/plan plugins \
+CORE    = $(addprefix tests/,model config operators languages results journal campaign/plan plugins \
     test_extensions.py)
 
 of_ros  = $(wildcard tests/packages/ros/test_ros$(1)*.py)
