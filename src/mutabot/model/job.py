@@ -72,7 +72,6 @@ class Branching:
     Attributes:
         mutants: the mutants that are alive in this round.
         tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
-        gate: descriptor that can be read while mutants may begin, filled in likewise; None: always.
         walls: wall-clock seconds that a branch may take for a test, by test.
         wall: the same for tests that are missing there.
         startup: the same until its first test begins.
@@ -85,7 +84,6 @@ class Branching:
 
     mutants: tuple[Mutant, ...]
     tokens: tuple[int, int] = (-1, -1)
-    gate: int | None = None
     walls: Mapping[str, float] = field(default_factory=dict)
     wall: float = 600.0
     startup: float = 600.0

@@ -226,7 +226,6 @@ class ForkParent:
 
     def _fork_each(self, mutants: Sequence[Mutant]) -> None:
         for mutant in mutants:
-            self._wait_while_paused()
             pid = self._fork_one(mutant)
             if pid == 0:
                 return
@@ -262,9 +261,8 @@ class ForkParent:
         """Let go of what is the parent's, and become the mutant."""
         die_with_parent(self._pid)
         self.pipe.go_on_apart()
-        for descriptor in (*self._children, *self.branching.tokens, self.branching.gate):
-            if descriptor is not None:
-                os.close(descriptor)
+        for descriptor in (*self._children, *self.branching.tokens):
+            os.close(descriptor)
         try:
             folder = self.isolation.enter(self.pipe.name)
         except OSError as error:
@@ -304,19 +302,6 @@ class ForkParent:
     def _name_of(self, test: int) -> str:
         """The node id of a test, by its number: empty before any, the last one while the session ends."""
         return self.tests[min(test, len(self.tests) - 1)] if test >= 0 else ""
-
-    def _wait_while_paused(self) -> None:
-        """Children at work end meanwhile, and what they held goes back; the parent keeps its own token."""
-        gate = self.branching.gate
-        while gate is not None and not self._is_open(gate):
-            if self._reap(self._wait(gate)):
-                self._give_back()
-
-    @staticmethod
-    def _is_open(gate: int) -> bool:
-        poll = select.poll()
-        poll.register(gate, select.POLLIN)
-        return bool(poll.poll(0))
 
     def _take_token(self) -> None:
         """The parent's token went to the child: wait for another, from the pool or from a child's end."""
