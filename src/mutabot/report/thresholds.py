@@ -14,7 +14,15 @@ from mutabot.report.sections import Section, percent, plural
 from mutabot.report.terminal.console import print_section
 from mutabot.results.demands import suggested
 from mutabot.results.ladders import Ladder
-from mutabot.results.thresholds import Change, Comparison, Thresholds, amount, line_of, violations_in_words
+from mutabot.results.thresholds import (
+    Change,
+    Comparison,
+    Thresholds,
+    amount,
+    line_of,
+    rounds_left_out,
+    violations_in_words,
+)
 
 #: lines of a section that are shown; --json has all
 _MOST = 12
@@ -63,11 +71,13 @@ def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {
         "Out of order: a larger fault was missed": [],
         "Better than the original": [],
+        "Rounds that do not count": [],
     }
     floors: list[str] = []
     for one in thresholds.ladders:
         name = f"{one.place} {one.name}"
         found["Out of order: a larger fault was missed"] += (f"{name}: {x}" for x in violations_in_words(one))
+        found["Rounds that do not count"] += (f"{name}: {x}" for x in rounds_left_out(one))
         for best in one.better[:1]:
             where = f"{amount(best.magnitude, one.unit)}, round {best.round + 1}"
             found["Better than the original"].append(f"{name}: {best.text} ({where})")

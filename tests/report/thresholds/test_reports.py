@@ -56,6 +56,15 @@ def test_a_ladder_is_one_row_with_a_bar(thresholds: Thresholds) -> None:
     assert "× the robot refuses" in text
 
 
+def test_a_round_that_does_not_count_is_named_with_the_reason(tmp_path: Path) -> None:
+    found = thresholds_of(
+        journals.results(tmp_path, Rungs(["SSSSCCC"] * FIVE, zero="SCSSS"), vocabulary=NOISY)
+    )
+    text = text_of(found)
+    assert "Rounds that do not count" in text
+    assert "round 2 fails without a fault" in text
+
+
 def test_a_bar_has_one_sign_per_magnitude(thresholds: Thresholds) -> None:
     assert [bar(one) for one in thresholds.ladders] == ["·····××", "····███", "···▒███", "███████", "███████"]
 
