@@ -135,6 +135,10 @@ def _narrowed(results: Results) -> Iterator[Section]:
         yield Section(f"Time limit reached: {done}", lines=lines)
 
 
+#: so many survivors are described although none had a measured effect
+_FEW = 10
+
+
 def _survivors(results: Results, place: Place) -> Iterator[Section]:
     """Survivors with an effect, the largest first; the numbers of those without one in a line."""
     survivors = results.survivors
@@ -144,6 +148,8 @@ def _survivors(results: Results, place: Place) -> Iterator[Section]:
         return
     same = [result.mutant.number for result in survivors if result.indistinguishable]
     shown = [result for result in survivors if not result.indistinguishable]
+    if not shown and len(same) <= _FEW:  # else nothing would say which faults these are
+        shown, same = survivors, []
     order = ", largest deviation from the original first" if len(shown) > 1 else ""
     rows = [
         (
