@@ -67,3 +67,43 @@ def test_looking_at_what_mocks_answer_calls_no_mock(tmp_path: Path) -> None:
     """
     found = run(write_project(tmp_path, MISSION, tests))
     assert {one.verdict for one in found.values()} >= {Verdict.KILLED}
+
+
+def test_a_mock_in_the_place_of_a_property_is_read_by_the_mutant(tmp_path: Path) -> None:
+    robot = """
+        class Drone:
+            def __init__(self):
+                self.flown = []
+
+            @property
+            def altitude(self):
+                return 3.0
+
+            @altitude.setter
+            def altitude(self, height):
+                self.flown.append(height)
+    """
+    mission = """
+        def climb(drone):
+            drone.altitude = 4.0
+            return drone.altitude > 2.0
+    """
+    tests = """
+        from unittest import mock
+
+        import mission
+        from robot import Drone
+
+        def test_of_a_mock():
+            with mock.patch.object(Drone, "altitude", new_callable=mock.PropertyMock, return_value=5.0) as it:
+                assert mission.climb(Drone())
+            assert it.mock_calls == [mock.call(4.0), mock.call()]
+    """
+    vocabulary = """
+        [[operation]]
+        call = "robot:Drone.altitude"
+        result = { kind = "position", axis = "z", unit = "m" }
+    """
+    found = run(write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary))
+    (negated,) = [one for one in found.values() if one.mutant.endswith("negate")]
+    assert (negated.verdict, negated.hits) == (Verdict.KILLED, 1)

@@ -397,6 +397,8 @@ class Negate(ValueOperator):
 class Noise(ValueOperator):
     """A position, distance or angle is read with Gaussian noise added.
 
+    A reading that is an integer stays one, so noise below half a unit leaves it as it is.
+
     Where: read positions, distances, angles and orientations.
     """
 

@@ -27,7 +27,7 @@ from mutabot.model import Role, Span
 from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
-from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, mock_of
+from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, mock_of, stands_for_property
 
 #: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
 #: which is None if nobody knows any more
@@ -154,7 +154,8 @@ class Handing:
         own = vars(mock)
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
-        if is_under_way() or (mark is None and name not in self._standing.names):
+        is_written = bool(args) and stands_for_property(mock)
+        if is_under_way() or is_written or (mark is None and name not in self._standing.names):
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if mark is not None:

@@ -112,6 +112,12 @@ def mock_of(found: Any) -> Any:
     return made if module is not None and is_mock(module, made) else None
 
 
+def stands_for_property(mock: Any) -> bool:
+    """Return whether a mock stands for a property: to read the attribute calls it without arguments."""
+    module = sys.modules.get("unittest.mock")
+    return module is not None and issubclass(type(mock), module.PropertyMock)
+
+
 def _shown(found: Any, receiver: Any) -> str:
     if mock_of(found) is not None or mock_of(receiver) is not None:
         return "a mock"
@@ -261,8 +267,9 @@ class Standing:
 
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
         """Return the operation of this name in whose place something stands."""
-        ones = [one for one in self._by_name[name] if not self._is_read(one)]
         mock = mock_of(found)
+        is_read = stands_for_property(mock)
+        ones = [one for one in self._by_name[name] if self._is_read(one) is is_read]
         fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
         if fitting:
             return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target][0].__mro__))
