@@ -27,7 +27,7 @@ from mutabot.model.quantity import Value
 from mutabot.operators.passage import Carried, run
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.active_mutant import ActiveMutant
-from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall
+from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
 from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.refusals import RefusedCalls
 from mutabot.runtime.interception.trace import Locator, Recorder
@@ -289,11 +289,8 @@ def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
     function = wrapped.__func__ if type(wrapped) is MethodType else wrapped
     if type(function) is FunctionType and not function.__dict__:  # the most of them
         return bool(function.__code__.co_flags & inspect.CO_COROUTINE)
-    mocks = sys.modules.get("unittest.mock")
-    if mocks is not None and issubclass(type(function), mocks.NonCallableMock):
-        return issubclass(
-            type(function), mocks.AsyncMockMixin
-        )  # to ask it for its flags would count as calls
+    if is_mock(function):  # to ask it for its flags would count as calls
+        return is_mock(function, "AsyncMockMixin")
     if inspect.iscoroutinefunction(wrapped) or inspect.iscoroutinefunction(type(wrapped).__call__):
         return True
     coroutines = sys.modules.get("asyncio.coroutines")

@@ -31,7 +31,7 @@ from mutabot.languages.python import function_of
 from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
-from mutabot.runtime.interception.adapter import Adapter
+from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
@@ -100,22 +100,15 @@ def last_name(operation: Operation) -> str:
     return operation.qualname.rpartition(".")[2]
 
 
-def is_mock(mock: Any, value: Any) -> bool:
-    """Whether a value is a mock, whatever it says that it is."""
-    return issubclass(type(value), mock.NonCallableMock)
-
-
 def mock_of(found: Any) -> Any:
     """Return the mock that a callable is, or stands before; None if it is none."""
-    module = sys.modules.get("unittest.mock")
     made = vars(found).get("mock") if type(found) is FunctionType else found
-    return made if module is not None and is_mock(module, made) else None
+    return made if is_mock(made) else None
 
 
 def stands_for_property(mock: Any) -> bool:
     """Return whether a mock stands for a property: to read the attribute calls it without arguments."""
-    module = sys.modules.get("unittest.mock")
-    return module is not None and issubclass(type(mock), module.PropertyMock)
+    return is_mock(mock, "PropertyMock")
 
 
 def _shown(found: Any, receiver: Any) -> str:

@@ -24,9 +24,9 @@ from typing import Any
 
 from mutabot.model.path import class_name
 from mutabot.model.watched import Call, Command, Seen, Values
+from mutabot.runtime.interception.adapter import is_mock
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text import loading as scripts
-from mutabot.runtime.program_text.standing import is_mock
 from mutabot.runtime.targets.target import Where
 from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
 from mutabot.runtime.watching.names import NamesSeen
@@ -267,11 +267,10 @@ class Watch:
 
     def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
         """What a mock or a class of the tests stands for: the robot's callable, or any of its name."""
-        mock = sys.modules.get("unittest.mock")
-        if mock is not None and is_mock(mock, value):
+        if is_mock(value):
             kind = vars(value).get("_spec_class") or self._patched(value._extract_mock_name(), name)
             return (meant_by(kind, name) if kind is not None else None) or any_method(name)
-        if mock is not None and is_mock(mock, found) and isinstance(value, type | ModuleType):
+        if is_mock(found) and isinstance(value, type | ModuleType):
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
             is_class = name[:1].isupper()
             return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
