@@ -173,11 +173,11 @@ class Dispatch:
         self._cluster.done += 1
         task = trial.task
         overdue = {line.mutant for line in lines if isinstance(line, BranchDied) and line.overdue}
-        if answer.overdue is not None and not task.is_trunk:
+        if answer.overdue is not None and not task.is_fork_parent:
             self._at_home.append(task)
             return
         if overdue:
-            # a part of the trunk at home decides about these
+            # a part of the fork parent at home decides about these
             lines = [line for line in lines if getattr(line, "mutant", None) not in overdue]
             self._at_home.append(_only(task, overdue))
         self._settled.extend((task, line) for line in lines)
@@ -250,7 +250,7 @@ def is_for_home(task: Task) -> bool:
 
 
 def _only(task: Task, mutants: set[str]) -> Task:
-    """The same trunk with some of its mutants."""
+    """The same fork parent with some of its mutants."""
     branching = task.job.branching
     assert branching is not None
     own = replace(

@@ -171,7 +171,7 @@ class Session:
             task.job, tests=leading, mutant=None, branching=None, stop_at_kill=False, instrumentation=None,
             record=False, evidence=False,
         )  # fmt: skip
-        plain = replace(task, job=job, is_trunk=False, may_share=False)
+        plain = replace(task, job=job, is_fork_parent=False, may_share=False)
         _, result = self._run(plain, look)
         ended = next((end for end in result.ends if end.test == test), None)
         if ended is not None and ended.outcome != "failed":

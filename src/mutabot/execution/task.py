@@ -80,7 +80,7 @@ class Task:
         deadlines: wall-clock seconds each test may take; tests that are missing get ``deadline``.
         deadline: wall-clock seconds for any other test.
         startup: wall-clock seconds until the first test begins.
-        is_trunk: whether it branches: it then runs on a token of the pool.
+        is_fork_parent: whether it branches: it then runs on a token of the pool.
         may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
         alone: whether nothing may run beside it.
     """
@@ -90,7 +90,7 @@ class Task:
     deadlines: Mapping[str, float] = field(default_factory=dict)
     deadline: float = 600.0
     startup: float = STARTUP_SECONDS
-    is_trunk: bool = False
+    is_fork_parent: bool = False
     may_share: bool = False
     alone: bool = False
 
@@ -226,8 +226,8 @@ class Executor(Protocol):
     """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs.
 
     Attributes:
-        spread: how many places share nothing, neither trunks nor fork servers: work is worth cutting into
-            parts for them, and to begin with its longest. 1 on one machine.
+        spread: how many places share nothing, neither fork parents nor fork servers. Work for them is cut
+            into parts, the longest first. 1 on one machine.
         remarks: what is to be known of where tasks ran, for whoever reads the journal.
     """
 
@@ -243,8 +243,8 @@ class Executor(Protocol):
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """The same, with each event as it comes.
 
-        A task whose job branches is a trunk: the executor gives it and its branches the tokens by which they
-        share its places with the other tasks. A task that is ``alone`` has nothing beside it.
+        A task whose job branches is a fork parent: the executor gives it and its forks the tokens by which
+        they share its places with the other tasks. A task that is ``alone`` has nothing beside it.
         """
 
     def apart(self) -> AbstractContextManager[Executor]:

@@ -158,7 +158,7 @@ class TokenPool:
 
     @property
     def descriptors(self) -> tuple[int, int]:
-        """Reading and writing end, for a trunk."""
+        """Reading and writing end, for a fork parent."""
         return self.reading, self._writing
 
     def take(self) -> bool:
@@ -221,7 +221,7 @@ class Workers:
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
     Attributes:
-        pool: the tokens of trunks and branches.
+        pool: the tokens of fork parents and branches.
         look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
         spread: see ``Executor``.
     """
@@ -313,7 +313,7 @@ class Workers:
     def _has_place(self, task: Task) -> bool:
         if self._workers and (task.alone or any(worker.task.alone for worker in self._workers)):
             return False
-        if not task.is_trunk:
+        if not task.is_fork_parent:
             return self._waiting.has_place(self._workers)
         if len(self._workers) >= self._jobs:
             return False
@@ -340,7 +340,7 @@ class Workers:
         copy = server.copy(home, writing) if server is not None else None
         if copy is not None:
             return copy
-        descriptors = self.pool.descriptors if task.is_trunk else ()
+        descriptors = self.pool.descriptors if task.is_fork_parent else ()
         return Spawned(self._root, self._arguments, home, writing, descriptors)
 
     def _server_for(self, task: Task) -> ForkServer | None:
@@ -371,7 +371,7 @@ class Workers:
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Event]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
         timeout = self._patience(next_task)
-        is_for_token = next_task is not None and next_task.is_trunk and len(self._workers) < self._jobs
+        is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
         if is_for_token:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         if self.look is not None:
@@ -412,8 +412,8 @@ class Workers:
             yield worker.task, line
         if result.end is None:
             refuse_full_disk(self._folder)
-        if worker.task.is_trunk:
-            self.pool.give_back(result.held)  # what a trunk that died had not given back itself
+        if worker.task.is_fork_parent:
+            self.pool.give_back(result.held)  # what a fork parent that died had not given back itself
         yield result
 
 
@@ -422,7 +422,7 @@ class _Worker:
 
     def __init__(self, task: Task, home: Home, events: EventStream, process: Spawned | Copy) -> None:
         self.task = task
-        self.result = Result(task, held=1 if task.is_trunk else 0)
+        self.result = Result(task, held=1 if task.is_fork_parent else 0)
         self.events = events
         self._home, self.process = home, process
         self.left: list[str] | None = None
@@ -458,7 +458,7 @@ class _Worker:
             self.result.take(event)
             if isinstance(event, TestEnd):
                 self._allow(self.task.startup)
-            elif isinstance(event, TestStart) or self.task.is_trunk:
+            elif isinstance(event, TestStart) or self.task.is_fork_parent:
                 running = self.result.running or ""
                 self._allow(self.task.deadlines.get(running, self.task.deadline))
         return events

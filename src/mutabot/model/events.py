@@ -249,7 +249,7 @@ class BranchEnd(Event):
         mutant: id of the mutant it was.
         end: what the test ended like.
         sites: the sites that the trace refers to.
-        shared: simulated seconds it inherited from the trunk, or None without a clock.
+        shared: simulated seconds it inherited from the fork parent, or None without a clock.
         is_early: whether it was forked before any test.
     """
 
@@ -331,9 +331,9 @@ class Unbranched(Event):
 
 @frozen
 class Undiverged(Event):
-    """Mutants of the program text that were reached in a trunk's test and always had the original's value.
+    """Mutants of the program text that a fork parent reached in a test, always with the original's value.
 
-    The trunk itself has run this test for them.
+    The fork parent itself has run this test for them.
 
     Attributes:
         test: the test, which is about to end.
@@ -346,7 +346,7 @@ class Undiverged(Event):
 
 @frozen
 class TokensHeld(Event):
-    """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
+    """How many tokens a fork parent and its forks hold: what the pool gets back if the parent dies."""
 
     held: int
 

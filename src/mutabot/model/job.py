@@ -67,7 +67,7 @@ class InProcess:
 
 @frozen
 class Branching:
-    """How a trunk branches: which mutants, with how many processes, for how long.
+    """How a fork parent branches: which mutants, with how many processes, for how long.
 
     Attributes:
         mutants: the mutants that are alive in this round.
@@ -79,7 +79,7 @@ class Branching:
         every_test: whether a branch goes on after a test that decided about its mutant.
         at_start: test to ids of mutants that are branched before it begins, if they were not before: they may
             be hit in processes below it.
-        serial: whether the trunk waits for each branch, since two of them would get in each other's way.
+        serial: whether the fork parent waits for each fork, since two of them would get in each other's way.
     """
 
     mutants: tuple[Mutant, ...]
@@ -128,7 +128,7 @@ class Job:
             missing are read at their end only.
         inspect: whether to check every callable of the vocabulary at the end, also those that no test
             imported.
-        branching: set for a trunk: fork a branch for each live mutant at its site.
+        branching: set for a fork parent: fork a branch for each live mutant at its site.
         serving: set for a fork server: the socket over which jobs come. It runs no test itself.
         instrumentation: what to put into the program text; None to leave it alone.
         private_files: whether the process is to keep to itself what it does to files.

@@ -69,7 +69,7 @@ def unit(ticket: str = "ticket") -> Unit:
 
 def trunk(ticket: str = "ticket") -> Unit:
     job = replace(unit().task.job, mutant=None, branching=Branching((mutant(1),)))
-    return Unit(GROUND, Task(None, job, is_trunk=True), ticket)
+    return Unit(GROUND, Task(None, job, is_fork_parent=True), ticket)
 
 
 def good(ticket: str = "ticket") -> dict[str, Any]:

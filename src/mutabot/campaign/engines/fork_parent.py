@@ -210,7 +210,7 @@ class _ForkParent:
         patience = 2.0 * sum(walls.values()) + branching.startup + _PATIENCE
         may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
         return Task(
-            key, job, {}, patience, patience, is_trunk=True, may_share=may_share, alone=branching.serial
+            key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=branching.serial
         )
 
     def take(self, event: Event) -> Iterator[Outcome]:
@@ -227,7 +227,7 @@ class _ForkParent:
                 del self._open[fork.run.mutant.id]
                 yield not_judged(fork.run.mutant, self._round, error, BRANCH)
                 return
-            text = f"a report of the trunk cannot be used: {type(error).__name__}: {error}"
+            text = f"a report of the fork parent cannot be used: {type(error).__name__}: {error}"
             self._left.notes.append(text)
             self._is_off = self._is_off or isinstance(event, TestEnd)
 
@@ -266,7 +266,9 @@ class _ForkParent:
     def finish(self, result: Result) -> Iterator[Outcome]:
         """The process is gone: settle what can be settled, and leave the rest to replay."""
         if result.end is None:
-            self._left.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
+            self._left.notes.append(
+                f"the fork parent of round {self._round + 1} died: {death(result)}{at(result)}"
+            )
         is_whole = len(self._own_ends) == len(self._tests) and not self._is_off
         simulated = [end.simulated for end in self._own_ends if end.simulated is not None]
         for fork in list(self._open.values()):
