@@ -113,10 +113,14 @@ class Looks:
             self._noted[key] = Check(place, before.text, seen, least, before.times + 1)
 
 
+#: few functions are asked for theirs, and those often
+_signature = functools.lru_cache(maxsize=256)(inspect.signature)
+
+
 def _given(function: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
     """The arguments of a call by name, defaults included; none if they cannot be told."""
     try:
-        bound = inspect.signature(function).bind(*args, **named)
+        bound = _signature(function).bind(*args, **named)
     except (TypeError, ValueError):
         return {}
     bound.apply_defaults()
@@ -257,6 +261,7 @@ class Checks:
         self._wants = wants
         self._looks = looks
         self._told: list[tuple[str, str]] = []
+        self._names: dict[str, str] = {}
         self._is_inside = False
 
     def install(self) -> None:
@@ -295,7 +300,10 @@ class Checks:
         return found
 
     def _place(self, file: str, line: int) -> str:
-        return f"{os.path.relpath(os.path.realpath(file), self._root)}:{line}"
+        name = self._names.get(file)
+        if name is None:
+            name = self._names[file] = os.path.relpath(os.path.realpath(file), self._root)
+        return f"{name}:{line}"
 
     def _wrap_module(self, module: ModuleType) -> None:
         self._wrap(module, 0)
