@@ -182,26 +182,19 @@ def _irradiate(python: str, project: Path, mutants: int) -> tuple[Figures, list[
     copy = _copy(project, "irradiate")
     _, program, tests, _ = PROJECTS[project.parent.name]
     command = [str(Path(python).with_name("irradiate")), "run", program, "--tests-dir", tests]
-    command += ["--python", python]
-    options = [
-        "--workers",
-        "1",
-        "--sample",
-        str(mutants),
-        "--no-cache",
-        "--report",
-        "json",
-        "-o",
-        "report.json",
-    ]
-    cpu, done = _cpu([*command, *options], copy)
+    command += ["--python", python, "--workers", "1", "--sample", str(mutants)]
+    command += ["--no-cache", "--report", "json", "-o", "report.json"]
+    cpu, done = _cpu(command, copy)
     report = copy / "report.json"
     if not report.exists():
         raise SystemExit(
             f"irradiate: exit code {done.returncode}: {done.stdout[-2000:]}{done.stderr[-2000:]}"
         )
+    # it names files from the folder of the package, which may be no package itself
+    files = [str(path.relative_to(project)) for path in (project / program).rglob("*.py")]
+    place = {str(Path(file).relative_to(Path(program).parent)): file for file in files}
     judged = [
-        Judged(one["id"], one["status"], _written_by_location(file, text["source"], one))
+        Judged(one["id"], one["status"], _written_by_location(place.get(file, file), text["source"], one))
         for file, text in json.loads(report.read_text())["files"].items()
         for one in text["mutants"]
     ]

@@ -107,12 +107,15 @@ class Feed:
 
     def _now(self, tape: Tape) -> float | None:
         """The simulator's own time, s; None, and a problem, if it tells none."""
-        with tape.reading("the simulated time cannot be read"):
+        try:  # at every step: tape.reading, which says the same, would cost more than the rest
             now = float(self._time())
-            if isfinite(now):
-                return now
-            tape.problem(f"the simulated time cannot be read: {now} is no time")
-        return None
+            why = "" if isfinite(now) else f"{now} is no time"
+        except Exception as error:
+            now, why = 0.0, f"{type(error).__name__}: {error}"
+        if why:
+            tape.problem(f"the simulated time cannot be read: {why}")
+            return None
+        return now
 
     def _tick(self, tape: Tape) -> None:
         now = self._now(tape)

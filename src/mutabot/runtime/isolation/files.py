@@ -21,6 +21,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 from mutabot.frozen import frozen
@@ -38,7 +39,12 @@ _OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overla
 
 def private_folders(root: str) -> tuple[str, ...]:
     """The folders that become private: the project, and those of temporary files and of shared memory."""
-    folders = [os.path.realpath(root), os.path.realpath(tempfile.gettempdir())]
+    return _private_folders(root, tempfile.gettempdir())
+
+
+@lru_cache(maxsize=8)  # each fork asks several times
+def _private_folders(root: str, temporary: str) -> tuple[str, ...]:
+    folders = [os.path.realpath(root), os.path.realpath(temporary)]
     if os.path.isdir(_SHARED_MEMORY):
         folders.append(os.path.realpath(_SHARED_MEMORY))
     outer = [one for one in folders if any(is_below(other, one) for other in folders if other != one)]
