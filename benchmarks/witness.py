@@ -165,6 +165,9 @@ def main() -> int:
             continue
         began = time.monotonic()
         before = None
+        if given.earlier is not None and not (given.earlier / f"{name}.json.gz").exists():
+            print(f"{name}: not recorded, since the earlier record has no such project")
+            continue
         if given.earlier is not None:
             before = {key.rpartition(" [")[0] for key in read(given.earlier / f"{name}.json.gz")["outcomes"]}
         found = record(name, every[name], given.command, before)

@@ -102,7 +102,7 @@ class PrivateFiles:
                     copied = os.path.join(folder, _LAYERS, number)
                     os.makedirs(copied)
                     copy_tree(upper, os.path.join(copied, _UPPER))
-        if ctypes.CDLL(None, use_errno=True).unshare(_CLONE_NEWNS) != 0:
+        if _libc().unshare(_CLONE_NEWNS) != 0:
             raise _last_error("this system allows no private mounts")
         self._own = folder
         self._uncover()
@@ -154,7 +154,7 @@ class PrivateFiles:
 
         What lies on another cover goes with it. The kernel takes several milliseconds for each one.
         """
-        libc = ctypes.CDLL(None, use_errno=True)
+        libc = _libc()
         while self._covered:
             folder = self._covered.pop()
             if not any(folder != one and is_below(folder, one) for one in self._covered):
@@ -225,7 +225,7 @@ def _copy_status(source: str, target: str, status: os.stat_result) -> None:
 def _enter_namespace() -> bool:
     """Enter a mount namespace; True if that needed no user namespace."""
     user, group = os.geteuid(), os.getegid()
-    libc = ctypes.CDLL(None, use_errno=True)
+    libc = _libc()
     if libc.unshare(_CLONE_NEWNS) == 0:
         return True
     if libc.unshare(_CLONE_NEWNS | _CLONE_NEWUSER) != 0:
@@ -301,12 +301,17 @@ def _opened(paths: list[str]) -> Iterator[list[int]]:
             os.close(descriptor)
 
 
+@lru_cache(maxsize=1)  # ctypes makes a class for each
+def _libc() -> ctypes.CDLL:
+    return ctypes.CDLL(None, use_errno=True)
+
+
 def _path(descriptor: int) -> str:
     return f"/proc/self/fd/{descriptor}"
 
 
 def _mount(source: str, target: str, options: str | None, flags: int, kind: str = "") -> None:
-    libc = ctypes.CDLL(None, use_errno=True)
+    libc = _libc()
     data = options.encode() if options is not None else None
     if libc.mount(os.fsencode(source), os.fsencode(target), kind.encode() or None, flags, data) != 0:
         raise _last_error(f"{target} cannot be covered")
