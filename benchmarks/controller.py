@@ -34,7 +34,7 @@ from typing import Any
 
 from mutabot.campaign.campaign import Campaign, OutcomeWriter
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.evidence import Evidence, recorded, without_recording
+from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.snapshot import Snapshot, State
@@ -246,7 +246,7 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
 
 def _play(
     given: argparse.Namespace, request: Request, campaign: Campaign, mutants: list[Mutant],
-    told: dict[Any, Told], journal: Journal, dependencies: Dependencies, evidence: Evidence | None,
+    told: dict[Any, Told], journal: Journal, dependencies: Dependencies, evidence: CampaignEvidence | None,
 ) -> dict[str, Any]:  # fmt: skip
     many = copies(mutants, given.mutants)
     journal.set_plan(many, ())

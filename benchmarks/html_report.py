@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
+from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, Track, TrackKind, to_bytes
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
@@ -96,11 +96,11 @@ def recording(seed: int, fault: float | None) -> Recording:
     return Recording(
         times,
         {
-            "tool": Track("tool", Kind.POSE, tool),
-            "box": Track("box", Kind.POSE, box, size=(0.05, 0.05, 0.05)),
+            "tool": Track("tool", TrackKind.POSE, tool),
+            "box": Track("box", TrackKind.POSE, box, size=(0.05, 0.05, 0.05)),
         },
         (Block("table", (0.0, 0.0, -0.05), (1.6, 1.6, 0.1)),),
-        [Moment(1.0, "touch", "box, gripper"), Moment(LENGTH - 1, "part", "box, gripper")],
+        [RecordedMoment(1.0, "touch", "box, gripper"), RecordedMoment(LENGTH - 1, "part", "box, gripper")],
         calls,
         fault,
         None if fault is None else int(fault // 2),

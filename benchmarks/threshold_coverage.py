@@ -19,7 +19,7 @@ from statistics import NormalDist, median
 import numpy as np
 
 from mutabot.campaign.search import LadderSearch
-from mutabot.model.graded import Bracket, Seen, bracket_of
+from mutabot.model.graded import Bracket, MagnitudeResult, bracket_of
 from mutabot.results.ladders import median_between
 
 CAMPAIGNS = 2000
@@ -67,9 +67,9 @@ SHAPES = (
 )
 
 
-def look(size: float, threshold: float) -> Seen:
+def look(size: float, threshold: float) -> MagnitudeResult:
     """What the tests make of a magnitude in a round of this threshold."""
-    return Seen.NOTICED if size >= threshold else Seen.MISSED
+    return MagnitudeResult.NOTICED if size >= threshold else MagnitudeResult.MISSED
 
 
 def whole_ladder(thresholds: Sequence[float], seed: int) -> tuple[list[Bracket], int]:

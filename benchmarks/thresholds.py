@@ -36,14 +36,14 @@ from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
-from mutabot.model.graded import Bracket, Seen, bracket_of, seen
+from mutabot.model.graded import Bracket, MagnitudeResult, bracket_of, seen
 
 ROOT = Path(__file__).resolve().parent.parent
 #: of pick_and_place: relative moves in x, y and z
 MOVES = ("sorting.py:*:cell.arm.move_by#*:?:offset=*",)
 #: tolerances of its suite
 TOLERANCES = re.compile(r"^((?:\w+_WITHIN\w*|ANOTHER_\w+) = )([\d.]+)$", re.MULTILINE)
-Rows = dict[tuple[str, int], dict[float, Seen]]
+Rows = dict[tuple[str, int], dict[float, MagnitudeResult]]
 
 
 class Silent:
@@ -169,7 +169,7 @@ def published(given: argparse.Namespace, place: Path) -> bool:
             "box_end_position": (TARGETS[colours[one.round]], 0.02),
         }[occasion]
         wanted, after = getattr(spot, axis), one.example[1]
-        said = Seen.MISSED if is_within(wanted, after, limit) else Seen.NOTICED
+        said = MagnitudeResult.MISSED if is_within(wanted, after, limit) else MagnitudeResult.NOTICED
         if said is seen(one):
             right += 1
         else:
@@ -218,7 +218,7 @@ class _Unasserted(ast.NodeTransformer):
 
 
 def _steps(
-    rows: Mapping[tuple[str, int], Mapping[float, Seen]], ladders: list[str], round: int
+    rows: Mapping[tuple[str, int], Mapping[float, MagnitudeResult]], ladders: list[str], round: int
 ) -> dict[str, int]:
     """At which step of 1-2-5 each threshold lies: the number of tried magnitudes up to it."""
     sizes = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)

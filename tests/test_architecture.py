@@ -200,3 +200,13 @@ def test_the_source_speaks_of_rooms_and_modules_that_there_are() -> None:
             resolve_name(f"mutabot.{name}")
         except (ImportError, AttributeError):
             pytest.fail(f"{file.relative_to(SOURCE)} speaks of {name}, which is not there")
+
+
+def test_no_two_public_classes_share_a_name() -> None:
+    found: dict[str, set[str]] = {}
+    for file in sorted(SOURCE.parent.rglob("*.py")):
+        for node in ast.parse(file.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                found.setdefault(node.name, set()).add(str(file.relative_to(SOURCE.parent)))
+    assert found
+    assert {name: sorted(places) for name, places in found.items() if len(places) > 1} == {}

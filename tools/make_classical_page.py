@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from mutabot_source.operator import ClassicalOperator, Example
+from mutabot_source.operator import ClassicalOperator, TextExample
 from mutabot_source.registry import names, operator
 
 PAGE = Path(__file__).parents[1] / "docs" / "classical.md"
@@ -90,7 +90,7 @@ def _code(text: str) -> str:
     return f"`{' '.join(shown.split())}`"
 
 
-def _note(example: Example) -> str:
+def _note(example: TextExample) -> str:
     kinds = [kind.partition(":")[2] or kind for kind in example.kinds.values()]
     seen = f"of type {kinds[0]}" if kinds and example.after else ""
     others = [f"`{name}` has the type of {_listed(found)}" for name, found in example.variables.items()]

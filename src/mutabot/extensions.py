@@ -96,7 +96,7 @@ class Extension:
 
 
 @frozen
-class Part:
+class ExtensionPart:
     """One thing that a package brings.
 
     Attributes:
@@ -161,10 +161,10 @@ class Part:
 class _Told:
     """What the controller has told this process; None in the controller itself."""
 
-    parts: Mapping[str, Mapping[str, Part]] | None = None
+    parts: Mapping[str, Mapping[str, ExtensionPart]] | None = None
 
 
-def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, Part]:
+def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, ExtensionPart]:
     """All parts of a kind, by name; those of mutabot's own packages first, then by package and name.
 
     ``own``: the names of what the core itself has of this kind.
@@ -173,7 +173,7 @@ def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, Part]:
     """
     if _Told.parts is not None:
         return _Told.parts.get(kind, {})
-    found: dict[str, Part] = {}
+    found: dict[str, ExtensionPart] = {}
     for owner, extension in _declared():
         for name, declared in getattr(extension, kind).items():
             other = found[name].owner if name in found else GROUP if name in own else None
@@ -190,10 +190,10 @@ def versions() -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for _, extension in _declared() for name in extension.versions))
 
 
-def _part(name: str, declared: str | Described, owner: str) -> Part:
+def _part(name: str, declared: str | Described, owner: str) -> ExtensionPart:
     if isinstance(declared, str):
-        return Part(name, declared, owner)
-    return Part(name, declared.reference, owner, declared.help, declared.metavar)
+        return ExtensionPart(name, declared, owner)
+    return ExtensionPart(name, declared.reference, owner, declared.help, declared.metavar)
 
 
 def not_installed(name: str, kind: str) -> str | None:
@@ -212,7 +212,7 @@ def told_to_processes() -> dict[str, dict[str, str]]:
 def use(parts: Mapping[str, Mapping[str, str]]) -> None:
     """In a process of the tests: these parts, as the controller found them, are all there are."""
     _Told.parts = {
-        kind: {name: Part(name, reference, _package(reference)) for name, reference in told.items()}
+        kind: {name: ExtensionPart(name, reference, _package(reference)) for name, reference in told.items()}
         for kind, told in parts.items()
     }
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from types import TracebackType
 
-from mutabot_cell.models.noise import Noise
+from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.robotiq import STROKE
 from mutabot_cell.shown.feed import tell_of
 
@@ -109,7 +109,7 @@ class Cell:
         global _current  # noqa: PLW0603  (the cell that `world` reports on)
         if isinstance(seed, bool) or not isinstance(seed, int):
             raise BadArgument(f"Expected a whole number but got seed={seed!r}")
-        draws = Noise(seed, enabled=noise)
+        draws = SeededNoise(seed, enabled=noise)
         placed, numbers = _placed(scene or Scene(), draws)
         self.simulation = Simulation(placed, grip_force)
         self.arm = Arm(self.simulation)
@@ -164,7 +164,7 @@ class Cell:
             self.verify()
 
 
-def _placed(scene: Scene, draws: Noise) -> tuple[Scene, dict[str, int]]:
+def _placed(scene: Scene, draws: SeededNoise) -> tuple[Scene, dict[str, int]]:
     """The scene with boxes placed and coloured for this round, and each box's colour number."""
     boxes: list[Box] = []
     numbers: dict[str, int] = {}

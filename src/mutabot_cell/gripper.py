@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mutabot_cell.models import robotiq
-from mutabot_cell.models.noise import Noise
+from mutabot_cell.models.noise import SeededNoise
 
 from .errors import BadArgument
 from .simulation import TICK, Simulation
@@ -19,7 +19,7 @@ _LONGEST_TICKS = 600
 class Gripper:
     """Robotiq 2F-85. Position 0 is open (85 mm), 1 is closed."""
 
-    def __init__(self, simulation: Simulation, noise: Noise, force: float, speed: float) -> None:
+    def __init__(self, simulation: Simulation, noise: SeededNoise, force: float, speed: float) -> None:
         self._simulation = simulation
         self._noise = noise
         self._servo = simulation.model.actuator(_SERVO).id

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models import kinova
-from mutabot_cell.models.noise import Noise
+from mutabot_cell.models.noise import SeededNoise
 
 from .errors import SensorError
 from .geometry import Pose, Position, pose_of
@@ -26,7 +26,7 @@ class Sensors:
     """Readings of the cell. World frame unless said otherwise."""
 
     def __init__(
-        self, simulation: Simulation, noise: Noise, boxes: tuple[Box, ...], numbers: dict[str, int]
+        self, simulation: Simulation, noise: SeededNoise, boxes: tuple[Box, ...], numbers: dict[str, int]
     ) -> None:
         self._simulation = simulation
         self._noise = noise

@@ -20,7 +20,7 @@ from mutabot.model.events import BranchDied, Event
 
 from . import far
 from .link import News, shown
-from .unit import Answer, Ground, Misfit, Unit
+from .unit import Ground, Misfit, UnitAnswer, WorkUnit
 
 if TYPE_CHECKING:
     from .cluster import Cluster
@@ -53,9 +53,9 @@ class _Trial:
     task: Task
     faults: list[str] = field(default_factory=list)
     avoided: set[str] = field(default_factory=set)
-    answer: Answer | None = None
+    answer: UnitAnswer | None = None
     lines: list[Event] = field(default_factory=list)
-    unit: Unit | None = None
+    unit: WorkUnit | None = None
     until: float = 0.0
 
 
@@ -106,7 +106,7 @@ class Dispatch:
         while idle and (trial := self._due()) is not None:
             worker = next((one for one in idle if one not in trial.avoided), idle[0])
             idle.remove(worker)
-            trial.unit = Unit(self._ground, trial.task, token_hex(16))
+            trial.unit = WorkUnit(self._ground, trial.task, token_hex(16))
             trial.until = time.monotonic() + longest(trial.task)
             number = self._cluster.link.ask(worker, far.run_unit, trial.unit.data())
             self._running[number] = worker, trial
@@ -151,7 +151,7 @@ class Dispatch:
             self._lost(trial, worker, f"its worker gave no answer: {news.why}")
             return
         try:
-            answer, lines = Answer.of(news.data, trial.unit)
+            answer, lines = UnitAnswer.of(news.data, trial.unit)
         except Misfit as error:
             self._misfit(trial, worker, shown(str(error)))
             return
@@ -169,7 +169,7 @@ class Dispatch:
         lost = f"the answer of its worker does not fit: {why} ({worker})"
         self._settled.append(Result(trial.task, lost=lost))
 
-    def _settle(self, trial: _Trial, answer: Answer, lines: list[Event]) -> None:
+    def _settle(self, trial: _Trial, answer: UnitAnswer, lines: list[Event]) -> None:
         self._cluster.done += 1
         task = trial.task
         overdue = {line.mutant for line in lines if isinstance(line, BranchDied) and line.overdue}

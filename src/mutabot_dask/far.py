@@ -34,7 +34,7 @@ from mutabot.execution.workers import Workers
 from mutabot.model.events import Event
 
 from .environment import apply
-from .unit import Answer, Ground, Introduction, Misfit, Unit
+from .unit import Ground, Introduction, Misfit, UnitAnswer, WorkUnit
 
 #: signals by which systems end processes: for want of memory, or since somebody else needs the machine
 _BY_OTHERS = {-signal.SIGKILL, -signal.SIGTERM}
@@ -50,7 +50,7 @@ class Unwanted(Exception):  # noqa: N818  # it is no error
 
 
 @dataclass(slots=True)
-class Session:
+class WorkerSession:
     """What a worker keeps from one unit to the next.
 
     Args:
@@ -68,7 +68,7 @@ class Session:
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _used: float = 0.0
 
-    def answer(self, unit: Unit, look: Callable[[], None]) -> bytes:
+    def answer(self, unit: WorkUnit, look: Callable[[], None]) -> bytes:
         """Run a unit. ``look`` is called several times a second, and raises Unwanted if it is to end."""
         here, there = str(self.root), self.ground.root
         with self._lock:
@@ -76,21 +76,21 @@ class Session:
                 answer = self._answered(unit, look)
             except Unwanted:
                 self._close()
-                answer = Answer(fault="the worker was asked to stop")
+                answer = UnitAnswer(fault="the worker was asked to stop")
             except (OSError, JournalError) as error:
                 self._close()
-                answer = Answer(fault=str(error), is_unfit=True)
+                answer = UnitAnswer(fault=str(error), is_unfit=True)
                 here = there  # the folders that it names are this machine's
             self._used = time.monotonic()
         return self._fitting(replace(answer, ticket=unit.ticket).data(here, there), unit)
 
-    def _fitting(self, data: bytes, unit: Unit) -> bytes:
+    def _fitting(self, data: bytes, unit: WorkUnit) -> bytes:
         """The answer if the controller will take it: what processes report is in the hands of mutants."""
         try:
-            Answer.of(data, unit)
+            UnitAnswer.of(data, unit)
         except Misfit as error:
             lost = f"what its process reported cannot be used: {error}"
-            return Answer(lost=lost, ticket=unit.ticket).data("/", "/")
+            return UnitAnswer(lost=lost, ticket=unit.ticket).data("/", "/")
         return data
 
     def close(self) -> None:
@@ -112,14 +112,14 @@ class Session:
         """The project's folder here."""
         return self.place / self.ground.inner
 
-    def _answered(self, unit: Unit, look: Callable[[], None]) -> Answer:
+    def _answered(self, unit: WorkUnit, look: Callable[[], None]) -> UnitAnswer:
         apply(self.ground.environment, (str(self.root / path) for path in self.ground.paths))
         job = replace(unit.task.job, root=str(self.root))
         task = replace(unit.task, job=job)
         lines, result = self._run(task, look)
         fault = self._fault(result)
         if fault is not None:
-            return Answer.of_result(lines, result, fault)
+            return UnitAnswer.of_result(lines, result, fault)
         self.proven.update(end.test for end in result.ends if end.outcome != "failed")
         unproven = [
             end.test for end in result.ends if end.outcome == "failed" and end.test not in self.proven
@@ -127,8 +127,8 @@ class Session:
         if unproven:
             unfit = self._why_unfit(task, unproven[0], look)
             if unfit is not None:
-                return replace(Answer.of_result(lines, result, unfit), is_unfit=True)
-        return Answer.of_result(lines, result)
+                return replace(UnitAnswer.of_result(lines, result, unfit), is_unfit=True)
+        return UnitAnswer.of_result(lines, result)
 
     def _run(self, task: Task, look: Callable[[], None]) -> tuple[list[Event], Result]:
         workers = self._opened()
@@ -289,7 +289,7 @@ _PERIOD = 20.0
 _YOUNG = 60.0
 #: the answer of functions that have nothing to say
 TAKEN = b"{}"
-_sessions: dict[str, Session] = {}
+_sessions: dict[str, WorkerSession] = {}
 _stores: dict[Path, Store] = {}
 
 
@@ -311,12 +311,12 @@ def receive(digest: str, index: int, count: int, part: bytes) -> bytes:
 
 def run_unit(data: bytes) -> bytes:
     """Run a unit."""
-    unit = Unit.of(data)
+    unit = WorkUnit.of(data)
     digest = unit.ground.digest
     session = _sessions.get(digest)
     if session is None or session.ground != unit.ground:
         leave("")
-        session = _sessions[digest] = Session(_store().place(digest), unit.ground)
+        session = _sessions[digest] = WorkerSession(_store().place(digest), unit.ground)
         _watch(session)
     return session.answer(unit, _look_of(_worker()))
 
@@ -369,7 +369,7 @@ def _look_of(worker: Any) -> Any:
     return look
 
 
-def _watch(session: Session) -> None:
+def _watch(session: WorkerSession) -> None:
     """Let a session that has become idle keep no processes."""
 
     def watch() -> None:

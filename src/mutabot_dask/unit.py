@@ -149,7 +149,7 @@ class Ground:
 
 
 @dataclass(frozen=True, slots=True)
-class Unit:
+class WorkUnit:
     """One task, on its ground. The key of the task stays with the controller.
 
     ``ticket`` is what the answer must bear: who was not given the unit does not know it.
@@ -164,13 +164,13 @@ class Unit:
         return _bytes(replace(self, task=replace(self.task, key=None)))
 
     @classmethod
-    def of(cls, data: bytes) -> Unit:
+    def of(cls, data: bytes) -> WorkUnit:
         """The unit in such bytes."""
         return from_data(cls, json.loads(data))
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class UnitAnswer:
     """What became of a unit.
 
     Attributes:
@@ -194,7 +194,7 @@ class Answer:
     ticket: str = ""
 
     @classmethod
-    def of_result(cls, lines: Iterable[Event], result: Result, fault: str | None = None) -> Answer:
+    def of_result(cls, lines: Iterable[Event], result: Result, fault: str | None = None) -> UnitAnswer:
         """The answer with what a worker process told and came to."""
         return cls(
             tuple(map(event_to_data, lines)), result.exit_code, result.overdue,
@@ -206,7 +206,7 @@ class Answer:
         return _bytes(self).replace(_in_json(here), _in_json(there))
 
     @classmethod
-    def of(cls, data: bytes, unit: Unit) -> tuple[Answer, list[Event]]:
+    def of(cls, data: bytes, unit: WorkUnit) -> tuple[UnitAnswer, list[Event]]:
         """The answer in such bytes, and its events. Raises Misfit if it is none to this unit."""
         answer = checked(cls, read(data))
         if answer.ticket != unit.ticket:

@@ -25,7 +25,7 @@ from mutabot.report.terminal.progress import Pace
 from mutabot.report.texts import legible
 
 from .pages import Pages
-from .server import Feed, Server
+from .server import LiveFeed, Server
 
 #: seconds that pages get for what was found last, when the command ends at once; and to be loaded again
 _FAREWELL, _AGAIN = 1.5, 3.0
@@ -47,7 +47,7 @@ class Live:
 
     def __init__(self, request: Request, port: int, tell: Callable[[str], None]) -> None:
         self._request, self._tell = request, tell
-        self._feed = Feed()
+        self._feed = LiveFeed()
         self._told = _Told(self._feed)
         pages = Pages(request.journal_path, request.root.resolve().name, lambda: self._told.steps)
         self._told.pages = pages
@@ -117,7 +117,7 @@ class _Told:
 
     pages: Pages
 
-    def __init__(self, feed: Feed) -> None:
+    def __init__(self, feed: LiveFeed) -> None:
         self._feed = feed
         self._lock = threading.Lock()
         self._stage, self._line, self._pace = "", "", Pace()

@@ -39,7 +39,7 @@ _MOST = 32
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class LiveEvent:
     """Something that browsers are told.
 
     Attributes:
@@ -53,14 +53,14 @@ class Event:
     data: Any
 
 
-class Feed:
+class LiveFeed:
     """Events of one campaign; any thread may add and read."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._number = 0
-        self._state: Event | None = None
-        self._notes: deque[Event] = deque(maxlen=_NOTES)
+        self._state: LiveEvent | None = None
+        self._notes: deque[LiveEvent] = deque(maxlen=_NOTES)
         self._readers = 0
         self._left = float("-inf")
         self._is_closed = False
@@ -83,7 +83,7 @@ class Feed:
             self._is_closed = True
             self._changed.notify_all()
 
-    def after(self, number: int, seconds: float) -> list[Event]:
+    def after(self, number: int, seconds: float) -> list[LiveEvent]:
         """What came after an event, at once or within so many seconds. A number of no event is the first."""
         with self._changed:
             if number > self._number:  # it is from another feed
@@ -114,16 +114,16 @@ class Feed:
         with self._changed:
             return self._readers > 0 or time.monotonic() - self._left < seconds
 
-    def _next(self, kind: str, data: Any) -> Event:
+    def _next(self, kind: str, data: Any) -> LiveEvent:
         self._number += 1
-        return Event(self._number, kind, data)
+        return LiveEvent(self._number, kind, data)
 
-    def _since(self, number: int) -> list[Event]:
+    def _since(self, number: int) -> list[LiveEvent]:
         last = [self._state] if self._state is not None else []
         return sorted((one for one in [*self._notes, *last] if one.number > number), key=_number)
 
 
-def _number(event: Event) -> int:
+def _number(event: LiveEvent) -> int:
     return event.number
 
 
@@ -157,7 +157,7 @@ class Server:
         address: where a browser finds it. Who knows it may see the report, and give commands.
     """
 
-    def __init__(self, pages: Pages, feed: Feed, commands: Commands, port: int = 0) -> None:
+    def __init__(self, pages: Pages, feed: LiveFeed, commands: Commands, port: int = 0) -> None:
         token = secrets.token_urlsafe(24)
         try:
             self._server = _Server(port, token, pages, feed, commands)
@@ -185,7 +185,7 @@ class _Server(ThreadingHTTPServer):
     block_on_close = False  # a browser that does not read holds up nobody
     request_queue_size = MOST
 
-    def __init__(self, port: int, token: str, pages: Pages, feed: Feed, commands: Commands) -> None:
+    def __init__(self, port: int, token: str, pages: Pages, feed: LiveFeed, commands: Commands) -> None:
         self.token, self.pages, self.feed, self.commands = token.encode(), pages, feed, commands
         self._places = threading.BoundedSemaphore(MOST)
         super().__init__((HOST, port), _Handler)
@@ -352,7 +352,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Nothing: the terminal belongs to the campaign, and the address to nobody else."""
 
 
-def _bytes(event: Event) -> bytes:
+def _bytes(event: LiveEvent) -> bytes:
     data = json.dumps(event.data, ensure_ascii=False, allow_nan=False)
     return f"id: {event.number}\nevent: {event.kind}\ndata: {data}\n\n".encode("utf-8", "replace")
 

@@ -17,8 +17,8 @@ import rerun
 from rerun import blueprint as layout
 
 from mutabot.errors import UsageError
-from mutabot.evidence.recording import Block, Kind, Recording
-from mutabot.evidence.tracks import Path as Way
+from mutabot.evidence.recording import Block, Recording, TrackKind
+from mutabot.evidence.tracks import TrackPath as Way
 
 from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
 from .sights import has_screen
@@ -66,7 +66,7 @@ class _Side:
     def _log_thing(self, name: str, way: Way) -> None:
         path = self._path("things", name)
         turned: dict[str, Any] = {}
-        if way.track.kind is Kind.POSE:
+        if way.track.kind is TrackKind.POSE:
             turned["quaternion"] = [(*row[4:7], row[3]) for row in way.rows]  # x, y, z, w
         moved = rerun.Transform3D.columns(translation=way.points, **turned)
         self._stream.send_columns(path, [self._times(way.when)], moved)
@@ -78,7 +78,7 @@ class _Side:
             shape = rerun.Boxes3D(
                 sizes=[way.track.size], colors=self._colour, labels=label, show_labels=False
             )
-        elif way.track.kind is Kind.POSE:
+        elif way.track.kind is TrackKind.POSE:
             self._stream.log(path, rerun.TransformAxes3D(_AXIS), static=True)
         self._stream.log(path, shape, static=True)
         line = rerun.LineStrips3D([way.points], radii=_LINE, colors=self._colour)

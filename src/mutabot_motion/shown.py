@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told
-from mutabot.evidence.tracks import Path, paths_of
+from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, TrackKind
+from mutabot.evidence.tracks import TrackPath, paths_of
 
 #: of both sides: red, green and blue that people with any kind of sight tell apart
 COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}
@@ -100,14 +100,14 @@ def end_of(recording: Recording) -> float:
     return max((*recording.times[-1:], *calls, *moments), default=0.0)
 
 
-def things_in(recording: Recording) -> list[tuple[str, Path]]:
+def things_in(recording: Recording) -> list[tuple[str, TrackPath]]:
     """What moves in space, with its name."""
-    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is not Kind.VALUE]
+    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is not TrackKind.VALUE]
 
 
-def values_in(recording: Recording) -> list[tuple[str, Path]]:
+def values_in(recording: Recording) -> list[tuple[str, TrackPath]]:
     """What has a value over time, with its name."""
-    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is Kind.VALUE]
+    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is TrackKind.VALUE]
 
 
 _TOUCH = {"touch": "{} touch", "part": "{} no longer touch"}
@@ -122,7 +122,7 @@ class Weight(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class ShownEvent:
     """One line.
 
     Attributes:
@@ -139,16 +139,16 @@ class Event:
     line: int = 0
 
 
-def events(shown: Shown, recording: Recording) -> list[Event]:
+def events(shown: Shown, recording: Recording) -> list[ShownEvent]:
     """All of one side, in the order of their times; calls without a time are left out."""
     found = [_call(one) for one in recording.calls if one.began is not None]
-    found += [Event(one.time, _moment(one)) for one in recording.moments]
+    found += [ShownEvent(one.time, _moment(one)) for one in recording.moments]
     if recording.fault is not None:
-        found.append(Event(recording.fault, f"FAULT: {shown.what}", Weight.FAULT))
+        found.append(ShownEvent(recording.fault, f"FAULT: {shown.what}", Weight.FAULT))
     return sorted(found, key=lambda one: one.time)
 
 
-def _call(call: Told) -> Event:
+def _call(call: Told) -> ShownEvent:
     assert call.began is not None
     file, _, line = call.place.rpartition(":")
     name = call.pattern or call.operation.rpartition(":")[2]
@@ -156,7 +156,7 @@ def _call(call: Told) -> Event:
     written = {part: value for part, value in call.written.items() if value != 0} or call.written
     said = " ".join(part for part in (name, _values(written), read) if part)
     weight = Weight.COMMAND if call.written or not call.read else Weight.READING
-    return Event(call.began, said, weight, file, int(line) if line.isdigit() else 0)
+    return ShownEvent(call.began, said, weight, file, int(line) if line.isdigit() else 0)
 
 
 def _values(values: Mapping[str, Any]) -> str:
@@ -167,5 +167,5 @@ def _number(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-def _moment(moment: Moment) -> str:
+def _moment(moment: RecordedMoment) -> str:
     return _TOUCH.get(moment.what, "{}").format(moment.text.replace(", ", " and "))

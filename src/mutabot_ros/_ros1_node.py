@@ -111,7 +111,7 @@ def _later(seconds: float, action: Callable[[], object]) -> None:
     threading.Thread(target=wait, daemon=True).start()
 
 
-class Clock:
+class NodeClock:
     """What a node takes for the time, which may be moved."""
 
     def __init__(self) -> None:
@@ -135,4 +135,4 @@ class Clock:
         self._moved = 0.0
 
 
-clock = Clock()
+clock = NodeClock()

@@ -46,7 +46,7 @@ class Scope:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class ScopedNode:
     """A node and its scope."""
 
     node: ast.expr | ast.stmt
@@ -63,8 +63,8 @@ class Index:
         declared: names declared ``global`` or ``nonlocal``, by function.
     """
 
-    expressions: dict[Extent, Found | None] = field(default_factory=dict)
-    statements: dict[Start, Found] = field(default_factory=dict)
+    expressions: dict[Extent, ScopedNode | None] = field(default_factory=dict)
+    statements: dict[Start, ScopedNode] = field(default_factory=dict)
     declared: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     @classmethod
@@ -74,7 +74,7 @@ class Index:
         index._walk_all(tree.body, Scope())
         return index
 
-    def expression(self, extent: Extent) -> Found | None:
+    def expression(self, extent: Extent) -> ScopedNode | None:
         """The expression of exactly this extent, if it is read and there is only one."""
         found = self.expressions.get(extent)
         if found is None or isinstance(getattr(found.node, "ctx", None), ast.Store | ast.Del):
@@ -103,12 +103,12 @@ class Index:
 
     def _note(self, node: ast.AST, scope: Scope) -> None:
         if isinstance(node, ast.stmt):
-            self.statements[node.lineno, node.col_offset] = Found(node, scope)
+            self.statements[node.lineno, node.col_offset] = ScopedNode(node, scope)
             if isinstance(node, ast.Global | ast.Nonlocal):
                 self.declared[scope.name] = (*self.declared.get(scope.name, ()), *node.names)
         elif isinstance(node, ast.expr):
             extent = extent_of(node)
-            self.expressions[extent] = None if extent in self.expressions else Found(node, scope)
+            self.expressions[extent] = None if extent in self.expressions else ScopedNode(node, scope)
 
 
 def is_docstring(node: ast.AST) -> bool:

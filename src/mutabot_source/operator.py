@@ -65,7 +65,7 @@ class Surroundings:
 
 
 @dataclass(frozen=True, slots=True)
-class Example:
+class TextExample:
     """One worked example: a program text, and all texts that the operator makes of it.
 
     Attributes:
@@ -97,7 +97,7 @@ class ClassicalOperator(Rule):
     """
 
     family: ClassVar[str] = CLASSICAL
-    examples: ClassVar[tuple[Example, ...]] = ()
+    examples: ClassVar[tuple[TextExample, ...]] = ()
     asks_variables: ClassVar[bool] = False
 
     @abstractmethod

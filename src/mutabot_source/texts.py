@@ -21,7 +21,7 @@ from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPla
 
 from . import registry
 from .extension import CLASSICAL
-from .index import Found, Index
+from .index import Index, ScopedNode
 from .nodes import Extents, is_variable, shortened, shown, surroundings, template
 from .operator import ClassicalOperator, Draft
 
@@ -72,7 +72,7 @@ def find_places(
 class _Seed:
     """A place in the making."""
 
-    found: Found
+    found: ScopedNode
     extent: Extent
     variable: bool
     kept: list[Extent] = field(default_factory=list)
@@ -146,7 +146,7 @@ class _Finder(cst.CSTVisitor):
     def _parent(self, node: cst.CSTNode) -> cst.CSTNode | None:
         return self.get_metadata(ParentNodeProvider, node, None)
 
-    def _found(self, node: cst.CSTNode) -> Found | None:
+    def _found(self, node: cst.CSTNode) -> ScopedNode | None:
         """The same in ``ast``; None if it is not evaluated."""
         extent = self.extents.of(node)
         if isinstance(node, cst.BaseExpression):

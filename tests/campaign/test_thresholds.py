@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
-from mutabot.model.graded import Bracket, Seen, bracket_of, seen
+from mutabot.model.graded import Bracket, MagnitudeResult, bracket_of, seen
 from tests.campaign.project import Quiet, request_for, write_project
 
 ROBOT = """
@@ -76,7 +76,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Bracket]]:
     request = request_for(folder, families=("graded",), rounds=1)
     with Journal.open(run_campaign(request, Quiet())) as journal:
         mutants = {one.id: one for one in journal.mutants()}
-        rows: dict[tuple[str, int], dict[float, Seen]] = {}
+        rows: dict[tuple[str, int], dict[float, MagnitudeResult]] = {}
         for one in journal.outcomes():
             mutant = mutants[one.mutant]
             assert mutant.magnitude is not None

@@ -6,7 +6,7 @@ import pytest
 
 from mutabot.evidence.recording import Recording, Told
 from mutabot.evidence.story import diverged
-from mutabot.evidence.tracks import Seen, noise_between
+from mutabot.evidence.tracks import RecordedPaths, noise_between
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
 
 #: up from the shelf, over to the table, down, and away
@@ -103,10 +103,10 @@ def test_an_approach_that_is_closer_is_told() -> None:
 
 def test_what_equal_runs_differ_by_is_no_difference() -> None:
     shaken = [(x, y + 0.004, z) for x, y, z in CARRIED]
-    noise = noise_between(Seen(recorded(CARRIED)), Seen(recorded(shaken)))
+    noise = noise_between(RecordedPaths(recorded(CARRIED)), RecordedPaths(recorded(shaken)))
     other = [(x, y - 0.006, z) for x, y, z in CARRIED]
     assert apart(recorded(CARRIED), recorded(other)) is not None
-    assert diverged("t", Seen(recorded(CARRIED)), Seen(recorded(other)), noise) is None
+    assert diverged("t", RecordedPaths(recorded(CARRIED)), RecordedPaths(recorded(other)), noise) is None
 
 
 def test_rounding_is_no_difference_of_a_call() -> None:

@@ -11,11 +11,11 @@ from hypothesis import strategies as some
 
 from mutabot.evidence.recording import (
     Block,
-    Kind,
-    Moment,
+    RecordedMoment,
     Recording,
     Told,
     Track,
+    TrackKind,
     bytes_of,
     from_bytes,
     to_bytes,
@@ -32,7 +32,7 @@ def recordings(draw: some.DrawFn) -> Recording:
     count = draw(some.integers(0, 5))
     tracks = {}
     for name in draw(some.lists(NAMES, max_size=3, unique=True)):
-        kind = draw(some.sampled_from(Kind))
+        kind = draw(some.sampled_from(TrackKind))
         values = array(
             "f", draw(some.lists(NUMBERS, min_size=count * kind.width, max_size=count * kind.width))
         )
@@ -60,7 +60,7 @@ def recordings(draw: some.DrawFn) -> Recording:
                 draw(some.none() | some.just((1.0, 0.0, 0.0, 1.0))),
             ),
         ),
-        draw(some.lists(some.builds(Moment, some.floats(0, 10), NAMES, NAMES), max_size=2)),
+        draw(some.lists(some.builds(RecordedMoment, some.floats(0, 10), NAMES, NAMES), max_size=2)),
         draw(some.lists(told, max_size=2)),
         draw(some.none() | some.floats(0, 10)),
         draw(some.none() | some.integers(0, 9)),

@@ -8,7 +8,7 @@ from mutabot.evidence import tape as tapes
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.recording import Recording, Told
 from mutabot.evidence.story import diverged
-from mutabot.evidence.tracks import Seen
+from mutabot.evidence.tracks import RecordedPaths
 from mutabot.model.outcome import Diverged
 
 Place = tuple[float, float, float]
@@ -52,7 +52,7 @@ def recorded(
 
 def apart(original: Recording, mutant: Recording, *, is_cut: bool = False) -> Diverged | None:
     """How the second differs from the first."""
-    return diverged("test_it", Seen(original), Seen(mutant), is_cut=is_cut)
+    return diverged("test_it", RecordedPaths(original), RecordedPaths(mutant), is_cut=is_cut)
 
 
 def story(original: Recording, mutant: Recording, *, is_cut: bool = False) -> str:

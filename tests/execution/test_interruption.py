@@ -137,8 +137,8 @@ MOMENTS = {
     "the pool has been made": (waiting.TokenPool, "__init__"),
     "a worker's folder has been made": (workers.Home, "make"),
     "a worker has been started": (workers.Spawned, "__init__"),
-    "a fork server has been started": (workers.ForkServer, "__init__"),
-    "a copy has been made": (workers.ForkServer, "copy"),
+    "a fork server has been started": (workers.ForkServerProcess, "__init__"),
+    "a copy has been made": (workers.ForkServerProcess, "copy"),
     "a worker is being looked after for the last time": (workers._Worker, "finish"),
     "the journal has been opened": (Journal, "__init__"),
 }

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from mutabot.config.vocabulary import load
-from mutabot.init.messages import Place, entries, meaning
+from mutabot.init.messages import MessagePlace, entries, meaning
 from mutabot.init.observe import merged
 from mutabot.init.text import entry_text, vocabulary_text
 from mutabot.model.operation import Form
-from mutabot.model.watched import Part, Seen, Use, Values
+from mutabot.model.watched import Use, Values, WatchedCalls, WatchedPart
 from mutabot.runtime.watching.values import look, type_of
 
 HEADER = "std_msgs/Header"
@@ -20,13 +20,13 @@ POSE, POINT, ROTATION = "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_m
 VECTOR, TWIST = "geometry_msgs/Vector3", "geometry_msgs/Twist"
 
 
-def part(path: str, *within: tuple[str, str], kind: str = "float64", values: Any = (0.5,)) -> Part:
+def part(path: str, *within: tuple[str, str], kind: str = "float64", values: Any = (0.5,)) -> WatchedPart:
     length = len(values[0]) if isinstance(values[0], list) else None
-    return Part(path, type=kind, within=within, values=list(values), length=length, count=1)
+    return WatchedPart(path, type=kind, within=within, values=list(values), length=length, count=1)
 
 
-def raw_part(path: str, within: list[tuple[str, str]], kind: str, values: list[Any]) -> Part:
-    return Part(path, type=kind, within=tuple(within), values=values, count=1)
+def raw_part(path: str, within: list[tuple[str, str]], kind: str, values: list[Any]) -> WatchedPart:
+    return WatchedPart(path, type=kind, within=tuple(within), values=values, count=1)
 
 
 def raw(form: str, name: str, **more: Any) -> Use:
@@ -34,16 +34,16 @@ def raw(form: str, name: str, **more: Any) -> Use:
     return Use(Form(form), name, **{**usual, **more})
 
 
-def passed(kind: str, *parts: Part) -> Values:
+def passed(kind: str, *parts: WatchedPart) -> Values:
     return Values(1, kind, {part.path: part for part in parts})
 
 
 def uses(several: list[Use]) -> list[Use]:
-    return merged(Seen(uses=several)).uses
+    return merged(WatchedCalls(uses=several)).uses
 
 
-def place(form: Form, name: str, *, is_written: bool = False) -> Place:
-    return Place.of(raw(form, name), Values(), is_written=is_written)
+def place(form: Form, name: str, *, is_written: bool = False) -> MessagePlace:
+    return MessagePlace.of(raw(form, name), Values(), is_written=is_written)
 
 
 MOVED = {"kind": "translation", "axis": "y", "unit": "m"}
@@ -76,7 +76,7 @@ SPEED = {"kind": "speed", "axis": "y", "unit": "m/s"}
         ),
     ],
 )
-def test_what_is_sent_means_what_ros_says(name: str, sent: Part, table: dict[str, Any]) -> None:
+def test_what_is_sent_means_what_ros_says(name: str, sent: WatchedPart, table: dict[str, Any]) -> None:
     (guess,) = meaning(sent, place(Form.PUBLISH, name, is_written=True)).values()
     assert guess.table == table
     assert guess.is_sure
@@ -106,7 +106,7 @@ def test_what_is_sent_means_what_ros_says(name: str, sent: Part, table: dict[str
         ),
     ],
 )
-def test_what_is_read_means_what_ros_says(read: Part, table: dict[str, Any]) -> None:
+def test_what_is_read_means_what_ros_says(read: WatchedPart, table: dict[str, Any]) -> None:
     (guess,) = meaning(read, place(Form.RECEIVE, "/it")).values()
     assert guess.table == table
 
@@ -122,7 +122,7 @@ def test_what_is_read_means_what_ros_says(read: Part, table: dict[str, Any]) -> 
         part("data", ("std_msgs/Int32", "data"), values=(9,)),
     ],
 )
-def test_nothing_is_made_up_where_nothing_tells(read: Part) -> None:
+def test_nothing_is_made_up_where_nothing_tells(read: WatchedPart) -> None:
     assert meaning(read, place(Form.RECEIVE, "/it")) == {}
 
 

@@ -16,7 +16,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError
 from mutabot.init import propose
-from mutabot.init.guess import Setting, guess_argument, guess_reading
+from mutabot.init.guess import NameContext, guess_argument, guess_reading
 from mutabot.init.words import words_of
 from mutabot.model import Kind, Mode
 
@@ -612,7 +612,7 @@ MOVED = {"kind": "translation", "unit": "m"}
 def test_the_verb_decides_what_an_argument_is(
     name: str, called: str, doc: str, expected: dict[str, Any]
 ) -> None:
-    guess = guess_argument(name, Setting(words_of(called), doc=doc, names=frozenset({name})))
+    guess = guess_argument(name, NameContext(words_of(called), doc=doc, names=frozenset({name})))
     expected = {**expected, "unit": "kg"} if expected.get("kind") == "mass" else expected
     assert guess.table == expected
     assert guess.is_sure == (bool(expected) and expected["kind"] != "mass")
@@ -628,31 +628,31 @@ def test_the_verb_decides_what_an_argument_is(
     ],
 )
 def test_what_nothing_tells_is_asked(name: str, called: str, values: tuple[Any, ...], asked: str) -> None:
-    guess = guess_argument(name, Setting(words_of(called), values=values))
+    guess = guess_argument(name, NameContext(words_of(called), values=values))
     assert guess.questions[0].startswith(asked)
 
 
 @pytest.mark.parametrize(
     ("name", "setting", "expected"),
     [
-        ("z", Setting(doc="In m."), {"kind": "position", "axis": "z", "unit": "m"}),
-        ("roll", Setting(doc="Degrees."), {"kind": "orientation", "axis": "x", "unit": "deg"}),
-        ("j1", Setting(values=(0.5,)), {"kind": "angle", "axis": "j1", "unit": "rad"}),
-        ("read_distance", Setting(values=(0.5,)), {"kind": "distance", "unit": "m"}),
-        ("height_mm", Setting(("read", "height")), {"kind": "distance", "unit": "mm"}),
-        ("is_closed", Setting(owner=("gripper",)), {"kind": "flag"}),
+        ("z", NameContext(doc="In m."), {"kind": "position", "axis": "z", "unit": "m"}),
+        ("roll", NameContext(doc="Degrees."), {"kind": "orientation", "axis": "x", "unit": "deg"}),
+        ("j1", NameContext(values=(0.5,)), {"kind": "angle", "axis": "j1", "unit": "rad"}),
+        ("read_distance", NameContext(values=(0.5,)), {"kind": "distance", "unit": "m"}),
+        ("height_mm", NameContext(("read", "height")), {"kind": "distance", "unit": "mm"}),
+        ("is_closed", NameContext(owner=("gripper",)), {"kind": "flag"}),
         (
             "colour",
-            Setting(annotation="Literal['red', 'blue']"),
+            NameContext(annotation="Literal['red', 'blue']"),
             {"kind": "label", "values": ["red", "blue"]},
         ),
-        ("name", Setting(("log",)), {}),
-        ("code", Setting(("get", "position"), values=(0,)), {}),
-        ("y", Setting(("get", "y"), ("xbox", "controller"), values=(0.5,)), {}),
-        ("is_error", Setting(("is", "error"), ("modbus", "response"), values=(False,)), {}),
+        ("name", NameContext(("log",)), {}),
+        ("code", NameContext(("get", "position"), values=(0,)), {}),
+        ("y", NameContext(("get", "y"), ("xbox", "controller"), values=(0.5,)), {}),
+        ("is_error", NameContext(("is", "error"), ("modbus", "response"), values=(False,)), {}),
     ],
 )
-def test_a_reading_is_what_its_name_says(name: str, setting: Setting, expected: dict[str, Any]) -> None:
+def test_a_reading_is_what_its_name_says(name: str, setting: NameContext, expected: dict[str, Any]) -> None:
     assert guess_reading(name, setting).table == expected
 
 
@@ -777,14 +777,14 @@ def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: P
 def test_a_range_in_a_docstring_makes_a_speed_a_ratio(
     name: str, called: str, doc: str, expected: list[float]
 ) -> None:
-    table = guess_argument(name, Setting(words_of(called), doc=doc)).table
+    table = guess_argument(name, NameContext(words_of(called), doc=doc)).table
     unit = "percent" if expected[1] > 1 else "fraction"
     assert table == {"kind": "ratio", "unit": unit, "range": expected}
 
 
 def test_the_unit_is_that_of_the_arguments_own_line() -> None:
     doc = ":param x: cartesian position x, (unit: mm)\n:param speed: move speed (mm/s, rad/s)\n"
-    setting = Setting(words_of("set_position"), doc=doc)
+    setting = NameContext(words_of("set_position"), doc=doc)
     assert guess_argument("x", setting).table["unit"] == "mm"
     assert guess_argument("speed", setting).questions == ["the unit: mm/s, rad/s?"]
 

@@ -12,7 +12,7 @@ from mutabot.campaign.check import check
 from mutabot.config.vocabulary import load
 from mutabot.init import propose
 from mutabot.model import Kind
-from mutabot.model.watched import Call
+from mutabot.model.watched import WatchedCallable
 from mutabot.runtime.watching.callee import any_method
 from mutabot.runtime.watching.watch import _command, _Seen
 from tests.campaign.project import Quiet, request_for
@@ -112,7 +112,7 @@ def test_check_accepts_commands_that_nodes_tell_apart(project: Path) -> None:
 
 
 def test_more_names_than_a_list_of_commands_has_are_given_up() -> None:
-    seen = _Seen(any_method("send"), Call("*:*.send"), is_coroutine=False)
+    seen = _Seen(any_method("send"), WatchedCallable("*:*.send"), is_coroutine=False)
     for number in range(30):
         _command(seen, None, {"channel": number, "value": 1})
     assert seen.call.told_by == ""

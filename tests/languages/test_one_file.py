@@ -11,7 +11,7 @@ from tests.package_copy import copied, mutants, python
 
 #: of programs whose lines are a word and a number, and of the interpreter below
 STEPS = """
-    from mutabot.languages.front_end import Name, Position
+    from mutabot.languages.front_end import SiteName, SourcePosition
 
 
     class Steps:
@@ -22,7 +22,7 @@ STEPS = """
             for number, line in enumerate(source.splitlines(), start=1):
                 word = line.split()[0]
                 counts[word] = counts.get(word, 0) + 1
-                names[number, 0, number, len(line)] = Name(word, counts[word])
+                names[number, 0, number, len(line)] = SiteName(word, counts[word])
             return names
 
         def file_of(self, frame):
@@ -30,7 +30,7 @@ STEPS = """
 
         def position_of(self, frame):
             number, line = frame.f_locals["number"], frame.f_locals["line"]
-            return Position((number, 0, number, len(line)), "steps")
+            return SourcePosition((number, 0, number, len(line)), "steps")
 
 
     FRONT_END = Steps()

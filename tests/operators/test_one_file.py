@@ -22,7 +22,7 @@ TOO_MUCH = """
     from mutabot.model import Kind, Operation
     from mutabot.operators.command import CommandOperator
     from mutabot.operators.examples import changed, writing
-    from mutabot.operators.magnitudes import Ladder
+    from mutabot.operators.magnitudes import Magnitudes
     from mutabot.operators.operator import Example, Subject
     from mutabot.operators.value import ValueOperator
 
@@ -37,7 +37,7 @@ TOO_MUCH = """
         examples: ClassVar = (changed(_MOVE, 1.0, 1.5, size=("", 0.5, None)),)
 
         def magnitudes(self, quantity):
-            return Ladder(None, (quantity.from_unit(0.001, "m"), quantity.from_unit(0.5, "m")))
+            return Magnitudes(None, (quantity.from_unit(0.001, "m"), quantity.from_unit(0.5, "m")))
 
         def change(self, value, context):
             return value + context.subject.magnitude
@@ -58,13 +58,13 @@ TOO_MUCH = """
 ZERO = """
     import libcst as cst
 
-    from mutabot_source.operator import ClassicalOperator, Draft, Example
+    from mutabot_source.operator import ClassicalOperator, Draft, TextExample
 
 
     class Zero(ClassicalOperator):
         name = "CZR"
         summary = "A constant is zero."
-        examples = (Example("x = 2\\n", ("x = 0\\n",)), Example("x = y\\n"))
+        examples = (TextExample("x = 2\\n", ("x = 0\\n",)), TextExample("x = y\\n"))
 
         def drafts(self, node, around):
             if isinstance(node, cst.Float):

@@ -13,7 +13,7 @@ import jsonschema
 import pytest
 
 from mutabot.errors import ExtensionError
-from mutabot.extensions import Part
+from mutabot.extensions import ExtensionPart
 from mutabot.journal.journal import Journal
 from mutabot.model import Diverged, Outcome, Verdict
 from mutabot.model.outcome import Apart, Near
@@ -217,7 +217,7 @@ def test_every_key_is_documented_and_no_other() -> None:
 
 
 def test_a_package_adds_a_section(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    own = Part("sizes", "report.test_json:sizes", "another")
+    own = ExtensionPart("sizes", "report.test_json:sizes", "another")
     monkeypatch.setattr("mutabot.report.document.brought", lambda kind: {"sizes": own})
     found = data(tmp_path)
     assert found["sections"] == {"sizes": {"mutants": len(samples.MUTANTS), "rounds": 2}}
@@ -225,7 +225,7 @@ def test_a_package_adds_a_section(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_section_that_fails_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    own = Part("sizes", "report.test_json:SCHEMA", "another")
+    own = ExtensionPart("sizes", "report.test_json:SCHEMA", "another")
     monkeypatch.setattr("mutabot.report.document.brought", lambda kind: {"sizes": own})
     with pytest.raises(ExtensionError, match=r"'sizes' of package 'another' .* makes no section"):
         data(tmp_path)

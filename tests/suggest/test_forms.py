@@ -10,11 +10,11 @@ from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.suggest.bands import band_of
-from mutabot.suggest.checks import Check
+from mutabot.suggest.checks import ProposedCheck
 from mutabot.suggest.place import OTHER, place_of
-from mutabot.suggest.project import Project, diff_of
+from mutabot.suggest.project import ProjectFiles, diff_of
 from mutabot.suggest.prove import texts_with
-from mutabot.suggest.readings import PROBE, Reading
+from mutabot.suggest.readings import PROBE, ReadExpression
 
 from .projects import STYLES, make, passes, patched
 
@@ -26,24 +26,28 @@ NODES = {
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Project:
+def project(tmp_path: Path) -> ProjectFiles:
     """The project with tests in three styles."""
     folder = make(tmp_path)
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, folder)
-    return Project(Request(configuration, vocabulary, rounds=1, seed=1, jobs=1))
+    return ProjectFiles(Request(configuration, vocabulary, rounds=1, seed=1, jobs=1))
 
 
-def checks(project: Project, style: str) -> list[Check]:
+def checks(project: ProjectFiles, style: str) -> list[ProposedCheck]:
     """That the arm is where it is to be at the end."""
     place = place_of(project, NODES[style])
     assert place is not None
     assert place.style == style
     at_end = "self.arm.z" if style == "unittest" else "arm.z"
-    return [Check(place, Reading(at_end, PROBE, 0.01), 0.4, 3, band_of([0.4, 0.401, 0.399], 0.01), 0.02)]
+    return [
+        ProposedCheck(
+            place, ReadExpression(at_end, PROBE, 0.01), 0.4, 3, band_of([0.4, 0.401, 0.399], 0.01), 0.02
+        )
+    ]
 
 
-def test_added_checks_pass_on_the_original_and_notice_a_fault(project: Project) -> None:
+def test_added_checks_pass_on_the_original_and_notice_a_fault(project: ProjectFiles) -> None:
     found = [one for style in STYLES.values() for one in checks(project, style)]
     texts = texts_with(project, found)
     patched(project.root, diff_of(project.root, texts))
@@ -56,7 +60,7 @@ def test_added_checks_pass_on_the_original_and_notice_a_fault(project: Project) 
     assert failed == len(NODES) + 1, "each test with a check fails, with both of its parameters"
 
 
-def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: Project) -> None:
+def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: ProjectFiles) -> None:
     file = project.root / "tests" / "test_functions.py"
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n") + "# ü".encode())
     before = file.read_bytes().decode().splitlines(keepends=True)

@@ -10,13 +10,13 @@ import pytest
 from mutabot.model import Mutant, Role, Site, Span
 from mutabot.suggest.checks import candidates
 from mutabot.suggest.measure import Measured
-from mutabot.suggest.place import Place
-from mutabot.suggest.readings import PROBE, Reading
+from mutabot.suggest.place import PlaceInTest
+from mutabot.suggest.readings import PROBE, ReadExpression
 from mutabot.suggest.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
 MUTANT = Mutant(1, "robot", "skip", SITE, "robot:go", None, None, "", "arm.go: do nothing")
-PLACE = Place("pytest", "tests/test_it.py", "tests/test_it.py::test_it")
+PLACE = PlaceInTest("pytest", "tests/test_it.py", "tests/test_it.py::test_it")
 
 
 def measured(originals: list[float], mutant: float, tolerance: float) -> Measured:
@@ -24,7 +24,7 @@ def measured(originals: list[float], mutant: float, tolerance: float) -> Measure
     return Measured(
         originals={PLACE: {(round, PLACE.node): {"box.x": value} for round, value in enumerate(originals)}},
         mutants={PLACE: {MUTANT.id: {(0, PLACE.node): {"box.x": mutant}}}},
-        readings={PLACE: [Reading("box.x", PROBE, tolerance)]},
+        readings={PLACE: [ReadExpression("box.x", PROBE, tolerance)]},
     )
 
 
@@ -55,7 +55,7 @@ def of(reads: list[dict[str, Any]], mutant: dict[str, Any], *texts: str) -> Meas
     return Measured(
         originals={PLACE: {(round, PLACE.node): read for round, read in enumerate(reads)}},
         mutants={PLACE: {MUTANT.id: {(0, PLACE.node): mutant}}},
-        readings={PLACE: [Reading(text, PROBE, 0.001) for text in texts]},
+        readings={PLACE: [ReadExpression(text, PROBE, 0.001) for text in texts]},
     )
 
 

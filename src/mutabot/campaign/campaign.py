@@ -12,7 +12,7 @@ from functools import cached_property
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.site_names import Sources
-from mutabot.campaign.evidence import Evidence
+from mutabot.campaign.evidence import CampaignEvidence
 from mutabot.campaign.request import Progress, Request
 from mutabot.execution.task import Executor
 from mutabot.execution.workers import Workers
@@ -42,7 +42,7 @@ class Campaign:
     baseline: Baseline
     executor: Executor
     progress: Progress
-    evidence: Evidence | None = None
+    evidence: CampaignEvidence | None = None
     proven: set[tuple[str, str, str, bool]] = field(default_factory=set)
     is_short: bool = False
     again: list[Outcome] = field(default_factory=list)

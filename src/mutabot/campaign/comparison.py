@@ -150,7 +150,7 @@ _NO_MOMENTS: dict[str, Any] = {"moments": None}
 
 
 @frozen
-class Event:
+class TraceCall:
     """One call in a trace, comparable between processes.
 
     Attributes:
@@ -181,7 +181,7 @@ class Observation:
             ``TestEnd.returned``; None if that is not to be compared.
     """
 
-    events: Sequence[Event] = ()
+    events: Sequence[TraceCall] = ()
     probes: Mapping[str, Any] = field(default_factory=dict)
     truncated: bool = False
     unread: Mapping[str, str] = field(default_factory=dict)

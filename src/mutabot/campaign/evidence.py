@@ -11,7 +11,7 @@ from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
 from mutabot.evidence.story import diverged
-from mutabot.evidence.tracks import Seen, noise_between
+from mutabot.evidence.tracks import RecordedPaths, noise_between
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import UNFIT
 from mutabot.model import Diverged, Mutant
@@ -24,7 +24,7 @@ _SHOWN = 3
 
 
 @dataclass
-class Evidence:
+class CampaignEvidence:
     """The recordings of a campaign.
 
     Args:
@@ -95,7 +95,7 @@ class Evidence:
             if original is None or end.recording is None:
                 continue
             noise, data = self._noise.get((round, end.test)), bytes_of(end.recording)
-            seen = Seen(from_bytes(data))
+            seen = RecordedPaths(from_bytes(data))
             one = diverged(end.test, original, seen, noise, is_cut=end.outcome == "failed")
             if one is not None:
                 rank = Rank.SURVIVOR if survived else Rank.OTHER
@@ -103,20 +103,20 @@ class Evidence:
                 found.append(one)
         return tuple(sorted(found, key=lambda one: -one.worst))
 
-    def _read_original(self, round: int, test: str) -> Seen | None:
+    def _read_original(self, round: int, test: str) -> RecordedPaths | None:
         data = self.recordings.data(ORIGINAL, round, test)
-        return Seen(from_bytes(data)) if data is not None else None
+        return RecordedPaths(from_bytes(data)) if data is not None else None
 
 
 @contextmanager
-def recorded(request: Request, progress: Progress) -> Iterator[Evidence | None]:
+def recorded(request: Request, progress: Progress) -> Iterator[CampaignEvidence | None]:
     """The recordings of a campaign, if any are asked for; says at the end what is missing."""
     if not request.evidence:
         yield None
         return
     limit = request.configuration.evidence
     with Recordings.to_write(request.journal_path, limit) as recordings:
-        evidence = Evidence(recordings)
+        evidence = CampaignEvidence(recordings)
         try:
             yield evidence
         finally:
@@ -134,6 +134,6 @@ def without_recording(end: TestEnd) -> TestEnd:
     return replace(end, recording=None, executed=None)
 
 
-def _seen(end: TestEnd) -> Seen:
+def _seen(end: TestEnd) -> RecordedPaths:
     assert end.recording is not None
-    return Seen(from_bytes(bytes_of(end.recording)))
+    return RecordedPaths(from_bytes(bytes_of(end.recording)))

@@ -20,7 +20,7 @@ from mutabot.campaign.budget import OUT_OF_TIME, run_planned
 from mutabot.campaign.campaign import Campaign, OutcomeWriter, on_this_machine
 from mutabot.campaign.engines.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
-from mutabot.campaign.evidence import Evidence, recorded, without_recording
+from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
@@ -70,7 +70,7 @@ def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
 
 
 def begin(
-    request: Request, executor: Executor, progress: Progress, evidence: Evidence | None = None
+    request: Request, executor: Executor, progress: Progress, evidence: CampaignEvidence | None = None
 ) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
 
@@ -175,7 +175,7 @@ def _run(
     progress: Progress,
     journal: Journal,
     others: Sequence[JournalReader],
-    evidence: Evidence | None,
+    evidence: CampaignEvidence | None,
 ) -> str:
     """Returns how it ended: a budget may end before all was run."""
     started = request.clock()

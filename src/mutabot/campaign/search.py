@@ -19,9 +19,9 @@ from random import Random
 
 from mutabot.campaign.campaign import Campaign, OutcomeWriter
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.faults.demanded import Ladder
+from mutabot.campaign.faults.demanded import FaultLadder
 from mutabot.model import Outcome
-from mutabot.model.graded import Seen, bracket_of, seen
+from mutabot.model.graded import MagnitudeResult, bracket_of, seen
 
 #: indices of a ladder's magnitudes, from the smallest
 Step = int
@@ -43,10 +43,10 @@ class LadderSearch:
     rounds: int
     seed: int = 0
     always: frozenset[Step] = frozenset()
-    found: dict[int, dict[Step, Seen]] = field(default_factory=dict)
+    found: dict[int, dict[Step, MagnitudeResult]] = field(default_factory=dict)
     _guards: set[int] = field(default_factory=set)
 
-    def take(self, round: int, step: Step, seen: Seen) -> None:
+    def take(self, round: int, step: Step, seen: MagnitudeResult) -> None:
         """A magnitude was run in a round."""
         self.found.setdefault(round, {})[step] = seen
 
@@ -78,7 +78,7 @@ class LadderSearch:
             return ()
         return _ends(row, self.size)
 
-    def _guard(self, round: int, row: Mapping[Step, Seen], left: set[Step]) -> set[Step]:
+    def _guard(self, round: int, row: Mapping[Step, MagnitudeResult], left: set[Step]) -> set[Step]:
         """One magnitude more, the first time that nothing else is left to ask."""
         if round in self._guards or not left:
             return set()
@@ -93,18 +93,18 @@ class LadderSearch:
         return {fewest[int(ties * len(fewest))]}
 
 
-def _ends(row: Mapping[Step, Seen], size: int) -> tuple[Step, Step]:
+def _ends(row: Mapping[Step, MagnitudeResult], size: int) -> tuple[Step, Step]:
     """The largest step that was missed, and the smallest above it that was noticed or refused.
 
     −1 and ``size`` where there is none.
     """
-    low = max((step for step, one in row.items() if one is Seen.MISSED), default=-1)
-    bounds = (Seen.NOTICED, Seen.REFUSED)
+    low = max((step for step, one in row.items() if one is MagnitudeResult.MISSED), default=-1)
+    bounds = (MagnitudeResult.NOTICED, MagnitudeResult.REFUSED)
     high = min((step for step, one in row.items() if one in bounds and step > low), default=size)
     return low, high
 
 
-def _middle(row: Mapping[Step, Seen], low: Step, high: Step) -> set[Step]:
+def _middle(row: Mapping[Step, MagnitudeResult], low: Step, high: Step) -> set[Step]:
     """The step in the middle between two, of those that were not run; none if all were."""
     between = [step for step in range(low + 1, high) if step not in row]
     return {between[len(between) // 2]} if between else set()
@@ -112,7 +112,7 @@ def _middle(row: Mapping[Step, Seen], low: Step, high: Step) -> set[Step]:
 
 def run_ladders(
     campaign: Campaign,
-    ladders: Sequence[Ladder],
+    ladders: Sequence[FaultLadder],
     writer: OutcomeWriter,
     done: Collection[tuple[str, int]] = (),
     always: Mapping[str, Collection[float]] | None = None,
@@ -162,7 +162,7 @@ def run_ladders(
 
 
 def _searches(
-    campaign: Campaign, ladders: Sequence[Ladder], always: Mapping[str, Collection[float]]
+    campaign: Campaign, ladders: Sequence[FaultLadder], always: Mapping[str, Collection[float]]
 ) -> dict[str, LadderSearch]:
     found = {}
     for ladder in ladders:

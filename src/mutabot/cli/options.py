@@ -14,7 +14,7 @@ from typer import Option
 
 from mutabot import __version__, limits
 from mutabot.errors import UsageError
-from mutabot.extensions import Part, brought
+from mutabot.extensions import ExtensionPart, brought
 
 #: the names of ``campaign.request``, which is not loaded for this, so that `--help` is fast
 ENGINES = ("auto", "branch", "replay")
@@ -158,7 +158,7 @@ def with_options(function: Callable[..., object]) -> Callable[..., object]:
     return command
 
 
-def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iterator[Parameter]:
+def _parameters(own: Iterable[Parameter], executors: Mapping[str, ExtensionPart]) -> Iterator[Parameter]:
     for one in own:
         if one.kind is one.VAR_KEYWORD:
             (options,) = get_args(one.annotation)

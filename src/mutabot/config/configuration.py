@@ -24,7 +24,7 @@ from mutabot.model.mutant import EVERY
 
 from .demands import check_demands
 from .document import Document
-from .mistakes import Place, raise_errors
+from .mistakes import DocumentPlace, raise_errors
 from .options import overridden
 from .table import Table
 
@@ -289,12 +289,12 @@ def load_configuration(
         return found
     # the file is without a mistake, so what is wrong now is wrong with what the command line says
     flags = " ".join(f"-o {text}" for text in overrides)
-    said = Place(Document(flags, place.document.data, {}, ConfigurationError), path=place.path)
+    said = DocumentPlace(Document(flags, place.document.data, {}, ConfigurationError), path=place.path)
     return _checked(said, folder, families, overrides).model_copy(update={"file": found.file})
 
 
 def _checked(
-    place: Place, folder: Path, families: Collection[str], overrides: Sequence[str]
+    place: DocumentPlace, folder: Path, families: Collection[str], overrides: Sequence[str]
 ) -> Configuration:
     given: Any = place.document.data
     for part in place.path:
@@ -346,7 +346,7 @@ def _tables_of_packages(given: dict[str, Any], overrides: Sequence[str]) -> dict
     return {name: part.load_class(Table) for name, part in found if name in named}
 
 
-def _without(raw: dict[str, Any], models: Collection[str], place: Place) -> dict[str, Any]:
+def _without(raw: dict[str, Any], models: Collection[str], place: DocumentPlace) -> dict[str, Any]:
     """The keys of the core. A table of a package that is not installed is noted."""
     own = {key: value for key, value in raw.items() if key not in models}
     for key in own.keys() - Settings.model_fields.keys():
@@ -357,21 +357,21 @@ def _without(raw: dict[str, Any], models: Collection[str], place: Place) -> dict
     return own
 
 
-def _find(folder: Path) -> Place:
+def _find(folder: Path) -> DocumentPlace:
     """Where the keys of the configuration stand."""
     if not folder.is_dir():
         raise ConfigurationError("there is no such folder", file=str(folder))
-    found: list[Place] = []
+    found: list[DocumentPlace] = []
     hint = ""
     if (folder / _PYPROJECT).exists():
         document = Document.read(folder / _PYPROJECT, _PYPROJECT, ConfigurationError)
         tool = document.data.get("tool", {})
         if isinstance(tool, dict) and "mutabot" in tool:
-            found.append(Place(document, path=("tool", "mutabot")))
+            found.append(DocumentPlace(document, path=("tool", "mutabot")))
         near = nearest_name("mutabot", tool) if isinstance(tool, dict) else None
         hint = f" (there is [tool.{near}]; did you mean [tool.mutabot]?)" if near else ""
     if (folder / _OWN).exists():
-        found.append(Place(Document.read(folder / _OWN, _OWN, ConfigurationError)))
+        found.append(DocumentPlace(Document.read(folder / _OWN, _OWN, ConfigurationError)))
     if not found:
         problem = f"no [tool.mutabot] in {_PYPROJECT} and no {_OWN} in {folder}{hint}; {_INIT}"
         raise ConfigurationError(problem)
@@ -387,7 +387,7 @@ class _Paths:
     def __init__(self, root: Path) -> None:
         self.root = root
 
-    def sources(self, place: Place, names: tuple[str, ...]) -> tuple[str, ...]:
+    def sources(self, place: DocumentPlace, names: tuple[str, ...]) -> tuple[str, ...]:
         """Files and folders, relative to the root, sorted; globs expanded."""
         found: set[str] = set()
         for index, name in enumerate(names):
@@ -398,7 +398,7 @@ class _Paths:
                 found.add(PurePosixPath(name).as_posix())
         return tuple(sorted(found))
 
-    def check(self, place: Place, settings: Settings, *, has_tests: bool) -> None:
+    def check(self, place: DocumentPlace, settings: Settings, *, has_tests: bool) -> None:
         """Note what is wrong with the paths of the tests, the vocabulary and the selection."""
         for index, argument in enumerate(settings.tests):
             after_option = index > 0 and settings.tests[index - 1].startswith("-")
@@ -415,7 +415,7 @@ class _Paths:
         if settings.selection is not None:
             (place / "selection").attempt(self._existing, settings.selection)
 
-    def check_patterns(self, place: Place, names: tuple[str, ...]) -> None:
+    def check_patterns(self, place: DocumentPlace, names: tuple[str, ...]) -> None:
         """Note each path or pattern that fits nothing."""
         for index, name in enumerate(names):
             read: Callable[[str], object] = self._matches if self._is_pattern(name) else self._existing
@@ -474,7 +474,7 @@ class _Paths:
         return nearest_name(name, known)
 
 
-def _refuse_overlap(place: Place, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
+def _refuse_overlap(place: DocumentPlace, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
     """Note each part of the oracle that is a part of the program as well."""
     for path, other in product(oracle, program):
         one, two = PurePosixPath(path), PurePosixPath(other)

@@ -14,7 +14,7 @@ from mutabot.model.graded import OFFSET, Demand, parse_amount
 from mutabot.model.quantity import DIMENSIONS, MEASURED, WHOLE
 from mutabot.model.units import UNITS, Dimension, dimension_of
 
-from .mistakes import Place
+from .mistakes import DocumentPlace
 from .table import Table
 
 #: what every quantity can be off by beside its own measure: it comes late, or is scaled
@@ -39,13 +39,13 @@ class DemandTable(Table):
     share: Annotated[float | None, Field(gt=0, lt=1)] = None
 
 
-def check_demands(place: Place, tables: Sequence[Mapping[str, Any]]) -> tuple[Demand, ...]:
+def check_demands(place: DocumentPlace, tables: Sequence[Mapping[str, Any]]) -> tuple[Demand, ...]:
     """The demands that these tables mean; what is wrong with them is noted."""
     found = (_demand(place / index, raw) for index, raw in enumerate(tables))
     return tuple(one for one in found if one is not None)
 
 
-def _demand(place: Place, raw: Mapping[str, Any]) -> Demand | None:
+def _demand(place: DocumentPlace, raw: Mapping[str, Any]) -> Demand | None:
     mistakes = len(place.errors)
     table = place.table(DemandTable, raw)
     if table is None:
@@ -65,7 +65,7 @@ def _demand(place: Place, raw: Mapping[str, Any]) -> Demand | None:
     return Demand(notice, unit, table.site, table.quantity, table.kind, table.operator, table.share, source)
 
 
-def _amount(place: Place, notice: str | float) -> tuple[float, str | None]:
+def _amount(place: DocumentPlace, notice: str | float) -> tuple[float, str | None]:
     """The magnitude and its unit; (0, None) if they cannot be read, which is noted."""
     try:
         return parse_amount(notice if isinstance(notice, str) else f"{notice:g}")
@@ -76,7 +76,7 @@ def _amount(place: Place, notice: str | float) -> tuple[float, str | None]:
     return 0.0, None
 
 
-def _check_operator(place: Place, name: str) -> None:
+def _check_operator(place: DocumentPlace, name: str) -> None:
     from mutabot.operators import load_all  # noqa: PLC0415  # few configurations name one
 
     known = [rule.name for rule in load_all() if rule.has_sizes]

@@ -83,7 +83,7 @@ _SOURCE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?(?: · (?P<key>.*))?")
 
 
 @dataclass(frozen=True)
-class Place:
+class DocumentPlace:
     """A place in a document under inspection; ``place / "key"`` is one inside it.
 
     All places of a document collect their mistakes in one list, so that all can be told at once.
@@ -93,7 +93,7 @@ class Place:
     errors: list[ConfigurationError] = field(default_factory=list)
     path: KeyPath = ()
 
-    def __truediv__(self, key: str | int) -> Place:
+    def __truediv__(self, key: str | int) -> DocumentPlace:
         return replace(self, path=(*self.path, key))
 
     def source(self, name: str) -> str:

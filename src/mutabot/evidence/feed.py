@@ -8,7 +8,7 @@ from math import floor, isfinite
 from typing import Any
 
 from . import tape as tapes
-from .recording import Block, Kind
+from .recording import Block, TrackKind
 from .tape import Tape
 
 Triple = tuple[float, float, float]
@@ -21,7 +21,7 @@ _HAIR = 1e-6
 @dataclass(slots=True)
 class _Source:
     name: str
-    kind: Kind
+    kind: TrackKind
     read: Callable[[], Any]
     unit: str = ""
     size: Triple | None = None
@@ -58,15 +58,15 @@ class Feed:
             read: gives x, y, z in m and the quaternion w, x, y, z: seven numbers, world frame.
             size: edge lengths in m, if it is about a box.
         """
-        self._sources.append(_Source(name, Kind.POSE, read, "", size))
+        self._sources.append(_Source(name, TrackKind.POSE, read, "", size))
 
     def point(self, name: str, read: Callable[[], Sequence[float]], *, size: Triple | None = None) -> None:
         """Something with a place; ``read`` gives x, y, z in m, world frame."""
-        self._sources.append(_Source(name, Kind.POINT, read, "", size))
+        self._sources.append(_Source(name, TrackKind.POINT, read, "", size))
 
     def value(self, name: str, read: Callable[[], float], *, unit: str = "") -> None:
         """One number, such as the opening of a gripper or the margin of a monitor."""
-        self._sources.append(_Source(name, Kind.VALUE, read, unit))
+        self._sources.append(_Source(name, TrackKind.VALUE, read, unit))
 
     def contacts(self, read: Callable[[], Iterable[tuple[str, str]]]) -> None:
         """What touches what: ``read`` gives the pairs of names that touch each other now."""
@@ -178,7 +178,7 @@ class Feed:
             track = tape.track(source.name, source.kind, source.unit, source.size)
             length = len(track.values)
             with tape.reading(f"{source.name} cannot be recorded"):
-                found = [source.read()] if source.kind is Kind.VALUE else list(source.read())
+                found = [source.read()] if source.kind is TrackKind.VALUE else list(source.read())
                 if len(found) == track.kind.width:
                     track.values.extend(found)
                     continue

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 _TYPE = "f"
 
 
-class Kind(StrEnum):
+class TrackKind(StrEnum):
     """What the numbers of a track are."""
 
     POSE = "pose"
@@ -29,7 +29,7 @@ class Kind(StrEnum):
     @property
     def width(self) -> int:
         """Numbers at each moment: x, y, z in m, for a pose followed by the quaternion w, x, y, z."""
-        return {Kind.POSE: 7, Kind.POINT: 3, Kind.VALUE: 1}[self]
+        return {TrackKind.POSE: 7, TrackKind.POINT: 3, TrackKind.VALUE: 1}[self]
 
 
 @dataclass(slots=True)
@@ -45,7 +45,7 @@ class Track:
     """
 
     name: str
-    kind: Kind
+    kind: TrackKind
     values: array[float]
     unit: str = ""
     size: tuple[float, float, float] | None = None
@@ -67,7 +67,7 @@ class Block(NamedTuple):
     colour: tuple[float, ...] | None = None
 
 
-class Moment(NamedTuple):
+class RecordedMoment(NamedTuple):
     """Something that happened.
 
     Attributes:
@@ -123,7 +123,7 @@ class Recording:
     times: array[float] = field(default_factory=lambda: array("d"))
     tracks: dict[str, Track] = field(default_factory=dict)
     blocks: tuple[Block, ...] = ()
-    moments: list[Moment] = field(default_factory=list)
+    moments: list[RecordedMoment] = field(default_factory=list)
     calls: list[Told] = field(default_factory=list)
     fault: float | None = None
     faulty_call: int | None = None
@@ -156,11 +156,11 @@ def from_bytes(data: bytes) -> Recording:
         times, end = _numbers("d", data, end, count)
         tracks = {}
         for name, kind, unit, size in head["tracks"]:
-            values, end = _numbers(_TYPE, data, end, count * Kind(kind).width)
-            tracks[name] = Track(name, Kind(kind), values, unit, _tuple(size))
+            values, end = _numbers(_TYPE, data, end, count * TrackKind(kind).width)
+            tracks[name] = Track(name, TrackKind(kind), values, unit, _tuple(size))
         fields = {name: head[name] for name in _PLAIN_FIELDS}
         fields["blocks"] = tuple(Block(one[0], *map(_tuple, one[1:])) for one in fields["blocks"])
-        fields["moments"] = [Moment(*one) for one in fields["moments"]]
+        fields["moments"] = [RecordedMoment(*one) for one in fields["moments"]]
         fields["calls"] = [Told(*one) for one in fields["calls"]]
         return Recording(times, tracks, **fields)
     except (zlib.error, LookupError, TypeError) as error:

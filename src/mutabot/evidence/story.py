@@ -16,7 +16,7 @@ from mutabot.model.outcome import Apart, Diverged, Near
 from mutabot.model.quantity import is_number, told_apart, value_text
 
 from .recording import Recording, Told
-from .tracks import TURNED, Seen, approaches, differences
+from .tracks import TURNED, RecordedPaths, approaches, differences
 
 #: parts of a sentence; differences and approaches that are kept
 _MOST_PARTS, _MOST = 3, 8
@@ -30,8 +30,8 @@ _ROUNDING = 1e-6
 
 def diverged(
     test: str,
-    original: Seen,
-    mutant: Seen,
+    original: RecordedPaths,
+    mutant: RecordedPaths,
     noise: Mapping[str, float] | None = None,
     *,
     is_cut: bool = False,
@@ -68,7 +68,12 @@ def diverged(
 
 
 def _story(
-    original: Seen, mutant: Seen, apart: Sequence[Apart], near: Sequence[Near], *, is_cut: bool
+    original: RecordedPaths,
+    mutant: RecordedPaths,
+    apart: Sequence[Apart],
+    near: Sequence[Near],
+    *,
+    is_cut: bool,
 ) -> str:
     """The sentence, most important part first; empty if the world was the same."""
     usual, contacts = contacts_in(original.recording), contacts_in(mutant.recording)
@@ -107,7 +112,7 @@ def contacts_in(recording: Recording) -> dict[_Pair, tuple[float, float | None]]
 def _contacts(
     usual: Mapping[_Pair, tuple[float, float | None]],
     contacts: Mapping[_Pair, tuple[float, float | None]],
-    mutant: Seen,
+    mutant: RecordedPaths,
     end: float,
 ) -> Iterator[str]:
     """What never touched, what separated at another time, and what touched in the mutant alone."""
@@ -127,7 +132,7 @@ def _contacts(
         yield f"{pair[0]} touched {pair[1]} at {contacts[pair][0]:.1f} s"
 
 
-def _is_held(pair: _Pair, seen: Seen) -> bool:
+def _is_held(pair: _Pair, seen: RecordedPaths) -> bool:
     """Whether one of the two is tracked and the other neither stands still nor is tracked."""
     fixed = {block.name for block in seen.recording.blocks}
     return len(seen.paths.keys() & set(pair)) == 1 and fixed.isdisjoint(pair)
@@ -220,7 +225,7 @@ class Entry:
 
 
 @frozen
-class Row:
+class StoryRow:
     """The same thing in the original and in the mutant; None where it did not happen.
 
     Attributes:
@@ -240,25 +245,25 @@ class Row:
         return f"{one.time:.1f}" == f"{other.time:.1f}"
 
 
-def timeline(original: Recording, mutant: Recording) -> list[Row]:
+def timeline(original: Recording, mutant: Recording) -> list[StoryRow]:
     """All rows, in their order."""
     before, after = entries(original), entries(mutant)
     number, fault = mutant.faulty_call, None
     if number is not None and number < len(mutant.calls):
         fault = _entry(mutant.calls[number])
-    rows: list[Row] = []
+    rows: list[StoryRow] = []
     matcher = SequenceMatcher(None, [one.text for one in before], [one.text for one in after], autojunk=False)
     for what, i, j, k, m in matcher.get_opcodes():
         if what == "equal":
             pairs = zip(before[i:j], after[k:m], strict=True)
-            rows += [Row(one, other, fault is not None and other == fault) for one, other in pairs]
+            rows += [StoryRow(one, other, fault is not None and other == fault) for one, other in pairs]
         else:
-            rows += [Row(one, None) for one in before[i:j]]
-            rows += [Row(None, other, fault is not None and other == fault) for other in after[k:m]]
+            rows += [StoryRow(one, None) for one in before[i:j]]
+            rows += [StoryRow(None, other, fault is not None and other == fault) for other in after[k:m]]
     return rows
 
 
-def around(rows: Sequence[Row]) -> tuple[Sequence[Row], int, int]:
+def around(rows: Sequence[StoryRow]) -> tuple[Sequence[StoryRow], int, int]:
     """The rows around the first that differs, and how many are left out before and after them."""
     first = next((number for number, row in enumerate(rows) if row.is_fault or not row.is_same), len(rows))
     start, end = max(0, first - _BEFORE), min(len(rows), first + _AFTER)

@@ -19,7 +19,7 @@ from typing import Any, BinaryIO
 
 from mutabot.frozen import frozen
 
-from .recording import Block, Kind, Moment, Recording, Track
+from .recording import Block, RecordedMoment, Recording, Track, TrackKind
 
 #: before each picture: its time in s, height, width, and bytes that follow
 _HEAD = struct.Struct("<dIII")
@@ -214,7 +214,7 @@ class Tape:
             self.clock = lambda: self.end
             return self.end
 
-    def track(self, name: str, kind: Kind, unit: str, size: tuple[float, float, float] | None) -> Track:
+    def track(self, name: str, kind: TrackKind, unit: str, size: tuple[float, float, float] | None) -> Track:
         """The track of this name; a new one was not there before now."""
         found = self.recording.tracks.get(name)
         if found is None:
@@ -236,7 +236,7 @@ class Tape:
     def note(self, now: float, what: str, text: str) -> None:
         """Something happened."""
         if len(self.recording.moments) < _MOST_EVENTS:
-            self.recording.moments.append(Moment(now, what, text))
+            self.recording.moments.append(RecordedMoment(now, what, text))
         else:
             last = self.recording.moments[-1].time
             self.problem(f"more than {_MOST_EVENTS} events in a test: those after {last:.4g} s are left out")

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from mutabot.model.outcome import Apart, Near
 
-from .recording import Block, Kind, Recording, Track
+from .recording import Block, Recording, Track, TrackKind
 
 Point = tuple[float, float, float]
 #: a row of a track: the numbers of one moment
@@ -84,7 +84,7 @@ def _square(point: Point, segment: tuple[float, ...]) -> float:
 
 
 @dataclass(frozen=True)
-class Path:
+class TrackPath:
     """Where one thing was over time.
 
     Attributes:
@@ -127,20 +127,20 @@ class Path:
         return max(0, bisect_right(self.when, time + _SAME) - 1)
 
 
-def paths_of(recording: Recording) -> dict[str, Path]:
+def paths_of(recording: Recording) -> dict[str, TrackPath]:
     """Everything that was tracked, by name, if it was ever there."""
-    found = {name: Path(track, recording.times) for name, track in recording.tracks.items()}
+    found = {name: TrackPath(track, recording.times) for name, track in recording.tracks.items()}
     return {name: path for name, path in found.items() if path.rows}
 
 
 @dataclass(frozen=True)
-class Seen:
+class RecordedPaths:
     """A recording, and its paths, which are worked out once."""
 
     recording: Recording
 
     @cached_property
-    def paths(self) -> dict[str, Path]:
+    def paths(self) -> dict[str, TrackPath]:
         """Everything that was tracked."""
         return paths_of(self.recording)
 
@@ -154,15 +154,15 @@ class _Measure(NamedTuple):
     between: Callable[[Row, Row], float]
 
 
-def _measures(path: Path) -> Iterator[_Measure]:
+def _measures(path: TrackPath) -> Iterator[_Measure]:
     track = path.track
-    if track.kind is Kind.VALUE:
+    if track.kind is TrackKind.VALUE:
         values = [row[0] for row in path.rows]
         tolerance = SHARE * (max(values) - min(values)) or 1e-6
         yield _Measure(track.name, track.unit, tolerance, lambda one, other: abs(one[0] - other[0]))
         return
     yield _Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]))
-    if track.kind is Kind.POSE:
+    if track.kind is TrackKind.POSE:
         yield _Measure(f"{track.name}{TURNED}", "deg", ANGLE, _turned)
 
 
@@ -173,7 +173,10 @@ def _turned(one: Row, other: Row) -> float:
 
 
 def differences(
-    original: dict[str, Path], mutant: dict[str, Path], noise: Mapping[str, float], until: float = inf
+    original: dict[str, TrackPath],
+    mutant: dict[str, TrackPath],
+    noise: Mapping[str, float],
+    until: float = inf,
 ) -> list[Apart]:
     """Return what was apart by more than its tolerance, worst first.
 
@@ -193,7 +196,7 @@ def differences(
     return sorted(found, key=lambda one: (-one.worst, one.name))
 
 
-def noise_between(one: Seen, other: Seen) -> dict[str, float]:
+def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
     """Return by how much each thing is apart in two equal runs of the original."""
     found = {}
     for name in one.paths.keys() & other.paths.keys():
@@ -204,7 +207,7 @@ def noise_between(one: Seen, other: Seen) -> dict[str, float]:
     return found
 
 
-def _together(before: Path, after: Path) -> Iterator[tuple[float, Row, Row]]:
+def _together(before: TrackPath, after: TrackPath) -> Iterator[tuple[float, Row, Row]]:
     """The rows of both that hold at each moment of either; what has ended stays as it was."""
     if before.when == after.when:
         yield from zip(before.when, before.rows, after.rows, strict=True)
@@ -215,8 +218,8 @@ def _together(before: Path, after: Path) -> Iterator[tuple[float, Row, Row]]:
 
 def _apart(
     measure: _Measure,
-    before: Path,
-    after: Path,
+    before: TrackPath,
+    after: TrackPath,
     rows: Sequence[tuple[float, Row, Row]],
     noise: Mapping[str, float],
 ) -> Apart | None:
@@ -231,21 +234,23 @@ def _apart(
     return Apart(measure.name, measure.unit, first, largest, at, gaps[-1][1], beside, tolerance)
 
 
-def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
+def _aside(measure: _Measure, before: TrackPath, after: TrackPath) -> float | None:
     """How far something left the path or range that it has in the original; None for orientations."""
-    if before.track.kind is Kind.VALUE:
+    if before.track.kind is TrackKind.VALUE:
         usual = [row[0] for row in before.rows]
         least, most = min(usual), max(usual)
         return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
     return None if measure.name.endswith(TURNED) else aside(after.outline, before.outline)
 
 
-def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Sequence[Block]) -> list[Near]:
+def approaches(
+    original: dict[str, TrackPath], mutant: dict[str, TrackPath], blocks: Sequence[Block]
+) -> list[Near]:
     """Return the closest approaches that are closer than in the original, closest first."""
     found = []
     for name in original.keys() & mutant.keys():
         before, after = original[name], mutant[name]
-        if before.track.kind is Kind.VALUE or before.rows == after.rows:
+        if before.track.kind is TrackKind.VALUE or before.rows == after.rows:
             continue
         for block in blocks:
             (least, at), (usual, _) = _least(after, block), _least(before, block)
@@ -254,7 +259,7 @@ def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Seque
     return sorted(found, key=lambda one: (one.distance, one.body, one.obstacle))
 
 
-def _least(path: Path, block: Block) -> tuple[float, float]:
+def _least(path: TrackPath, block: Block) -> tuple[float, float]:
     """The least distance of a path from a block, m, and when."""
     size, (x, y, z) = path.track.size or (0.0, 0.0, 0.0), block.centre
     dx, dy, dz = (0.5 * (one + other) for one, other in zip(size, block.size, strict=True))

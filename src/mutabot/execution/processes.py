@@ -262,7 +262,7 @@ class Copy:
 
     pidfd = None
 
-    def __init__(self, pid: int, server: ForkServer) -> None:
+    def __init__(self, pid: int, server: ForkServerProcess) -> None:
         self.pid, self._server = pid, server
         self.startup = server.startup
 
@@ -297,7 +297,7 @@ class Copy:
         """Nothing is held of it."""
 
 
-class ForkServer:
+class ForkServerProcess:
     """A process that has collected the tests, and is copied for each job.
 
     Args:

@@ -32,7 +32,7 @@ from mutabot.execution.processes import (
     LOOKS,
     Copy,
     EventStream,
-    ForkServer,
+    ForkServerProcess,
     Home,
     Spawned,
     compile_us,
@@ -241,7 +241,7 @@ class Workers:
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
         self._waiting = Waiting(self._jobs)
-        self._servers: list[ForkServer] = []
+        self._servers: list[ForkServerProcess] = []
         self._tell, self._has_told_left = tell, False
         self._may_share = True
         self._remains: list[str] = []
@@ -343,14 +343,14 @@ class Workers:
         descriptors = self.pool.descriptors if task.is_fork_parent else ()
         return Spawned(self._root, self._arguments, home, writing, descriptors)
 
-    def _server_for(self, task: Task) -> ForkServer | None:
+    def _server_for(self, task: Task) -> ForkServerProcess | None:
         """The fork server for such a task; None if there can be none."""
         found = next((server for server in self._servers if server.serves(task.job)), None)
         if found is not None or not self._may_share:
             return found
         for idle in [server for server in self._servers if server.is_idle]:
             self._end_server(idle)  # what it was for is over
-        server = ForkServer(task.job, self._root, self._arguments, self._folder, self.pool.descriptors)
+        server = ForkServerProcess(task.job, self._root, self._arguments, self._folder, self.pool.descriptors)
         self._servers.append(server)
         for descriptor in (server.events.bell, server.process.pidfd):  # with it, its copies end
             self._selector.register(descriptor, selectors.EVENT_READ, server)
@@ -362,7 +362,7 @@ class Workers:
         self._end_server(server)
         return None
 
-    def _end_server(self, server: ForkServer) -> None:
+    def _end_server(self, server: ForkServerProcess) -> None:
         for descriptor in (server.events.bell, server.process.pidfd):
             self._selector.unregister(descriptor)
         self._servers.remove(server)
@@ -382,7 +382,7 @@ class Workers:
         if is_for_token:
             self._selector.unregister(self.pool.reading)
         for key, _ in ready:
-            if isinstance(key.data, ForkServer):
+            if isinstance(key.data, ForkServerProcess):
                 key.data.listen()
             elif isinstance(key.data, _Worker) and key.fd == key.data.events.bell:
                 for line in key.data.read():

@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from mutabot.model.watched import Call, Command, Part
+from mutabot.model.watched import Command, WatchedCallable, WatchedPart
 
-from .guess import Guess, Setting, guess_argument, guess_reading
+from .guess import Guess, NameContext, guess_argument, guess_reading
 from .layout import with_compared
 from .words import OPPOSITES, words_of
 
@@ -35,7 +35,7 @@ def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
         guess = Guess()
         if len(_FIELD.findall(notation)) == 1:
             words = words_of(_FIELD.sub("", notation))
-            guess = guess_argument("value", Setting(words, values=numbers))
+            guess = guess_argument("value", NameContext(words, values=numbers))
         opposite = _opposite(notation, list(notations))
         if opposite is not None:
             guess.table["opposite"] = opposite
@@ -64,19 +64,19 @@ def _opposite(notation: str, known: Sequence[str]) -> str | None:
     return None
 
 
-def tells_commands(call: Call) -> bool:
+def tells_commands(call: WatchedCallable) -> bool:
     """Whether there are commands, and their texts look like names of something."""
     if not call.commands:
         return False
     return call.told_by != "self" or len(call.commands) > 1 or "=" in next(iter(call.commands))
 
 
-def is_read(call: Call) -> bool:
+def is_read(call: WatchedCallable) -> bool:
     """Whether its commands read."""
     return _READS.search(call.name) is not None
 
 
-def commands_of(call: Call, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
+def commands_of(call: WatchedCallable, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
     """Each command as a notation, with what is written beside it or read.
 
     ``groups``: constants that the program compares one and the same thing with.
@@ -99,7 +99,7 @@ def _written(text: str, command: Command) -> dict[str, Any]:
     return {"arguments": tables} if tables else {}
 
 
-def _value(text: str, part: Part) -> dict[str, Any]:
+def _value(text: str, part: WatchedPart) -> dict[str, Any]:
     """What a written value means: as the node is called, else as its values look."""
     values = list(part.values)
     if part.length is not None or not values or any(isinstance(value, str) for value in values):
@@ -107,7 +107,7 @@ def _value(text: str, part: Part) -> dict[str, Any]:
     if all(isinstance(value, bool) for value in values):
         return {"kind": "output", "values": [False, True]}
     words = words_of(text)
-    guess = guess_argument((words or ("",))[-1], Setting((*words[:-1], "set"), values=values))
+    guess = guess_argument((words or ("",))[-1], NameContext((*words[:-1], "set"), values=values))
     if guess.is_sure and guess.table["kind"] in ("translation", "rotation", "duration"):
         return guess.table
     return {"kind": "output", "values": values} if 2 <= len(values) <= _MOST_VALUES else {}
@@ -121,7 +121,7 @@ def _read(text: str, command: Command, groups: Sequence[Sequence[Any]]) -> dict[
         return {"result": {"kind": "flag"}}
     words = words_of(text)
     annotation = "str" if part.type == "str" else ""
-    setting = Setting(words, annotation=annotation, values=with_compared(part.values, groups))
+    setting = NameContext(words, annotation=annotation, values=with_compared(part.values, groups))
     guess = guess_reading((words or ("",))[-1], setting)
     return {"result": guess.table} if guess.is_sure else {}
 

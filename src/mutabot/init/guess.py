@@ -88,7 +88,7 @@ class Guess:
 
 
 @dataclass(frozen=True)
-class Setting:
+class NameContext:
     """Where a name stands.
 
     Attributes:
@@ -115,7 +115,7 @@ class Setting:
         return bool(GRIPPER & {*self.words, *self.owner})
 
 
-def guess_argument(name: str, setting: Setting) -> Guess:
+def guess_argument(name: str, setting: NameContext) -> Guess:
     """What an argument means; an empty guess if neither the callable's name nor its own tells."""
     words, unit = _without_unit(words_of(name))
     noun = noun_of(words)
@@ -150,7 +150,7 @@ def guess_argument(name: str, setting: Setting) -> Guess:
     return Guess()
 
 
-def _by_verb(noun: str, stem: str, setting: Setting) -> Motion | None:
+def _by_verb(noun: str, stem: str, setting: NameContext) -> Motion | None:
     """Kind, axis and mode where the callable's verb decides, whatever its only number is called."""
     verb, subject = first(VERBS, setting.words), noun_of(setting.words)
     is_axis = _AXIS.fullmatch(stem) is not None
@@ -185,7 +185,7 @@ def _by_name(noun: str, stem: str) -> Motion | None:
 
 
 def _moved(
-    kind: str, axis: str | None, mode: str | None, unit: str | None, name: str, setting: Setting
+    kind: str, axis: str | None, mode: str | None, unit: str | None, name: str, setting: NameContext
 ) -> Guess:
     """A commanded motion, or what a setter sets."""
     table: Table = {"kind": kind, **({"axis": axis} if axis else {})}
@@ -203,7 +203,7 @@ def _moved(
     return guess
 
 
-def _mode(setting: Setting) -> str | None:
+def _mode(setting: NameContext) -> str | None:
     if setting.relative:
         return "by" if True in setting.relative else "to"
     told = {MODES[word] for word in setting.words if word in MODES}
@@ -213,7 +213,7 @@ def _mode(setting: Setting) -> str | None:
     return {"relative": "by", "absolute": "to"}[said.pop()] if len(said) == 1 else None
 
 
-def measured(table: Table, dimension: str, unit: str | None, name: str, setting: Setting) -> Guess:
+def measured(table: Table, dimension: str, unit: str | None, name: str, setting: NameContext) -> Guess:
     """A quantity with a unit: as its name or a docstring says, else as its values show."""
     fitting = UNITS[dimension]
     if unit in fitting:
@@ -265,7 +265,7 @@ def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
     return None
 
 
-def _opening(unit: str | None, name: str, setting: Setting) -> Guess:
+def _opening(unit: str | None, name: str, setting: NameContext) -> Guess:
     if _are_truth(setting):
         return Guess({"kind": "opening", "values": [False, True]})
     values = _distinct(setting.values)
@@ -281,7 +281,7 @@ def _opening(unit: str | None, name: str, setting: Setting) -> Guess:
     return Guess(table, [asked if said else f"{asked} in which unit (fraction, percent, mm, m)?"])
 
 
-def _output(setting: Setting) -> Guess:
+def _output(setting: NameContext) -> Guess:
     values = _distinct(setting.values)
     if len(values) >= 2 and len(values) <= _MOST_VALUES:
         return Guess({"kind": "output", "values": values})
@@ -295,12 +295,12 @@ def _literals(annotation: str) -> list[str]:
     return re.findall(r"'([^']*)'", literal[1]) if literal else []
 
 
-def _chosen(setting: Setting) -> Guess:
+def _chosen(setting: NameContext) -> Guess:
     values = _literals(setting.annotation)
     return Guess({"kind": "output", "values": values}) if len(values) >= 2 else Guess()
 
 
-def guess_reading(name: str, setting: Setting) -> Guess:
+def guess_reading(name: str, setting: NameContext) -> Guess:
     """What a result, or the part of it with this name, means."""
     words, unit = _without_unit(words_of(name))
     about = {*words, *setting.words}
@@ -332,7 +332,7 @@ def guess_reading(name: str, setting: Setting) -> Guess:
     return Guess()
 
 
-def _label(setting: Setting) -> Guess:
+def _label(setting: NameContext) -> Guess:
     values = _literals(setting.annotation) or _distinct(setting.values)
     texts = [value for value in values if isinstance(value, str)]
     if len(values) > _MOST_LABELS or any(len(text) > _LONGEST_LABEL for text in texts):
@@ -343,7 +343,7 @@ def _label(setting: Setting) -> Guess:
 
 
 def guess_elements(
-    name: str, length: int, setting: Setting, *, written: bool, limits: list[list[float]] | None = None
+    name: str, length: int, setting: NameContext, *, written: bool, limits: list[list[float]] | None = None
 ) -> dict[str, Guess]:
     """What the elements mean, by the index or slice; nothing if neither the name nor the callable's tells.
 
@@ -374,7 +374,7 @@ def guess_elements(
     return {}
 
 
-def _element(kind: str, read: str, axis: str, name: str, setting: Setting, written: bool) -> Guess:
+def _element(kind: str, read: str, axis: str, name: str, setting: NameContext, written: bool) -> Guess:
     if written:
         told = replace(setting, words=(*setting.words, "to")) if _mode(setting) is None else setting
         return _moved(kind, axis, None, None, name, told)
@@ -382,7 +382,7 @@ def _element(kind: str, read: str, axis: str, name: str, setting: Setting, writt
     return measured({"kind": read, "axis": axis}, dimension, None, name, setting)
 
 
-def _pose(name: str, length: int, setting: Setting, written: bool) -> dict[str, Guess]:
+def _pose(name: str, length: int, setting: NameContext, written: bool) -> dict[str, Guess]:
     count = min(length, 3)
     first_part = replace(setting, values=[value[:count] for value in setting.values])
     found = {f"[0:{count}]": _element("translation", "position", "xyz"[:count], name, first_part, written)}
@@ -396,7 +396,7 @@ def _pose(name: str, length: int, setting: Setting, written: bool) -> dict[str, 
     return found
 
 
-def _speeds(length: int, setting: Setting) -> dict[str, Guess]:
+def _speeds(length: int, setting: NameContext) -> dict[str, Guess]:
     table = {"kind": "speed", "unit": "…"}
     return {f"[0:{length}]": Guess(table, ["the unit, and the axis?"])} if length <= _MOST_JOINTS else {}
 
@@ -416,7 +416,7 @@ def _without_unit(words: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
     return (words[:-1] or words), found[0]
 
 
-def _are_truth(setting: Setting) -> bool:
+def _are_truth(setting: NameContext) -> bool:
     seen = list(setting.values)
     return setting.annotation == "bool" or (bool(seen) and all(isinstance(one, bool) for one in seen))
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mutabot.model.operation import Form
-from mutabot.model.watched import Part, Use, Values
+from mutabot.model.watched import Use, Values, WatchedPart
 
-from .guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
+from .guess import Guess, NameContext, Table, guess_argument, guess_elements, guess_reading
 from .words import GRIPPER, READERS, VERBS, words_of
 
 Meant = dict[str, Guess]
@@ -54,17 +54,17 @@ _BEGINNINGS = (
 
 
 @dataclass
-class Described:
+class DescribedPart:
     """A part with the table it belongs to, and what it means; without a guess nothing tells."""
 
     table: str
     path: str
-    part: Part
+    part: WatchedPart
     guess: Guess | None
 
 
 @dataclass
-class Entry:
+class MessageEntry:
     """One entry.
 
     Attributes:
@@ -81,7 +81,7 @@ class Entry:
     direction: str = ""
     type: str = ""
     uses: list[Use] = field(default_factory=list)
-    parts: list[Described] = field(default_factory=list)
+    parts: list[DescribedPart] = field(default_factory=list)
     is_taken: bool = True
 
     @property
@@ -100,9 +100,9 @@ class Entry:
         return any(part.guess is not None for part in self.parts)
 
 
-def entries(found: Sequence[Use]) -> list[Entry]:
+def entries(found: Sequence[Use]) -> list[MessageEntry]:
     """An entry for each name that the program uses, and for the readings of the tests that mean something."""
-    made: dict[tuple[str, str, str], Entry] = {}
+    made: dict[tuple[str, str, str], MessageEntry] = {}
     for use in found:
         is_own = use.name in _OF_MIDDLEWARE or use.name.startswith(_BEGINNINGS)
         if is_own or (use.of_tests and (use.form not in _READINGS or use.is_called_back)):
@@ -111,7 +111,7 @@ def entries(found: Sequence[Use]) -> list[Entry]:
             continue
         key, _, _ = _KEYS[use.form]
         direction = _DIRECTIONS.get(use.form, "")
-        entry = made.setdefault((key, use.name, direction), Entry(key, use.name, direction))
+        entry = made.setdefault((key, use.name, direction), MessageEntry(key, use.name, direction))
         if entry.uses and use.of_tests and not entry.of_tests:
             continue  # what the program reads is told of the program alone
         if entry.uses and entry.of_tests and not use.of_tests:
@@ -133,18 +133,18 @@ def _type(use: Use) -> str:
     return f"{package}/{name.removesuffix(ending).partition('_')[0]}"
 
 
-def _described(use: Use) -> Iterator[Described]:
+def _described(use: Use) -> Iterator[DescribedPart]:
     _, written, read = _KEYS[use.form]
     for table, values in ((written, use.written), (read, use.read)):
         if not table:
             continue
-        place = Place.of(use, values, is_written=table == written)
+        place = MessagePlace.of(use, values, is_written=table == written)
         for part in values.parts.values():
             meant = meaning(part, place) if values.always(part) else {}
             for path, guess in meant.items():
-                yield Described(table, path, part, guess if guess.table else None)
+                yield DescribedPart(table, path, part, guess if guess.table else None)
             if not meant and not is_nothing(part, place):
-                yield Described(table, part.path, part, None)
+                yield DescribedPart(table, part.path, part, None)
 
 
 _HEADER = "std_msgs/Header"
@@ -163,7 +163,7 @@ _BY = frozenset({"by", "relative", "rel", "offset", "shift", "jog", "delta", "st
 
 
 @dataclass(frozen=True)
-class Place:
+class MessagePlace:
     """Where parts pass.
 
     Attributes:
@@ -179,7 +179,7 @@ class Place:
     frame: str = ""
 
     @classmethod
-    def of(cls, use: Use, values: Values, *, is_written: bool) -> Place:
+    def of(cls, use: Use, values: Values, *, is_written: bool) -> MessagePlace:
         """The place of what passes in a use."""
         parts = values.parts.values()
         frames = {value for part in parts if _is_header(part, "frame_id") for value in part.values}
@@ -197,7 +197,7 @@ class Place:
         return self.form is Form.CALL and not self.is_written and not READERS & set(self.words)
 
 
-def meaning(part: Part, place: Place) -> Meant:
+def meaning(part: WatchedPart, place: MessagePlace) -> Meant:
     """What a part means, by path; an empty guess for a path of which nothing tells, nothing for the whole."""
     if place.tells_nothing:
         return {}
@@ -217,7 +217,7 @@ def meaning(part: Part, place: Place) -> Meant:
     return by_name(part, place.words, is_written=place.is_written)
 
 
-def _by_type(part: Part, field_: tuple[str, str], place: Place) -> Guess | None:
+def _by_type(part: WatchedPart, field_: tuple[str, str], place: MessagePlace) -> Guess | None:
     """What a number means by the types that hold it; None if no convention tells."""
     holder, name = field_
     around = part.within[-2] if len(part.within) > 1 else ("", "")
@@ -234,7 +234,7 @@ def _by_type(part: Part, field_: tuple[str, str], place: Place) -> Guess | None:
     return Guess({"kind": "distance", "unit": "m"}) if field_ in (_GRIPPER, _RANGE) else None
 
 
-def _motion(kind: str, name: str, place: Place) -> Guess:
+def _motion(kind: str, name: str, place: MessagePlace) -> Guess:
     """Where something is, or is to be."""
     turns = kind == "rotation"
     axis, unit = "z" if name == "theta" else name, "rad" if turns else "m"
@@ -243,11 +243,11 @@ def _motion(kind: str, name: str, place: Place) -> Guess:
     return Guess({**table, "mode": "by" if place.is_by else "to"} if place.is_written else table)
 
 
-def _framed(table: Table, place: Place) -> Table:
+def _framed(table: Table, place: MessagePlace) -> Table:
     return {**table, "frame": place.frame} if place.frame else table
 
 
-def _joints(part: Part, count: int, place: Place) -> Meant:
+def _joints(part: WatchedPart, count: int, place: MessagePlace) -> Meant:
     axis = "j1" if count == 1 else f"j1..j{count}"
     path = f"{part.path}[0]" if count == 1 else f"{part.path}[0:{count}]"
     written = {"kind": "rotation", "axis": axis, "unit": "rad", "mode": "to"}
@@ -255,11 +255,11 @@ def _joints(part: Part, count: int, place: Place) -> Meant:
     return {path: Guess(table)} if count <= _MOST_JOINTS else {}
 
 
-def _is_header(part: Part, name: str) -> bool:
+def _is_header(part: WatchedPart, name: str) -> bool:
     return bool(part.within) and part.within[-1] == (_HEADER, name)
 
 
-def is_nothing(part: Part, place: Place) -> bool:
+def is_nothing(part: WatchedPart, place: MessagePlace) -> bool:
     """Whether a part is not worth asking about: what the middleware itself writes, and words for people."""
     if part.within and part.within[-1][0] in (_HEADER, "std_msgs/MultiArrayLayout"):
         return True
@@ -276,10 +276,10 @@ _LEAST_VALUES, _MOST_VALUES = 2, 5
 _FULL_TURN = 6.5
 
 
-def by_name(part: Part, words: Sequence[str], *, is_written: bool) -> Meant:
+def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Meant:
     """What a part means by the names of its field and topic, by path."""
     own, values = part.within[-1][1] if part.within else "", part.values
-    setting = Setting(tuple(words), values=values)
+    setting = NameContext(tuple(words), values=values)
     if not values:
         return {}
     if part.length is not None:

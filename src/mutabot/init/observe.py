@@ -17,7 +17,7 @@ from typing import Any
 from mutabot.execution.processes import command, kill_group
 from mutabot.extensions import libraries, told_to_processes
 from mutabot.model.codec import from_data
-from mutabot.model.watched import WATCH_VARIABLE, Call, Seen, Use, Values
+from mutabot.model.watched import WATCH_VARIABLE, Use, Values, WatchedCallable, WatchedCalls
 
 from .layout import Layout
 
@@ -27,7 +27,7 @@ LIMIT = 180.0
 _ANONYMOUS = re.compile(r"_\d+_\d{10,}(?=/|$)")
 
 
-def observe(layout: Layout, limit: float = LIMIT) -> Seen:
+def observe(layout: Layout, limit: float = LIMIT) -> WatchedCalls:
     """Run the tests once and watch the program."""
     with TemporaryDirectory(ignore_cleanup_errors=True) as name:  # nodes may still write to their logs
         folder = Path(name)
@@ -75,16 +75,16 @@ def _wait(words: Sequence[str], root: Path, order: Path, log: Path, limit: float
     return False
 
 
-def _read(output: Path) -> Seen:
+def _read(output: Path) -> WatchedCalls:
     try:
-        return merged(from_data(Seen, json.loads(output.read_text(encoding="utf-8"))))
+        return merged(from_data(WatchedCalls, json.loads(output.read_text(encoding="utf-8"))))
     except (OSError, ValueError, TypeError, KeyError):
-        return Seen()
+        return WatchedCalls()
 
 
-def merged(seen: Seen) -> Seen:
+def merged(seen: WatchedCalls) -> WatchedCalls:
     """One call for each callable and side, one use for each form, name and side, whichever process saw it."""
-    calls: dict[tuple[str, bool], Call] = {}
+    calls: dict[tuple[str, bool], WatchedCallable] = {}
     for call in seen.calls:  # of what several processes saw of a callable, the first one's values
         first = calls.setdefault((call.target, call.of_tests), call)
         if first is not call:

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model.watched import Call, Part
+from mutabot.model.watched import WatchedCallable, WatchedPart
 
 from .commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
-from .guess import Guess, Setting, guess_argument, guess_elements, guess_reading
+from .guess import Guess, NameContext, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
 from .words import COMMANDS, GRIPPER, HOUSEKEEPING, OPPOSITES, READERS, REPLIES, SETUP, TALK, words_of
 
@@ -33,7 +33,7 @@ class Proposal:
         is_plain: whether it is proposed although nothing tells what it means.
     """
 
-    call: Call
+    call: WatchedCallable
     arguments: dict[str, Guess] = field(default_factory=dict)
     result: dict[str, Guess] = field(default_factory=dict)
     message: str | None = None
@@ -71,7 +71,7 @@ class Proposal:
 
 
 def proposals(
-    calls: Sequence[Call], groups: Sequence[Sequence[Any]] = ()
+    calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()
 ) -> tuple[list[Proposal], list[Proposal]]:
     """Proposed operations, and those of which nothing shows what they mean to the robot.
 
@@ -85,7 +85,7 @@ def proposals(
     return list(found.values()), [one for one in all_ if one.target not in found]
 
 
-def _proposal(call: Call, groups: Sequence[Sequence[Any]]) -> Proposal:
+def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposal:
     proposal = Proposal(call)
     proposal.message = _message(call)
     proposal.reads_by_name = proposal.message is not None and _reads(call)
@@ -121,26 +121,26 @@ def _share_units(guesses: dict[str, Guess]) -> None:
                 guess.table["unit"], guess.questions = next(iter(units)), guess.questions[1:]
 
 
-def _is_housekeeping(call: Call) -> bool:
+def _is_housekeeping(call: WatchedCallable) -> bool:
     """Whether it asks a reply, or a connection, how it is."""
     words = set(words_of(call.name))
     return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & set(words_of(call.owner))))
 
 
-def _is_setup(call: Call) -> bool:
+def _is_setup(call: WatchedCallable) -> bool:
     return bool(SETUP & set(words_of(call.name)))
 
 
-def _is_command(call: Call) -> bool:
+def _is_command(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
     return not (call.is_property or words & TALK or _reads(call)) and bool(words & COMMANDS)
 
 
-def _reads(call: Call) -> bool:
+def _reads(call: WatchedCallable) -> bool:
     return bool(READERS & set(words_of(call.name)))
 
 
-def _message(call: Call) -> str | None:
+def _message(call: WatchedCallable) -> str | None:
     """The argument that holds a text command."""
     if TALK & set(words_of(call.name)):
         return None
@@ -151,7 +151,7 @@ def _message(call: Call) -> str | None:
     return None
 
 
-def _argument(name: str, part: Part, call: Call) -> Iterator[tuple[str, Guess]]:
+def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[tuple[str, Guess]]:
     is_whole = part.path == name
     setting = _setting(call, part, call.annotations.get(name, "") if is_whole else "")
     own = part.name or name
@@ -169,7 +169,7 @@ def _argument(name: str, part: Part, call: Call) -> Iterator[tuple[str, Guess]]:
         yield part.path, guess
 
 
-def _result(call: Call, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
+def _result(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
     found: dict[str, Guess] = {}
     parts = [part for part in call.result.parts.values() if call.result.always(part)]
     sequences = [part for part in parts if part.length is not None]
@@ -181,11 +181,11 @@ def _result(call: Call, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
     return {path: guess for path, guess in found.items() if guess.table}
 
 
-def _reading(call: Call, part: Part, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
+def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
     setting = _setting(call, part, call.returns if not part.path else "")
     own = part.name or "_".join(words_of(call.name))
     if part.name:  # a field says itself what it is
-        setting = Setting((), setting.owner, part.doc + setting.doc, values=part.values)
+        setting = NameContext((), setting.owner, part.doc + setting.doc, values=part.values)
     if part.length is not None:
         found = guess_elements(own, part.length, setting, written=False)
         return {f"{part.path}{step}": guess for step, guess in found.items()}
@@ -194,7 +194,7 @@ def _reading(call: Call, part: Part, groups: Sequence[Sequence[Any]]) -> dict[st
     if not part.path:
         values = tuple(with_compared(part.values, groups))
         annotation = setting.annotation or (part.type if part.type in ("bool", "str") else "")
-        setting = Setting(setting.words, setting.owner, setting.doc, annotation, values)
+        setting = NameContext(setting.words, setting.owner, setting.doc, annotation, values)
     return {part.path: guess_reading(own, setting)}
 
 
@@ -242,12 +242,12 @@ def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
                 return
 
 
-def _setting(call: Call, part: Part, annotation: str) -> Setting:
+def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameContext:
     module, _, qualname = call.target.partition(":")
     owner = [*words_of(module.rpartition(".")[2]), *words_of(qualname.rpartition(".")[0])]
     relative = call.arguments.get("relative")
     said = {bool(value) for part in relative.parts.values() for value in part.values} if relative else set()
-    return Setting(
+    return NameContext(
         words=words_of(call.name),
         owner=tuple(owner),
         doc=f"{call.doc}\n{call.owner_doc}",

@@ -12,11 +12,11 @@ from mutabot.config.vocabulary import load
 from mutabot.config.vocabulary.load import shipped
 from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY, Vocabulary
-from mutabot.model.watched import Call
+from mutabot.model.watched import WatchedCallable
 
 from .commands import commands_of, tells_commands
 from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached
-from .messages import Entry, entries
+from .messages import MessageEntry, entries
 from .observe import LIMIT, observe
 from .operations import Proposal, proposals
 from .text import questions_in, value_text, vocabulary_text
@@ -27,7 +27,7 @@ _BEHIND = {"metaworld": "gymnasium"}
 
 
 @dataclass(frozen=True)
-class Known:
+class ShippedVocabulary:
     """A shipped vocabulary that describes calls of the program.
 
     Attributes:
@@ -44,7 +44,7 @@ class Known:
     packages: frozenset[str]
     seen: int = 0
 
-    def describes(self, call: Call) -> bool:
+    def describes(self, call: WatchedCallable) -> bool:
         """Whether it has this callable, as an operation or as its clock; wrappers and subclasses included."""
         clock = self.vocabulary.clock
         if call.name in self.overridden and call.package in self.packages:
@@ -52,29 +52,29 @@ class Known:
         targets = [*(one.target for one in self.vocabulary.operations), *([clock.tick] if clock else [])]
         return call.target in targets
 
-    def knows_arguments(self, call: Call) -> bool:
+    def knows_arguments(self, call: WatchedCallable) -> bool:
         """Whether it says what arguments of such a call mean."""
         return self.describes(call) and any(
             one.arguments for one in self.vocabulary.operations if one.target.endswith(f".{call.name}")
         )
 
-    def reads(self, call: Call) -> bool:
+    def reads(self, call: WatchedCallable) -> bool:
         """Whether it has this callable as a reading."""
         return any(one.target == call.target and not one.command for one in self.vocabulary.operations)
 
 
-def known_vocabularies(layout: Layout, calls: Sequence[Call]) -> list[Known]:
+def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list[ShippedVocabulary]:
     """The shipped vocabularies with calls that were seen; without any calls, those that the text imports."""
     files = (*layout.program, *layout.tests)
     imported = {name.partition(".")[0] for path in files for name in imported_modules(path)}
-    every: dict[str, Known] = {}
+    every: dict[str, ShippedVocabulary] = {}
     for name in shipped():
         vocabulary = load([name], layout.root)
         packages = frozenset(one.module.partition(".")[0] for one in vocabulary.operations)
         overridden = frozenset(
             one.target.rpartition(".")[2] for one in vocabulary.operations if one.overrides
         )
-        every[name] = Known(name, vocabulary, overridden, packages)
+        every[name] = ShippedVocabulary(name, vocabulary, overridden, packages)
     for name, wrapper in _BEHIND.items():
         if name in imported:
             own, other = every[name], every.pop(wrapper)
@@ -108,8 +108,8 @@ class _Look:
         self.seen = observe(self.layout, limit)
         self.program = [self.layout.relative(path) for path in self.layout.program]
         self.calls = without_doubles([call for call in self.seen.calls if call.sites])
-        self.known: list[Known] = known_vocabularies(self.layout, self.calls)
-        self.named: list[Entry] = entries(self.seen.uses)
+        self.known: list[ShippedVocabulary] = known_vocabularies(self.layout, self.calls)
+        self.named: list[MessageEntry] = entries(self.seen.uses)
         groups = compared_with(self.layout)
         mine, rest = _by_side([call for call in self.calls if not call.leads_to_names])
         self.found, self.others = proposals(self._new([call for call in mine if not call.own]), groups)
@@ -153,7 +153,7 @@ class _Look:
     def _text(self) -> str:
         return vocabulary_text(self.found, self.others, self.program, self.unreached, self.named)
 
-    def _new(self, calls: Sequence[Call]) -> list[Call]:
+    def _new(self, calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
         """Calls to be described here: those of shipped vocabularies only where the program tells more."""
         return [
             call
@@ -208,7 +208,7 @@ def propose(
     return _told(found, questions_in(text) if found.needs_vocabulary else 0)
 
 
-def without_doubles(calls: Sequence[Call]) -> list[Call]:
+def without_doubles(calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
     """Without methods of whatever has them where the robot's own was seen: a mock of it is one."""
     owned = {
         call.name
@@ -218,16 +218,16 @@ def without_doubles(calls: Sequence[Call]) -> list[Call]:
     return [call for call in calls if not (call.target.startswith(ANY) and call.name in owned)]
 
 
-def _nodes_tell(call: Call) -> bool:
+def _nodes_tell(call: WatchedCallable) -> bool:
     return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
 
 
-def _has_limits(call: Call) -> bool:
+def _has_limits(call: WatchedCallable) -> bool:
     """Whether it takes an action of which the environment tells least and greatest values."""
     return any(part.limits for values in call.arguments.values() for part in values.parts.values())
 
 
-def _by_side(calls: Sequence[Call]) -> tuple[list[Call], list[Call]]:
+def _by_side(calls: Sequence[WatchedCallable]) -> tuple[list[WatchedCallable], list[WatchedCallable]]:
     """What the program calls, and what only the tests do."""
     mine = [call for call in calls if not call.of_tests]
     targets = {call.target for call in mine}

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mutabot.model import ANY
-from mutabot.model.watched import Part
+from mutabot.model.watched import WatchedPart
 
 from .guess import Guess
 from .layout import Unreached
-from .messages import Described, Entry
+from .messages import DescribedPart, MessageEntry
 from .operations import Proposal
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
@@ -30,7 +30,7 @@ def vocabulary_text(
     others: Sequence[Proposal],
     program: Sequence[str],
     unreached: Sequence[Unreached] = (),
-    named: Sequence[Entry] = (),
+    named: Sequence[MessageEntry] = (),
 ) -> str:
     """The vocabulary file."""
     blocks = [
@@ -161,7 +161,7 @@ def _results(proposal: Proposal) -> Iterator[str]:
             yield from _lines("result", part, proposal.result)
 
 
-def _lines(table: str, part: Part, guesses: dict[str, Guess]) -> Iterator[str]:
+def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator[str]:
     """The lines of a part: its guesses, else a comment with what was seen."""
     mine = {path: guess for path, guess in guesses.items() if _belongs(path, part)}
     for path, guess in mine.items():
@@ -174,12 +174,12 @@ def _path(table: str, path: str) -> str:
     return f"{table}.{key_text(path)}" if path else table
 
 
-def _belongs(path: str, part: Part) -> bool:
+def _belongs(path: str, part: WatchedPart) -> bool:
     """Whether a guess is about this part, or about elements of it."""
     return path == part.path or (part.length is not None and path.rpartition("[")[0] == part.path)
 
 
-def _examples(part: Part, path: str = "") -> str:
+def _examples(part: WatchedPart, path: str = "") -> str:
     """Values that were seen, of the elements that the path names."""
     step = re.search(r"\[(\d+)(?::(\d+))?\]$", path) if part.length is not None else None
     values = part.values[:_EXAMPLES]
@@ -212,7 +212,7 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
     return ["command = false", *lines]
 
 
-def entry_text(entry: Entry) -> str:
+def entry_text(entry: MessageEntry) -> str:
     """One ``[[operation]]`` of a middleware, with what nothing tells as a comment."""
     count = sum(sum(use.sites.values()) for use in entry.uses)
     where = f"{_counted(count, _DONE[entry.key])}, first at {next(iter(entry.uses[0].sites))}"
@@ -246,5 +246,5 @@ def entry_text(entry: Entry) -> str:
     return "\n".join(lines)
 
 
-def _says_no(part: Described) -> bool:
+def _says_no(part: DescribedPart) -> bool:
     return part.table == "response" and part.path == "success" and part.part.type in ("bool", "boolean")

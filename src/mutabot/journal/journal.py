@@ -32,7 +32,7 @@ from .records import (
     BaselineTest,
     ControlEnd,
     Kept,
-    Row,
+    MovedOutcome,
     baseline_test_in,
     bytes_in,
     control_in,
@@ -208,7 +208,7 @@ class JournalReader:
             f"SELECT mutant, round, verdict, data, key FROM outcome WHERE rowid IN ({LAST})",
         )
 
-    def row(self, mutant: str, round: int) -> Row | None:
+    def row(self, mutant: str, round: int) -> MovedOutcome | None:
         """One of those that were ``found``; None if it holds what no outcome can."""
         for table, condition in (("outcome", "ORDER BY rowid DESC"), ("kept", "")):
             rows = self._store.rows(
@@ -219,7 +219,7 @@ class JournalReader:
             for verdict, by, text, key in rows:
                 with self._checked(table, mutant, round):
                     outcome_in(mutant, round, verdict, by, text)
-                    return Row(mutant, round, verdict, by, text, key)
+                    return MovedOutcome(mutant, round, verdict, by, text, key)
                 return None
         raise KeyError((mutant, round))
 
@@ -443,7 +443,7 @@ class Journal(JournalReader):
 
     # Earlier campaigns
 
-    def take_over(self, rows: Iterable[Row]) -> None:
+    def take_over(self, rows: Iterable[MovedOutcome]) -> None:
         """Add outcomes of earlier campaigns."""
         with self._store.transaction():
             for row in rows:

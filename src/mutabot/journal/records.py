@@ -79,7 +79,7 @@ class Kept:
 
 
 @frozen
-class Row:
+class MovedOutcome:
     """An outcome on its way from one campaign to another.
 
     Attributes:

@@ -20,7 +20,7 @@ from typing import NamedTuple, Protocol
 from mutabot.model.mutant import Extent
 
 
-class Position(NamedTuple):
+class SourcePosition(NamedTuple):
     """Where a call stands in its file.
 
     Attributes:
@@ -32,7 +32,7 @@ class Position(NamedTuple):
     function: str
 
 
-class Name(NamedTuple):
+class SiteName(NamedTuple):
     """How a site's id calls it.
 
     Attributes:
@@ -51,7 +51,7 @@ class FrontEnd(Protocol):
     def suffixes(self) -> tuple[str, ...]:
         """How its files end, such as ``.py``."""
 
-    def names(self, source: str) -> Mapping[Extent, Name]:
+    def names(self, source: str) -> Mapping[Extent, SiteName]:
         """Names of all that may be a site in a file.
 
         Raises SyntaxError or ValueError for a file that it cannot read.
@@ -60,7 +60,7 @@ class FrontEnd(Protocol):
     def file_of(self, frame: FrameType) -> str | None:
         """The file of this language that a frame carries out; None if it is no frame of its own."""
 
-    def position_of(self, frame: FrameType) -> Position:
+    def position_of(self, frame: FrameType) -> SourcePosition:
         """Where the call stands that such a frame is making.
 
         Asked at every call of an operation; of Python once for each place.

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from mutabot.model.mutant import Extent
 
-from .front_end import Name, Position
+from .front_end import SiteName, SourcePosition
 
 _Node = TypeVar("_Node", bound=ast.AST)
 _TEXT_LIMIT = 60
@@ -22,39 +22,39 @@ class Python:
 
     suffixes = (".py",)
 
-    def names(self, source: str) -> Mapping[Extent, Name]:
+    def names(self, source: str) -> Mapping[Extent, SiteName]:
         """Names of all expressions: a call by the text of its callee, all others by their own.
 
         What a ``for`` or ``with`` does by itself has the place of the whole statement up to Python 3.12.
         """
-        names: dict[Extent, Name] = {}
+        names: dict[Extent, SiteName] = {}
         tree = ast.parse(source)
         _number(tree, source.encode().splitlines(keepends=True), names)
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                names.setdefault(_definition(node), Name(f"def {node.name}", 1))
+                names.setdefault(_definition(node), SiteName(f"def {node.name}", 1))
             elif isinstance(node, ast.Lambda):
-                names.setdefault((node.lineno, 0, node.lineno, 0), Name("lambda", 1))
+                names.setdefault((node.lineno, 0, node.lineno, 0), SiteName("lambda", 1))
             elif isinstance(node, ast.For | ast.AsyncFor):
                 head = names[extent_of(node.iter)]
-                names.setdefault(extent_of(node), Name(f"for {head.text}", head.occurrence))
+                names.setdefault(extent_of(node), SiteName(f"for {head.text}", head.occurrence))
             elif isinstance(node, ast.With | ast.AsyncWith):
                 head = names[extent_of(node.items[0].context_expr)]
-                names.setdefault(extent_of(node), Name(f"with {head.text}", head.occurrence))
+                names.setdefault(extent_of(node), SiteName(f"with {head.text}", head.occurrence))
         return names
 
     def file_of(self, frame: FrameType) -> str | None:
         """The file that the frame's code stands in: every frame is one of Python."""
         return frame.f_code.co_filename
 
-    def position_of(self, frame: FrameType) -> Position:
+    def position_of(self, frame: FrameType) -> SourcePosition:
         """The place of the instruction that is running."""
         return _position(frame.f_code, frame.f_lasti)
 
-    def definition_of(self, code: CodeType) -> Position:
+    def definition_of(self, code: CodeType) -> SourcePosition:
         """The place of a function's definition: its first line, which is that of its first decorator."""
         first = code.co_firstlineno
-        return Position((first, 0, first, 0), code.co_qualname)
+        return SourcePosition((first, 0, first, 0), code.co_qualname)
 
 
 FRONT_END = Python()
@@ -93,10 +93,10 @@ def placed(made: _Node, place: ast.AST) -> _Node:
     return made
 
 
-def _position(code: CodeType, instruction: int) -> Position:
+def _position(code: CodeType, instruction: int) -> SourcePosition:
     line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
     first = line or code.co_firstlineno
-    return Position((first, column or 0, end_line or first, end_column or 0), function_of(code))
+    return SourcePosition((first, column or 0, end_line or first, end_column or 0), function_of(code))
 
 
 def function_of(code: CodeType) -> str:
@@ -113,14 +113,14 @@ def _definition(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Extent:
     return (first, 0, first, 0)
 
 
-def _number(tree: ast.Module, lines: list[bytes], names: dict[Extent, Name]) -> None:
+def _number(tree: ast.Module, lines: list[bytes], names: dict[Extent, SiteName]) -> None:
     for scope in _scopes(tree):
         # a call and its callee look alike but are different things to hit
         counts: dict[tuple[type, str], int] = {}
         for node in sorted(_expressions(scope), key=extent_of):
             text = _text(node, lines)
             count = counts[type(node), text] = counts.get((type(node), text), 0) + 1
-            names[extent_of(node)] = Name(text, count)
+            names[extent_of(node)] = SiteName(text, count)
 
 
 def _scopes(tree: ast.Module) -> list[ast.AST]:

@@ -135,7 +135,7 @@ def _rounded(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
 
 
-class Seen(StrEnum):
+class MagnitudeResult(StrEnum):
     """What the tests made of one magnitude."""
 
     #: a check, an exception or a time-out ended it
@@ -150,16 +150,16 @@ class Seen(StrEnum):
     @property
     def is_valid(self) -> bool:
         """Whether it says anything about the tests."""
-        return self in (Seen.NOTICED, Seen.MISSED)
+        return self in (MagnitudeResult.NOTICED, MagnitudeResult.MISSED)
 
 
-def seen(outcome: Outcome) -> Seen:
+def seen(outcome: Outcome) -> MagnitudeResult:
     """What the tests made of a graded mutant in a round."""
     if outcome.verdict is Verdict.REFUSED:
-        return Seen.REFUSED
+        return MagnitudeResult.REFUSED
     if not outcome.verdict.is_valid:
-        return Seen.UNKNOWN
-    return Seen.NOTICED if outcome.verdict.is_killed else Seen.MISSED
+        return MagnitudeResult.UNKNOWN
+    return MagnitudeResult.NOTICED if outcome.verdict.is_killed else MagnitudeResult.MISSED
 
 
 @frozen
@@ -190,13 +190,17 @@ class Bracket:
         return bool(self.out_of_order)
 
 
-def bracket_of(ladder: Mapping[float, Seen]) -> Bracket:
+def bracket_of(ladder: Mapping[float, MagnitudeResult]) -> Bracket:
     """The bracket of a round, from what was seen at the magnitudes that were run."""
-    missed = [size for size, one in ladder.items() if one is Seen.MISSED]
+    missed = [size for size, one in ladder.items() if one is MagnitudeResult.MISSED]
     low = max(missed, default=None)
     above = {size: one for size, one in ladder.items() if low is None or size > low}
-    high = min((size for size, one in above.items() if one is Seen.NOTICED), default=None)
-    refused = (size for size, one in above.items() if one is Seen.REFUSED and (high is None or size < high))
-    noticed = sorted(size for size, one in ladder.items() if one is Seen.NOTICED)
+    high = min((size for size, one in above.items() if one is MagnitudeResult.NOTICED), default=None)
+    refused = (
+        size
+        for size, one in above.items()
+        if one is MagnitudeResult.REFUSED and (high is None or size < high)
+    )
+    noticed = sorted(size for size, one in ladder.items() if one is MagnitudeResult.NOTICED)
     pairs = ((size, larger) for size in noticed for larger in sorted(missed) if larger > size)
     return Bracket(low, high, min(refused, default=None), tuple(pairs))

@@ -12,7 +12,7 @@ WATCH_VARIABLE = "MUTABOT_WATCH"
 
 
 @dataclass(slots=True)
-class Part:
+class WatchedPart:
     """A part of an argument, a result or a message.
 
     Attributes:
@@ -50,9 +50,9 @@ class Values:
 
     times: int = 0
     type: str = ""
-    parts: dict[str, Part] = field(default_factory=dict)
+    parts: dict[str, WatchedPart] = field(default_factory=dict)
 
-    def always(self, part: Part) -> bool:
+    def always(self, part: WatchedPart) -> bool:
         """Whether every value had this part."""
         return part.count >= self.times
 
@@ -66,7 +66,7 @@ class Command:
 
 
 @dataclass(slots=True)
-class Call:
+class WatchedCallable:
     """A callable that the program or the tests use.
 
     Attributes:
@@ -151,7 +151,7 @@ class Use:
 
 
 @dataclass(slots=True)
-class Seen:
+class WatchedCalls:
     """What one process saw, or all of them together.
 
     Attributes:
@@ -163,7 +163,7 @@ class Seen:
         trouble: why the run tells less than it could; empty if it went well.
     """
 
-    calls: list[Call] = field(default_factory=list)
+    calls: list[WatchedCallable] = field(default_factory=list)
     uses: list[Use] = field(default_factory=list)
     reached: list[tuple[str, int, str]] = field(default_factory=list)
     outcomes: dict[str, int] = field(default_factory=dict)

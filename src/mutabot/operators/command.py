@@ -13,7 +13,7 @@ from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
 from mutabot.model.operation import COMING, Form
 from mutabot.model.quantity import Value
 
-from .magnitudes import Ladder, sized
+from .magnitudes import Magnitudes, sized
 from .operator import Context, Example, Operator, Subject, Unchanged
 
 #: how descriptions call what goes its way under a form
@@ -51,7 +51,7 @@ class CommandOperator(Operator):
         """Whether it has something to do with this call."""
         return whole.is_command
 
-    def magnitudes(self, whole: Subject) -> Ladder | None:
+    def magnitudes(self, whole: Subject) -> Magnitudes | None:
         """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
         return None
 

@@ -8,7 +8,7 @@ from typing import Any
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.quantity import Value
 
-from .magnitudes import Ladder, sized
+from .magnitudes import Magnitudes, sized
 from .operator import Example, Subject, quantity_of
 
 #: how often each class of bugs was counted in public studies
@@ -69,7 +69,7 @@ def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subjec
     if "size" not in more:
         return subject
     direction, size, unit = more.pop("size")
-    return next(sized(subject, Ladder(unit, (size,)), direction))
+    return next(sized(subject, Magnitudes(unit, (size,)), direction))
 
 
 def _values(subject: Subject, given: Any) -> Mapping[str, Value]:

@@ -22,7 +22,7 @@ from .operator import Subject
 
 
 @frozen
-class Ladder:
+class Magnitudes:
     """The magnitudes of a fault, rising.
 
     Attributes:
@@ -34,7 +34,7 @@ class Ladder:
     steps: tuple[float, ...]
 
 
-def sized(subject: Subject, ladder: Ladder, direction: str = "") -> Iterator[Subject]:
+def sized(subject: Subject, ladder: Magnitudes, direction: str = "") -> Iterator[Subject]:
     """The subject, once for each magnitude of a ladder in one direction."""
     for size in ladder.steps:
         variant = f"{direction}{size:g}{'%' if ladder.unit == 'percent' else ladder.unit or ''}"
@@ -50,27 +50,27 @@ def series(first: float, count: int) -> tuple[float, ...]:
 
 
 #: seven magnitudes over two decades, by what is measured
-LADDERS: dict[Dimension, Ladder] = {
-    Dimension.LENGTH: Ladder("mm", series(1, 7)),
-    Dimension.ANGLE: Ladder("deg", series(0.2, 7)),
-    Dimension.TIME: Ladder("ms", series(10, 7)),
-    Dimension.RATIO: Ladder("percent", series(1, 6)),
-    Dimension.SPEED: Ladder("mm/s", series(5, 7)),
-    Dimension.ANGULAR_SPEED: Ladder("deg/s", series(1, 7)),
-    Dimension.ACCELERATION: Ladder("mm/s^2", series(50, 7)),
-    Dimension.ANGULAR_ACCELERATION: Ladder("deg/s^2", series(5, 7)),
-    Dimension.JERK: Ladder("mm/s^3", series(500, 7)),
-    Dimension.ANGULAR_JERK: Ladder("deg/s^3", series(50, 7)),
-    Dimension.FORCE: Ladder("N", series(1, 7)),
-    Dimension.TORQUE: Ladder("Nm", series(0.1, 7)),
-    Dimension.MASS: Ladder("g", series(10, 7)),
-    Dimension.TEMPERATURE: Ladder("K", series(0.5, 7)),
-    Dimension.VOLTAGE: Ladder("mV", series(100, 7)),
-    Dimension.CURRENT: Ladder("mA", series(10, 7)),
-    Dimension.PRESSURE: Ladder("mbar", series(10, 7)),
-    Dimension.FREQUENCY: Ladder("Hz", series(0.1, 7)),
+LADDERS: dict[Dimension, Magnitudes] = {
+    Dimension.LENGTH: Magnitudes("mm", series(1, 7)),
+    Dimension.ANGLE: Magnitudes("deg", series(0.2, 7)),
+    Dimension.TIME: Magnitudes("ms", series(10, 7)),
+    Dimension.RATIO: Magnitudes("percent", series(1, 6)),
+    Dimension.SPEED: Magnitudes("mm/s", series(5, 7)),
+    Dimension.ANGULAR_SPEED: Magnitudes("deg/s", series(1, 7)),
+    Dimension.ACCELERATION: Magnitudes("mm/s^2", series(50, 7)),
+    Dimension.ANGULAR_ACCELERATION: Magnitudes("deg/s^2", series(5, 7)),
+    Dimension.JERK: Magnitudes("mm/s^3", series(500, 7)),
+    Dimension.ANGULAR_JERK: Magnitudes("deg/s^3", series(50, 7)),
+    Dimension.FORCE: Magnitudes("N", series(1, 7)),
+    Dimension.TORQUE: Magnitudes("Nm", series(0.1, 7)),
+    Dimension.MASS: Magnitudes("g", series(10, 7)),
+    Dimension.TEMPERATURE: Magnitudes("K", series(0.5, 7)),
+    Dimension.VOLTAGE: Magnitudes("mV", series(100, 7)),
+    Dimension.CURRENT: Magnitudes("mA", series(10, 7)),
+    Dimension.PRESSURE: Magnitudes("mbar", series(10, 7)),
+    Dimension.FREQUENCY: Magnitudes("Hz", series(0.1, 7)),
 }
-_COUNTED = Ladder(None, series(1, 7))
+_COUNTED = Magnitudes(None, series(1, 7))
 #: drift per second: over a task of ten seconds it reaches the ladder of the offset
 _PER_SECOND = 0.1
 
@@ -82,7 +82,7 @@ def measure_of(quantity: Quantity) -> Dimension | None:
     return dimension_of(quantity.unit) if quantity.unit is not None else None
 
 
-def own_ladder(quantity: Quantity) -> Ladder | None:
+def own_ladder(quantity: Quantity) -> Magnitudes | None:
     """Of faults in the quantity's own measure; None where neither the vocabulary nor its kind says."""
     measure = measure_of(quantity)
     told = _told(quantity)
@@ -93,7 +93,7 @@ def own_ladder(quantity: Quantity) -> Ladder | None:
     return LADDERS.get(measure) if measure is not None else None
 
 
-def ladder_in(quantity: Quantity | None, measure: Dimension) -> Ladder:
+def ladder_in(quantity: Quantity | None, measure: Dimension) -> Magnitudes:
     """Of faults measured in time, or in a share of the value."""
     told = _told(quantity) if quantity is not None else None
     if told is not None and told.unit is not None and dimension_of(told.unit) is measure:
@@ -101,16 +101,16 @@ def ladder_in(quantity: Quantity | None, measure: Dimension) -> Ladder:
     return LADDERS[measure]
 
 
-def per_second(quantity: Quantity) -> Ladder | None:
+def per_second(quantity: Quantity) -> Magnitudes | None:
     """Of faults that grow with time, by the second."""
     own = own_ladder(quantity)
     if own is None:
         return None
-    return Ladder(f"{own.unit or ''}/s", tuple(float(f"{step * _PER_SECOND:.6g}") for step in own.steps))
+    return Magnitudes(f"{own.unit or ''}/s", tuple(float(f"{step * _PER_SECOND:.6g}") for step in own.steps))
 
 
-def _told(quantity: Quantity) -> Ladder | None:
+def _told(quantity: Quantity) -> Magnitudes | None:
     """What the vocabulary says."""
     if quantity.ladder is None:
         return None
-    return Ladder(quantity.ladder_unit or quantity.unit, quantity.ladder)
+    return Magnitudes(quantity.ladder_unit or quantity.unit, quantity.ladder)

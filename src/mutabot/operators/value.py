@@ -15,7 +15,7 @@ from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Q
 from mutabot.model.quantity import SAME_ORIENTATION, TURNED_ROUND, Value, is_same
 from mutabot.model.units import Quaternion, convert, distance, from_rotation_vector, inverse, product
 
-from .magnitudes import Ladder, sized
+from .magnitudes import Magnitudes, sized
 from .operator import Context, Operator, Subject, Unchanged, quantity_of
 
 CallOrReply = TypeVar("CallOrReply", Call, Reply)
@@ -104,7 +104,7 @@ class ValueOperator(ValuesOperator):
         """The variants for a quantity."""
         return self.variants
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
         return None
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from mutabot.errors import ExtensionError
-from mutabot.extensions import Part, brought
+from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Figure
@@ -60,7 +60,7 @@ def document(results: Results) -> dict[str, Any]:
     }
 
 
-def _section(part: Part, results: Results) -> Any:
+def _section(part: ExtensionPart, results: Results) -> Any:
     make = part.load()
     try:
         return data_of(make(results))
@@ -245,12 +245,12 @@ data_of = Encoder(
         thresholds.Thresholds: _thresholds,
         ladders.Ladder: _ladder,
         ladders.LadderRound: _ladder_round,
-        ladders.Step: "magnitude number noticed valid interval by refused unknown",
+        ladders.MagnitudeStep: "magnitude number noticed valid interval by refused unknown",
         ladders.Violation: "round=round+1 noticed missed",
         ladders.Better: "round=round+1 magnitude text",
         thresholds.Floor: _floor,
         thresholds.Comparison: _comparison,
-        thresholds.Compared: "id=new.id change steps old new",
+        thresholds.LadderChange: "id=new.id change steps old new",
         Suggestions: _suggestions,
     }
 )

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.errors import ExtensionError, UsageError, unknown_name_text
-from mutabot.extensions import Part, brought
+from mutabot.extensions import ExtensionPart, brought
 from mutabot.frozen import frozen
 from mutabot.model import Span
 from mutabot.results.results import Results
@@ -40,7 +40,7 @@ class Material:
         """A file of the project, relative to the repository."""
         return f"{self.prefix}/{file}" if self.prefix else file
 
-    def place(self, span: Span, length: Callable[[str], int] = len) -> Place:
+    def place(self, span: Span, length: Callable[[str], int] = len) -> FilePlace:
         """Where a span is. ``length`` counts the characters of a part of a line."""
         return place_of(span, self.campaign.source(span.file), length)
 
@@ -73,7 +73,7 @@ class Format:
 
 
 @frozen
-class Place:
+class FilePlace:
     """A place in a file.
 
     Attributes:
@@ -95,7 +95,7 @@ def utf16(text: str) -> int:
     return len(text.encode("utf-16-le", errors="replace")) // 2
 
 
-def place_of(span: Span, source: str | None, length: Callable[[str], int] = len) -> Place:
+def place_of(span: Span, source: str | None, length: Callable[[str], int] = len) -> FilePlace:
     """The place of a span. ``length`` counts the characters of a part of a line.
 
     Other tools know no place without a line: what does not stand in the text is told at the first one.
@@ -103,12 +103,12 @@ def place_of(span: Span, source: str | None, length: Callable[[str], int] = len)
     lines = source.split("\n") if source is not None else []
     if not 1 <= span.line <= span.end_line <= len(lines):
         line = max(span.line, 1)
-        return Place(line, 1, max(line, span.end_line), None, None)
+        return FilePlace(line, 1, max(line, span.end_line), None, None)
     before = _prefix(lines[span.line - 1], span.column)
     whole = _prefix(lines[span.end_line - 1], span.end_column)
     shown = [*lines[span.line - 1 : span.end_line - 1], whole]
     shown[0] = shown[0][len(before) :]
-    return Place(span.line, length(before) + 1, span.end_line, length(whole) + 1, "\n".join(shown))
+    return FilePlace(span.line, length(before) + 1, span.end_line, length(whole) + 1, "\n".join(shown))
 
 
 def _prefix(line: str, column: int) -> str:
@@ -141,5 +141,5 @@ def _own() -> list[str]:
     return [name.replace("_", "-") for name in found if not name.startswith("_")]
 
 
-def _of_packages() -> Mapping[str, Part]:
+def _of_packages() -> Mapping[str, ExtensionPart]:
     return brought("formats", _own())

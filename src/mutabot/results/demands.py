@@ -10,7 +10,7 @@ from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.model import Kind, Outcome, Verdict
-from mutabot.model.graded import Demand, Seen, is_at_least, is_same, seen
+from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
 from mutabot.model.mutant import is_like
 from mutabot.results.ladders import Ladder, LadderRound, lower_limit, rounds_for, upper_limit
 from mutabot.results.thresholds import amount, in_rounds
@@ -18,7 +18,7 @@ from mutabot.results.thresholds import amount, in_rounds
 _UNSOUND = {Verdict.UNSTABLE: "is unstable", Verdict.ERROR: "ended in error"}
 
 
-class Held(StrEnum):
+class DemandResult(StrEnum):
     """What became of a demand on one ladder."""
 
     PASSED = "passed"
@@ -39,7 +39,7 @@ class Ruling:
 
     demand: Demand
     ladder: Ladder | None
-    held: Held
+    held: DemandResult
     why: str
 
     @property
@@ -63,7 +63,9 @@ def rulings(
         about = [one for one in ladders if demand.is_about(one.mutant, _kind(one))]
         found += (ruling(demand, one) for one in about)
         if not about:
-            found.append(Ruling(demand, None, Held.FAILED, _why_nothing_fits(demand, ladders, families)))
+            found.append(
+                Ruling(demand, None, DemandResult.FAILED, _why_nothing_fits(demand, ladders, families))
+            )
     return tuple(found)
 
 
@@ -116,45 +118,54 @@ def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Seque
     return f"fits none of {len(here)} ladders, which are of {kinds or 'unknown kinds'}, in {units}"
 
 
-def _all_rounds(ladder: Ladder, demanded: float) -> tuple[Held, str]:
+def _all_rounds(ladder: Ladder, demanded: float) -> tuple[DemandResult, str]:
     """All rounds must notice it, and no valid run of it or more may survive."""
     size = amount(demanded, ladder.unit)
     survivors = list(_survivors(ladder, demanded))
     if survivors:
-        return Held.FAILED, _survivors_text(ladder, survivors)
+        return DemandResult.FAILED, _survivors_text(ladder, survivors)
     problem = _problem(ladder, demanded)
     if problem:
-        return Held.FAILED, problem
+        return DemandResult.FAILED, problem
     ends = [seen(one) for one in _at(ladder, demanded)]
-    if Seen.NOTICED in ends:
-        return Held.PASSED, f"noticed at {size} in {ends.count(Seen.NOTICED)} of {len(ends)} rounds"
-    if set(ends) == {Seen.REFUSED}:
-        return Held.PASSED, f"the robot refuses {size}"
-    return Held.FAILED, f"{size} has no effect in any round, so nothing is known; demand it of other sites"
+    if MagnitudeResult.NOTICED in ends:
+        return (
+            DemandResult.PASSED,
+            f"noticed at {size} in {ends.count(MagnitudeResult.NOTICED)} of {len(ends)} rounds",
+        )
+    if set(ends) == {MagnitudeResult.REFUSED}:
+        return DemandResult.PASSED, f"the robot refuses {size}"
+    return (
+        DemandResult.FAILED,
+        f"{size} has no effect in any round, so nothing is known; demand it of other sites",
+    )
 
 
-def _share(ladder: Ladder, demanded: float, share: float) -> tuple[Held, str]:
+def _share(ladder: Ladder, demanded: float, share: float) -> tuple[DemandResult, str]:
     """At least this share of rounds notices it, with 95 % confidence."""
     size = amount(demanded, ladder.unit)
     problem = _problem(ladder, demanded)
     if problem:
-        return Held.FAILED, problem
+        return DemandResult.FAILED, problem
     ends = [seen(one) for one in _at(ladder, demanded)]
-    noticed, valid = ends.count(Seen.NOTICED), sum(one.is_valid for one in ends)
+    noticed, valid = ends.count(MagnitudeResult.NOTICED), sum(one.is_valid for one in ends)
     if not valid:
-        if set(ends) == {Seen.REFUSED}:
-            return Held.PASSED, f"the robot refuses {size}"
-        return Held.FAILED, f"{size} has no effect in any round, so nothing is known"
+        if set(ends) == {MagnitudeResult.REFUSED}:
+            return DemandResult.PASSED, f"the robot refuses {size}"
+        return DemandResult.FAILED, f"{size} has no effect in any round, so nothing is known"
     low, high = lower_limit(noticed, valid), upper_limit(noticed, valid)
     found = f"noticed at {size} in {noticed} of {valid} rounds"
     if low >= share:
-        return Held.PASSED, f"{found}, at least {_percent(low, up=False)} of all (95 %)"
+        return DemandResult.PASSED, f"{found}, at least {_percent(low, up=False)} of all (95 %)"
     if high < share:
-        return Held.FAILED, f"{found}, at most {_percent(high, up=True)} of all (95 %)"
+        return DemandResult.FAILED, f"{found}, at most {_percent(high, up=True)} of all (95 %)"
     if noticed < valid:
-        return Held.UNDECIDED, f"{found}, which decides nothing about {share:.0%}: it takes more rounds"
+        return (
+            DemandResult.UNDECIDED,
+            f"{found}, which decides nothing about {share:.0%}: it takes more rounds",
+        )
     return (
-        Held.UNDECIDED,
+        DemandResult.UNDECIDED,
         f"{found}, which shows {_percent(low, up=False)}: it takes {rounds_for(share)} rounds",
     )
 
@@ -173,7 +184,7 @@ def _at(ladder: Ladder, demanded: float) -> Iterator[Outcome]:
 def _survivors(ladder: Ladder, demanded: float) -> Iterator[tuple[LadderRound, float, Outcome]]:
     for one in ladder.rounds:
         for size, outcome in one.outcomes.items():
-            if is_at_least(size, demanded) and seen(outcome) is Seen.MISSED:
+            if is_at_least(size, demanded) and seen(outcome) is MagnitudeResult.MISSED:
                 yield one, size, outcome
 
 

@@ -16,7 +16,7 @@ from itertools import pairwise
 
 from mutabot.frozen import frozen
 from mutabot.model import By, Mutant, Outcome, Quantity, Verdict
-from mutabot.model.graded import OFFSET, Bracket, Seen, bracket_of, is_same, seen
+from mutabot.model.graded import OFFSET, Bracket, MagnitudeResult, bracket_of, is_same, seen
 from mutabot.model.units import UNITS
 from mutabot.results.results import MutantResult, Results
 from mutabot.results.statistics import LEVEL, Interval
@@ -161,7 +161,7 @@ class LadderRound:
     @property
     def fails_without_fault(self) -> bool:
         """Whether the tests fail at magnitude 0, so that nothing they notice is due to the fault."""
-        return self.zero is not None and seen(self.zero) is Seen.NOTICED
+        return self.zero is not None and seen(self.zero) is MagnitudeResult.NOTICED
 
     @property
     def is_reached(self) -> bool:
@@ -238,7 +238,7 @@ _SIGNS = {"+": "+", "-": "−"}
 
 
 @frozen
-class Step:
+class MagnitudeStep:
     """One magnitude of a ladder, over the rounds that do not fail without a fault.
 
     Attributes:
@@ -397,7 +397,7 @@ class Ladder:
         return share_noticed(len(self.counted)) if math.isfinite(self.all_from) else None
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[MagnitudeStep, ...]:
         """What became of each magnitude."""
         sound = [one for one in self.rounds if not one.fails_without_fault]
         return tuple(_step(result, sound) for result in self.results)
@@ -504,15 +504,15 @@ def _order(one: LadderRound) -> tuple[float, float, int]:
     return math.inf if high is None else high, one.bracket.low or 0.0, one.number
 
 
-def _step(result: MutantResult, rounds: Sequence[LadderRound]) -> Step:
+def _step(result: MutantResult, rounds: Sequence[LadderRound]) -> MagnitudeStep:
     size = result.mutant.magnitude or 0.0
     outcomes = [one.outcomes[size] for one in rounds if size in one.outcomes]
     kinds = Counter(seen(one) for one in outcomes)
-    return Step(
+    return MagnitudeStep(
         magnitude=size,
         number=result.mutant.number,
         by=Counter(by for by in map(noticer, outcomes) if by is not None),
-        missed=kinds[Seen.MISSED],
-        refused=kinds[Seen.REFUSED],
-        unknown=kinds[Seen.UNKNOWN],
+        missed=kinds[MagnitudeResult.MISSED],
+        refused=kinds[MagnitudeResult.REFUSED],
+        unknown=kinds[MagnitudeResult.UNKNOWN],
     )

@@ -361,7 +361,7 @@ class Change(StrEnum):
 
 
 @frozen
-class Compared:
+class LadderChange:
     """One ladder in both campaigns.
 
     Attributes:
@@ -398,7 +398,7 @@ class Comparison:
             None if there are too few.
     """
 
-    ladders: tuple[Compared, ...]
+    ladders: tuple[LadderChange, ...]
     gone: tuple[str, ...]
     added: tuple[str, ...]
     why_no_words: str
@@ -417,7 +417,8 @@ def compare(old: Results, new: Results) -> Comparison:
     before = {one.id: one for one in ladders_of(old)}
     after = {one.id: one for one in ladders_of(new)}
     both = tuple(
-        Compared(before[name], one, tuple(_steps(before[name], one))) for name, one in _common(before, after)
+        LadderChange(before[name], one, tuple(_steps(before[name], one)))
+        for name, one in _common(before, after)
     )
     return Comparison(
         ladders=both,

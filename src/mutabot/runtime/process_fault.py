@@ -59,7 +59,7 @@ class ProcessFault(ABC):
             self.on_act()
 
 
-class Identity(ProcessFault):
+class ProcessIdentity(ProcessFault):
     """The control that changes nothing."""
 
     def start_test(self, test: str, random: Random) -> None:
@@ -69,7 +69,7 @@ class Identity(ProcessFault):
         """Nothing was put in place."""
 
 
-class Fatal(ProcessFault):
+class ProcessFatal(ProcessFault):
     """The control by which every test fails."""
 
     def start_test(self, test: str, random: Random) -> None:

@@ -44,13 +44,13 @@ def seeded_apart(seed: int) -> Iterator[None]:
             numpy_random.set_state(numpy_before)
 
 
-class Named(Protocol):
+class PytestNode(Protocol):
     """What pytest has given an id: a test, a file, a report about either."""
 
     @property
     def nodeid(self) -> str: ...
 
 
-def node_id(named: Named) -> str:
+def node_id(named: PytestNode) -> str:
     """The id of a test. The name of its file need not be UTF-8, but what is written of it is."""
     return printable(named.nodeid)

@@ -12,9 +12,9 @@ from mutabot.model.quantity import step_of
 
 from .bands import Band, band_of, decimal, digits_of, is_number, readable
 from .measure import Measured, Read
-from .place import Addition, Place, equal, within
-from .project import Project
-from .readings import HAND, PROBE, Reading
+from .place import Addition, PlaceInTest, equal, within
+from .project import ProjectFiles
+from .readings import HAND, PROBE, ReadExpression
 
 #: digits of a value above which it is no more than what the original happened to read
 _DIGITS = 3
@@ -33,7 +33,7 @@ _ANGLE = re.compile(
 
 
 @dataclass(frozen=True, eq=False)
-class Check:
+class ProposedCheck:
     """A check at the end of a test.
 
     Attributes:
@@ -46,8 +46,8 @@ class Check:
         runs: how many runs of the original agree.
     """
 
-    place: Place
-    reading: Reading
+    place: PlaceInTest
+    reading: ReadExpression
     value: Any
     runs: int
     band: Band | None = None
@@ -62,7 +62,7 @@ class Check:
     @property
     def worth(self) -> tuple[int, ...]:
         """What a person would rather write: the suite's reader, a relation, a place, few digits."""
-        is_relation = isinstance(self.value, Reading)
+        is_relation = isinstance(self.value, ReadExpression)
         number = self.value if is_number(self.value) else 0.0
         return (
             -self.reading.way,
@@ -77,15 +77,15 @@ class Check:
         """The assertion, in the style of its test."""
         style, text = self.place.style, self.reading.text
         if self.tolerance is None:
-            value = self.value.text if isinstance(self.value, Reading) else literal(self.value)
+            value = self.value.text if isinstance(self.value, ReadExpression) else literal(self.value)
             return equal(style, text, value)
-        value = self.value.text if isinstance(self.value, Reading) else decimal(self.value)
+        value = self.value.text if isinstance(self.value, ReadExpression) else decimal(self.value)
         return within(style, text, value, decimal(self.tolerance))
 
     def addition(self) -> Addition:
         """It as something that is added to a test."""
         names = set(_NAME.findall(self.statement))
-        needs = (*self.reading.needs, *(self.value.needs if isinstance(self.value, Reading) else ()))
+        needs = (*self.reading.needs, *(self.value.needs if isinstance(self.value, ReadExpression) else ()))
         approx = ["import pytest"] if "pytest.approx" in self.statement else []
         used = tuple(name for name in self.place.names if name in names)
         return Addition(self.place, (self.statement,), used, (*needs, *approx))
@@ -97,12 +97,12 @@ def literal(value: Any) -> str:
     return f'"{value}"' if isinstance(value, str) and '"' not in text and "\\" not in text else text
 
 
-def candidates(project: Project, measured: Measured) -> tuple[list[Check], dict[str, str]]:
+def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[ProposedCheck], dict[str, str]]:
     """All checks that would notice a survivor and that a person would merge.
 
     Beside them, by mutant, what would notice it and is no such check.
     """
-    found: list[Check] = []
+    found: list[ProposedCheck] = []
     refused: dict[str, str] = {}
     for place, originals in measured.originals.items():
         mutants, runs = measured.mutants.get(place, {}), list(originals.values())
@@ -121,7 +121,7 @@ def candidates(project: Project, measured: Measured) -> tuple[list[Check], dict[
     return found, refused
 
 
-def known(measured: Measured, place: Place, text: str) -> Reading:
+def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
     """What is known of a part; one that comes in steps may be a step off where it never was yet."""
     of = [
         one
@@ -135,7 +135,7 @@ def known(measured: Measured, place: Place, text: str) -> Reading:
         coarse = max((one.tolerance for one in measured.readings[place]), default=1e-6)
         root = re.match(r"\w+", text)
         way, tolerance = (PROBE, objects[0]) if objects else (HAND, coarse)
-        found = Reading(text, way, tolerance, (), (root[0],) if root else ())
+        found = ReadExpression(text, way, tolerance, (), (root[0],) if root else ())
     runs = measured.originals.get(place, {}).values()
     values = {read[text] for read in runs if is_number(read.get(text))}
     step = step_of(values) if len(values) > 1 else None
@@ -156,13 +156,13 @@ def _is_given(
 
 
 def _of(
-    place: Place,
-    reading: Reading,
-    given: Sequence[Reading],
+    place: PlaceInTest,
+    reading: ReadExpression,
+    given: Sequence[ReadExpression],
     runs: Sequence[Read],
     mutants: Mapping[str, Mapping[tuple[int, str], Read]],
     suite: Mapping[str, float],
-) -> Iterator[Check]:
+) -> Iterator[ProposedCheck]:
     """The checks of a reading: that it equals what the test was given, or a value."""
     values = [read[reading.text] for read in runs]
     partners = [one for one in given if one.text != reading.text and _last(one) == _last(reading)]
@@ -183,12 +183,14 @@ def _of(
             continue  # it is always as far from it, but not there
         noticed = _noticed(_away(reading, other, 0.0 if other is not None else value, mutants), wide)
         if noticed:
-            yield Check(place, reading, value if other is None else other, len(runs), band, wide, noticed)
+            yield ProposedCheck(
+                place, reading, value if other is None else other, len(runs), band, wide, noticed
+            )
 
 
 def _away(
-    reading: Reading,
-    other: Reading | None,
+    reading: ReadExpression,
+    other: ReadExpression | None,
     middle: float,
     mutants: Mapping[str, Mapping[tuple[int, str], Read]],
 ) -> dict[str, dict[int, float]]:
@@ -212,13 +214,13 @@ def _noticed(away: Mapping[str, Mapping[int, float]], tolerance: float) -> dict[
 
 
 def _equal(
-    place: Place,
-    reading: Reading,
-    other: Reading | None,
+    place: PlaceInTest,
+    reading: ReadExpression,
+    other: ReadExpression | None,
     values: Sequence[Any],
     others: Sequence[Any],
     mutants: Mapping[str, Mapping[tuple[int, str], Read]],
-) -> Iterator[Check]:
+) -> Iterator[ProposedCheck]:
     if other is None and len({repr(value) for value in values}) > 1:
         return
     if other is not None and list(values) != list(others):
@@ -234,10 +236,12 @@ def _equal(
         if rounds:
             noticed[mutant] = rounds
     if noticed:
-        yield Check(place, reading, values[0] if other is None else other, len(values), noticed=noticed)
+        yield ProposedCheck(
+            place, reading, values[0] if other is None else other, len(values), noticed=noticed
+        )
 
 
-def _why_not(project: Project, check: Check) -> str | None:
+def _why_not(project: ProjectFiles, check: ProposedCheck) -> str | None:
     """Why a person would not merge it; None if one may."""
     text, name = check.reading.text, _last(check.reading)
     if _CLOCK.search(name) and name not in _compared(project, check.place):
@@ -247,17 +251,17 @@ def _why_not(project: Project, check: Check) -> str | None:
     return None
 
 
-def _rank(reading: Reading) -> int:
+def _rank(reading: ReadExpression) -> int:
     name = _last(reading)
     return 0 if _PLACE.search(name) else 1 if _ANGLE.search(name) else 2
 
 
-def _last(reading: Reading) -> str:
+def _last(reading: ReadExpression) -> str:
     found = _LAST.search(reading.text)
     return found[1] if found else reading.text
 
 
-def _compared(project: Project, place: Place) -> set[str]:
+def _compared(project: ProjectFiles, place: PlaceInTest) -> set[str]:
     """The names that the tests compare already."""
     module = project.module(place.file)
     compared = (
@@ -266,7 +270,7 @@ def _compared(project: Project, place: Place) -> set[str]:
     return {name for node in compared for name in _NAME.findall(ast.unparse(node))}
 
 
-def _tolerances(project: Project, place: Place) -> dict[str, float]:
+def _tolerances(project: ProjectFiles, place: PlaceInTest) -> dict[str, float]:
     """The largest tolerance that the tests state already, by the last name of what they look at."""
     module = project.module(place.file)
     found: dict[str, float] = {}

@@ -8,13 +8,13 @@ import libcst as cst
 from libcst.codemod import CodemodContext
 from libcst.codemod.visitors import AddImportsVisitor
 
-from .place import OTHER, Addition, Place
-from .project import Project
+from .place import OTHER, Addition, PlaceInTest
+from .project import ProjectFiles
 
 _AT_END = "from mutabot.runtime.observation.noted import at_end as _mutabot_at_end"
 
 
-def edited(project: Project, additions: Iterable[Addition]) -> dict[str, str]:
+def edited(project: ProjectFiles, additions: Iterable[Addition]) -> dict[str, str]:
     """The new texts of the files with these additions, by file.
 
     What is added to tests that another tool makes runs beside mutabot alone.
@@ -46,7 +46,7 @@ def _edited(text: str, additions: Sequence[Addition]) -> str:
     return code
 
 
-def _around(place: Place, additions: Sequence[Addition], number: int) -> list[str]:
+def _around(place: PlaceInTest, additions: Sequence[Addition], number: int) -> list[str]:
     """What follows a test of which the file has no function that could be added to."""
     (test,) = place.path
     uses = dict.fromkeys(use for one in additions for use in one.uses)

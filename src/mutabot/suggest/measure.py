@@ -17,9 +17,9 @@ from mutabot.model import Mutant, Probe
 from mutabot.model.events import TestEnd
 
 from .edits import edited
-from .place import Addition, Place
-from .project import Project, copy_of
-from .readings import ORACLE, Reading, of_objects, readings_at
+from .place import Addition, PlaceInTest
+from .project import ProjectFiles, copy_of
+from .readings import ORACLE, ReadExpression, of_objects, readings_at
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
 _NOTED = "mutabot.runtime.observation.noted"
@@ -40,16 +40,16 @@ class Measured:
         objects: readings of objects, each with its tolerance.
     """
 
-    originals: dict[Place, dict[tuple[int, str], Read]] = field(default_factory=dict)
-    mutants: dict[Place, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
-    readings: dict[Place, list[Reading]] = field(default_factory=dict)
+    originals: dict[PlaceInTest, dict[tuple[int, str], Read]] = field(default_factory=dict)
+    mutants: dict[PlaceInTest, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
+    readings: dict[PlaceInTest, list[ReadExpression]] = field(default_factory=dict)
     objects: list[tuple[str, float]] = field(default_factory=list)
 
 
 def measure(
     request: Request,
-    project: Project,
-    places: Mapping[str, Place],
+    project: ProjectFiles,
+    places: Mapping[str, PlaceInTest],
     survivors: Sequence[tuple[Mutant, Sequence[int]]],
     progress: Progress,
 ) -> Measured:
@@ -81,7 +81,7 @@ def measure(
 def _run_survivors(
     campaign: Campaign,
     measured: Measured,
-    places: Mapping[str, Place],
+    places: Mapping[str, PlaceInTest],
     survivors: Sequence[tuple[Mutant, Sequence[int]]],
 ) -> None:
     baseline, progress = campaign.baseline, campaign.progress
@@ -98,7 +98,7 @@ def _run_survivors(
     for result in campaign.executor.run(tasks):
         mutant, round = result.task.key
         progress.advance(f"#{mutant.number} round {round + 1}")
-        found: dict[Place, dict[tuple[int, str], Read]] = {}
+        found: dict[PlaceInTest, dict[tuple[int, str], Read]] = {}
         reaching = baseline.tests_reaching(round, mutant)  # a check stands where the mutant is reached
         _take(found, places, round, [end for end in result.ends if end.test in reaching])
         for place, read in found.items():
@@ -106,8 +106,8 @@ def _run_survivors(
 
 
 def _take(
-    found: dict[Place, dict[tuple[int, str], Read]],
-    places: Mapping[str, Place],
+    found: dict[PlaceInTest, dict[tuple[int, str], Read]],
+    places: Mapping[str, PlaceInTest],
     round: int,
     ends: Iterable[TestEnd],
 ) -> None:
@@ -121,7 +121,9 @@ def _take(
             found.setdefault(place, {})[round, end.test] = read
 
 
-def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[str, float]]) -> Addition:
+def _noting(
+    place: PlaceInTest, readings: Sequence[ReadExpression], objects: Sequence[tuple[str, float]]
+) -> Addition:
     """The lines that note; they are plain statements, and never fail."""
     # what the oracle does when it reads must not be seen by what only looks
     ordered = sorted(readings, key=lambda one: one.way == ORACLE)

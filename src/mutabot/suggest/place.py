@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from mutabot.frozen import frozen
 
-from .project import Project
+from .project import ProjectFiles
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -19,7 +19,7 @@ PYTEST, UNITTEST, OTHER = "pytest", "unittest", "other"
 
 
 @frozen
-class Place:
+class PlaceInTest:
     """A test at whose end something can be looked at; all parameters of it are one place.
 
     Attributes:
@@ -51,13 +51,13 @@ class Addition:
         imports: what they need.
     """
 
-    place: Place
+    place: PlaceInTest
     lines: tuple[str, ...]
     uses: tuple[str, ...] = ()
     imports: tuple[str, ...] = ()
 
 
-def place_of(project: Project, test: str) -> Place | None:
+def place_of(project: ProjectFiles, test: str) -> PlaceInTest | None:
     """The place of a test by its node id; None if nothing can be added to it."""
     node = test.partition("[")[0]
     file, *path = node.split("::")
@@ -66,11 +66,11 @@ def place_of(project: Project, test: str) -> Place | None:
         return None
     function = functions_of(module, path)
     if len(path) == 1 and (function is None or _is_scenario(function)):
-        return Place(OTHER, file, node, _given_around(project, file))
+        return PlaceInTest(OTHER, file, node, _given_around(project, file))
     if function is None or not _has_end(function):
         return None
     is_case = len(path) == 2 and _is_test_case(module, path[0])
-    return Place(UNITTEST if is_case else PYTEST, file, node, _names(function))
+    return PlaceInTest(UNITTEST if is_case else PYTEST, file, node, _names(function))
 
 
 def _is_scenario(function: Function) -> bool:
@@ -79,7 +79,7 @@ def _is_scenario(function: Function) -> bool:
     return any(one.rpartition(".")[2] == "scenario" for one in called)
 
 
-def _given_around(project: Project, file: str) -> tuple[str, ...]:
+def _given_around(project: ProjectFiles, file: str) -> tuple[str, ...]:
     """What fixtures and steps of a test file are given: fixtures, as far as a test has asked for them."""
     modules = (project.module(where) for where in (file, *project.beside(file)))
     functions = [

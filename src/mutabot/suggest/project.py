@@ -23,7 +23,7 @@ from mutabot.journal.files import HOME
 
 
 @dataclass(slots=True)
-class Project:
+class ProjectFiles:
     """The files of a project.
 
     Attributes:
@@ -100,7 +100,7 @@ def diff_of(root: Path, texts: Mapping[str, str]) -> str:
 
 
 @frozen
-class Name:
+class ImportedName:
     """How something of a module is named in a file.
 
     Attributes:
@@ -112,22 +112,22 @@ class Name:
     needs: str | None = None
 
 
-def name_in(module: ast.Module, wanted: str, attribute: str, taken: Iterable[str] = ()) -> Name:
+def name_in(module: ast.Module, wanted: str, attribute: str, taken: Iterable[str] = ()) -> ImportedName:
     """How a file can name ``attribute`` of the module ``wanted``; ``taken`` are names of other things."""
     bound: set[str] = set(taken)
     for node in module.body:
         if isinstance(node, ast.ImportFrom) and node.module == wanted and not node.level:
             for alias in node.names:
                 if alias.name == attribute and (alias.asname or alias.name) not in bound:
-                    return Name(alias.asname or alias.name)
+                    return ImportedName(alias.asname or alias.name)
         if isinstance(node, ast.Import):
             for alias in node.names:
                 if alias.name == wanted and (alias.asname or alias.name.partition(".")[0]) not in bound:
-                    return Name(f"{alias.asname or alias.name}.{attribute}")
+                    return ImportedName(f"{alias.asname or alias.name}.{attribute}")
     bound |= top_names(module)
     if attribute not in bound:
-        return Name(attribute, f"from {wanted} import {attribute}")
-    return Name(f"{wanted}.{attribute}", f"import {wanted}")
+        return ImportedName(attribute, f"from {wanted} import {attribute}")
+    return ImportedName(f"{wanted}.{attribute}", f"import {wanted}")
 
 
 def top_names(module: ast.Module) -> set[str]:

@@ -13,10 +13,10 @@ from mutabot.journal.journal import JournalReader
 from mutabot.model import By, Verdict
 from mutabot.model.events import TestEnd
 
-from .checks import Check
+from .checks import ProposedCheck
 from .edits import edited
-from .place import Place
-from .project import Project, copy_of
+from .place import PlaceInTest
+from .project import ProjectFiles, copy_of
 
 
 @dataclass(slots=True)
@@ -32,12 +32,12 @@ class Proof:
     """
 
     request: Request
-    project: Project
+    project: ProjectFiles
     progress: Progress
-    failed: dict[Check, str] = field(default_factory=dict)
-    kills: dict[Check, dict[str, tuple[int, ...]]] = field(default_factory=dict)
+    failed: dict[ProposedCheck, str] = field(default_factory=dict)
+    kills: dict[ProposedCheck, dict[str, tuple[int, ...]]] = field(default_factory=dict)
 
-    def on_original(self, checks: Sequence[Check], rounds: Sequence[int]) -> list[Check]:
+    def on_original(self, checks: Sequence[ProposedCheck], rounds: Sequence[int]) -> list[ProposedCheck]:
         """Those of these checks with which the original passes in all of these rounds."""
         left = [one for one in checks if one not in self.failed]
         while left:
@@ -48,9 +48,9 @@ class Proof:
             left = [one for one in left if one not in alarms]
         return []
 
-    def _alarms(self, checks: Sequence[Check], rounds: Sequence[int]) -> dict[Check, str]:
+    def _alarms(self, checks: Sequence[ProposedCheck], rounds: Sequence[int]) -> dict[ProposedCheck, str]:
         texts = texts_with(self.project, checks)
-        found: dict[Check, str] = {}
+        found: dict[ProposedCheck, str] = {}
         with copy_of(self.request, texts) as copied:
             these = _only(copied, checks)
             self.progress.stage("proof on the original", len(rounds))
@@ -70,7 +70,9 @@ class Proof:
                                 found.setdefault(one, text)
         return found
 
-    def on_survivors(self, checks: Sequence[Check], mutants: Mapping[Place, Iterable[str]]) -> None:
+    def on_survivors(
+        self, checks: Sequence[ProposedCheck], mutants: Mapping[PlaceInTest, Iterable[str]]
+    ) -> None:
         """Run campaigns of the mutants that act in the tests of these checks, by the tests.
 
         A test has one of the checks at a time; those of several tests are run together.
@@ -88,7 +90,7 @@ class Proof:
                 else:
                     self.failed[batch[0]] = f"a campaign with it ends: {str(error).splitlines()[0]}"
 
-    def _run(self, checks: Sequence[Check], mutants: Mapping[Place, Iterable[str]]) -> None:
+    def _run(self, checks: Sequence[ProposedCheck], mutants: Mapping[PlaceInTest, Iterable[str]]) -> None:
         only = tuple(dict.fromkeys(mutant for one in checks for mutant in mutants[one.place]))
         with copy_of(self.request, texts_with(self.project, checks)) as copied:
             these = _only(copied, checks)
@@ -113,17 +115,17 @@ def _own_name(node: str) -> str:
     return node.partition("[")[0].rpartition("::")[2]
 
 
-def texts_with(project: Project, checks: Sequence[Check]) -> dict[str, str]:
+def texts_with(project: ProjectFiles, checks: Sequence[ProposedCheck]) -> dict[str, str]:
     """The texts of the files that change when checks stand at the ends of their tests, by path."""
     return edited(project, (one.addition() for one in checks))
 
 
-def _only(request: Request, checks: Sequence[Check]) -> Request:
+def _only(request: Request, checks: Sequence[ProposedCheck]) -> Request:
     tests = tuple(dict.fromkeys(one.place.node for one in checks))
     return replace(request, configuration=request.configuration.model_copy(update={"tests": tests}))
 
 
-def _blamed(checks: Sequence[Check], end: TestEnd, texts: Mapping[str, str]) -> list[Check]:
+def _blamed(checks: Sequence[ProposedCheck], end: TestEnd, texts: Mapping[str, str]) -> list[ProposedCheck]:
     """The checks that let a test fail: that at the place of the failure, else all that it makes."""
     file, _, line = (end.place or "").rpartition(":")
     lines = texts.get(file, "").splitlines()

@@ -12,15 +12,15 @@ from collections.abc import Iterator
 from mutabot.frozen import frozen
 from mutabot.model import Operation
 
-from .place import Place
-from .project import Name, Project, name_in
+from .place import PlaceInTest
+from .project import ImportedName, ProjectFiles, name_in
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
 
 
 @frozen
-class Reading:
+class ReadExpression:
     """An expression that reads something.
 
     Attributes:
@@ -38,7 +38,7 @@ class Reading:
     uses: tuple[str, ...] = ()
 
 
-def readings_at(project: Project, place: Place) -> list[Reading]:
+def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpression]:
     """The readings of a place, those first by which the tests read already."""
     module = project.module(place.file)
     assert module is not None
@@ -49,14 +49,14 @@ def readings_at(project: Project, place: Place) -> list[Reading]:
         name = _module_level(module, probe.target, place) if not probe.owner else None
         if name is not None:
             texts = (f"{name.text}()", name.text)
-            found += [Reading(text, PROBE, probe.tolerance, _needs(name)) for text in texts]
+            found += [ReadExpression(text, PROBE, probe.tolerance, _needs(name)) for text in texts]
     for operation in vocabulary.operations:
         for text, name in _reading_calls(operation, module, place):
-            found.append(Reading(text, PROBE, coarse, _needs(name)))
+            found.append(ReadExpression(text, PROBE, coarse, _needs(name)))
     return list({one.text: one for one in reversed(found)}.values())[::-1]
 
 
-def of_objects(project: Project) -> list[tuple[str, float]]:
+def of_objects(project: ProjectFiles) -> list[tuple[str, float]]:
     """Readings of objects, ``module:Class.name``, each with its tolerance."""
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
@@ -67,7 +67,9 @@ def of_objects(project: Project) -> list[tuple[str, float]]:
     return list(found.items())
 
 
-def _by_oracle(project: Project, place: Place, module: ast.Module, tolerance: float) -> Iterator[Reading]:
+def _by_oracle(
+    project: ProjectFiles, place: PlaceInTest, module: ast.Module, tolerance: float
+) -> Iterator[ReadExpression]:
     """The oracle's functions, where all that they need is at hand under the same name."""
     for file in project.python_files(project.request.configuration.oracle):
         oracle = project.module(file)
@@ -81,10 +83,12 @@ def _by_oracle(project: Project, place: Place, module: ast.Module, tolerance: fl
             if strict or not set(needed) <= set(place.names) or node.decorator_list:
                 continue
             name = name_in(module, project.import_name(file), node.name, place.names)
-            yield Reading(f"{name.text}({', '.join(needed)})", ORACLE, tolerance, _needs(name), tuple(needed))
+            yield ReadExpression(
+                f"{name.text}({', '.join(needed)})", ORACLE, tolerance, _needs(name), tuple(needed)
+            )
 
 
-def _module_level(module: ast.Module, target: str, place: Place) -> Name | None:
+def _module_level(module: ast.Module, target: str, place: PlaceInTest) -> ImportedName | None:
     where, _, attribute = target.partition(":")
     return name_in(module, where, attribute, place.names) if attribute else None
 
@@ -94,7 +98,9 @@ def _only_reads(operation: Operation) -> bool:
     return is_callable and not operation.command and not operation.arguments
 
 
-def _reading_calls(operation: Operation, module: ast.Module, place: Place) -> Iterator[tuple[str, Name]]:
+def _reading_calls(
+    operation: Operation, module: ast.Module, place: PlaceInTest
+) -> Iterator[tuple[str, ImportedName]]:
     """Calls that only read: an operation without arguments, or one that is told by a text what to read."""
     if not _only_reads(operation) or "." in operation.qualname:
         return
@@ -109,5 +115,5 @@ def _reading_calls(operation: Operation, module: ast.Module, place: Place) -> It
                 yield f'{name.text}({operation.message}="{pattern.notation}")', name
 
 
-def _needs(name: Name) -> tuple[str, ...]:
+def _needs(name: ImportedName) -> tuple[str, ...]:
     return (name.needs,) if name.needs else ()

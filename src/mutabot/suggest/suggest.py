@@ -16,10 +16,10 @@ from mutabot.results.results import MutantResult, Results
 from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
 
 from .bands import decimal, is_number, unseen
-from .checks import Check, candidates, known
+from .checks import ProposedCheck, candidates, known
 from .measure import Measured, measure
-from .place import OTHER, Place, place_of
-from .project import Project, diff_of
+from .place import OTHER, PlaceInTest, place_of
+from .project import ProjectFiles, diff_of
 from .prove import Proof, texts_with
 
 #: how often checks are chosen anew because one of them failed its proof
@@ -62,7 +62,11 @@ def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
 
 
 def why_unsolved(
-    mutant: Mutant, measured: Measured, found: Sequence[Check], proof: Proof, refused: Mapping[str, str]
+    mutant: Mutant,
+    measured: Measured,
+    found: Sequence[ProposedCheck],
+    proof: Proof,
+    refused: Mapping[str, str],
 ) -> Unsolved:
     """The reason, with what differs most and how far the original itself spreads."""
     failed = [one for one in found if one in proof.failed and mutant.id in one.noticed]
@@ -148,7 +152,7 @@ def suggest(
     if not survivors.to_kill:
         return _told(Suggestions(unsolved=survivors.never), chosen, request, seeds)
     quiet = Quiet(progress)
-    project = Project(request)
+    project = ProjectFiles(request)
     places, without = _places(project, survivors.tests)
     if not places:
         shown = next(iter(without), "no test")
@@ -185,8 +189,8 @@ def _told(whole: Suggestions, chosen: Sequence[MutantResult], request: Request, 
     )
 
 
-def _places(project: Project, tests: Sequence[str]) -> tuple[dict[str, Place], list[str]]:
-    found: dict[str, Place] = {}
+def _places(project: ProjectFiles, tests: Sequence[str]) -> tuple[dict[str, PlaceInTest], list[str]]:
+    found: dict[str, PlaceInTest] = {}
     without: list[str] = []
     for test in tests:
         place = place_of(project, test)
@@ -197,7 +201,9 @@ def _places(project: Project, tests: Sequence[str]) -> tuple[dict[str, Place], l
     return found, without
 
 
-def _proven(proof: Proof, found: Sequence[Check], measured: Measured, rounds: Sequence[int]) -> list[Check]:
+def _proven(
+    proof: Proof, found: Sequence[ProposedCheck], measured: Measured, rounds: Sequence[int]
+) -> list[ProposedCheck]:
     """Checks that all stand their proof and together kill what any would; those that kill most first."""
     mutants = {place: list(found) for place, found in measured.mutants.items()}
     for _ in range(_ATTEMPTS):
@@ -210,10 +216,12 @@ def _proven(proof: Proof, found: Sequence[Check], measured: Measured, rounds: Se
     return sorted(chosen, key=lambda one: -len(_kills(one, proof.kills)))
 
 
-def chosen_of(checks: Sequence[Check], kills: Mapping[Check, Mapping[str, Sequence[int]]]) -> list[Check]:
+def chosen_of(
+    checks: Sequence[ProposedCheck], kills: Mapping[ProposedCheck, Mapping[str, Sequence[int]]]
+) -> list[ProposedCheck]:
     """For all that any check kills, the one that a person would rather write; none that others replace."""
     left = frozenset().union(*(_kills(one, kills) for one in checks))
-    chosen: list[Check] = []
+    chosen: list[ProposedCheck] = []
     for one in sorted(checks, key=lambda one: (one.worth, len(_kills(one, kills))), reverse=True):
         if _kills(one, kills) & left:
             chosen.append(one)
@@ -225,14 +233,16 @@ def chosen_of(checks: Sequence[Check], kills: Mapping[Check, Mapping[str, Sequen
     return chosen
 
 
-def _kills(check: Check, kills: Mapping[Check, Mapping[str, Sequence[int]]]) -> frozenset[tuple[str, int]]:
+def _kills(
+    check: ProposedCheck, kills: Mapping[ProposedCheck, Mapping[str, Sequence[int]]]
+) -> frozenset[tuple[str, int]]:
     """What a check kills, as far as it was run; else what it would by what was measured."""
     if check not in kills:
         return check.trials
     return frozenset((mutant, round) for mutant, rounds in kills[check].items() for round in rounds)
 
 
-def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) -> Suggestion:
+def _suggestion(check: ProposedCheck, kills: Mapping[str, tuple[int, ...]], seeds: int) -> Suggestion:
     added = check.addition()
     is_other = check.place.style == OTHER
     return Suggestion(

@@ -16,7 +16,7 @@ STANDARD_DEVIATIONS = {
 """Standard deviation of each sensor's normal noise (our choice, typical of such devices)."""
 
 
-class Noise:
+class SeededNoise:
     """Normal noise derived from a seed; every name has its own stream.
 
     Args:

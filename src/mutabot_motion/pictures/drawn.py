@@ -11,8 +11,8 @@ from operator import ne
 
 from PIL import Image, ImageDraw
 
-from mutabot.evidence.recording import Kind, Recording
-from mutabot.evidence.tracks import Path
+from mutabot.evidence.recording import Recording, TrackKind
+from mutabot.evidence.tracks import TrackPath
 from mutabot.model import units
 from mutabot_motion.shown import end_of, things_in
 
@@ -123,14 +123,14 @@ def _draw_block(
         draw.rectangle((low[0], top, high[0], bottom), fill=_BLOCK, outline=_OUTLINE)
 
 
-def _draw_thing(draw: ImageDraw.ImageDraw, view: _View, path: Path, row: int, colour: str) -> None:
+def _draw_thing(draw: ImageDraw.ImageDraw, view: _View, path: TrackPath, row: int, colour: str) -> None:
     """A box by its edges, as it is turned; anything else as a dot."""
     place, size = path.points[row], path.track.size
     if size is None:
         x, y = view.pixel(place)
         draw.ellipse((x - 5, y - 5, x + 5, y + 5), fill=colour)
         return
-    w, x, y, z = path.rows[row][3:7] if path.track.kind is Kind.POSE else (1.0, 0.0, 0.0, 0.0)
+    w, x, y, z = path.rows[row][3:7] if path.track.kind is TrackKind.POSE else (1.0, 0.0, 0.0, 0.0)
     turn, corners = (w, x, y, z), {}
     for signs in product((-0.5, 0.5), repeat=3):
         a, b, c = (part * edge for part, edge in zip(signs, size, strict=True))

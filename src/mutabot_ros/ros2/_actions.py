@@ -15,7 +15,7 @@ from mutabot_ros._patches import Patches, code_of
 
 from . import _nodes
 from ._services import never
-from ._steps import Answer, future_of
+from ._steps import FutureAnswer, future_of
 from ._topics import as_called
 from ._types import TYPES
 
@@ -83,11 +83,11 @@ class _Actions:
             return original(client, goal, feedback_callback, goal_uuid)
 
         async def send(goal: Any) -> Any:
-            return await Answer(original(client, goal, feedback_callback, goal_uuid))
+            return await FutureAnswer(original(client, goal, feedback_callback, goal_uuid))
 
         async def cancel(handle: Any) -> None:
             if handle.accepted:
-                await Answer(type(client)._cancel_goal_async.__wrapped__(client, handle))
+                await FutureAnswer(type(client)._cancel_goal_async.__wrapped__(client, handle))
 
         where = _nodes.where(_nodes.node_of(client), is_async=True, lost=never, cancel=cancel)
         return future_of(handler(send, None, (goal,), {}, where))
@@ -116,7 +116,7 @@ class _Actions:
         answers: list[Any] = []
 
         async def result() -> Any:
-            answer = await Answer(original(client, goal_handle))
+            answer = await FutureAnswer(original(client, goal_handle))
             self._messages.heard(name, answer.result)
             if answer.status in _ENDINGS:
                 self._messages.heard(name, _ENDINGS[answer.status])
@@ -140,7 +140,7 @@ class _Actions:
             return original(client, goal_handle)
 
         async def cancel() -> Any:
-            return await Answer(original(client, goal_handle))
+            return await FutureAnswer(original(client, goal_handle))
 
         where = _nodes.where(_nodes.node_of(client), is_async=True, lost=never)
         return future_of(handler(cancel, None, (), {}, where))

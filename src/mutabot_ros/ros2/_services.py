@@ -12,7 +12,7 @@ from mutabot.runtime.targets.target import Names
 from mutabot_ros._patches import Patches
 
 from . import _nodes
-from ._steps import Answer, Never, future_of, inner_of
+from ._steps import FutureAnswer, Never, future_of, inner_of
 from ._types import TYPES
 
 _SLICE = 0.1
@@ -69,7 +69,7 @@ class _Services:
             return original(client, request)
 
         async def call(request: Any) -> Any:
-            return await Answer(original(client, request))
+            return await FutureAnswer(original(client, request))
 
         where = _nodes.where(_nodes.node_of(client), is_async=True, lost=never)
         return future_of(handler(call, None, (request,), {}, where))

@@ -16,7 +16,7 @@ from typing import Any
 _INNER = "_mutabot_inner"
 
 
-class Answer:
+class FutureAnswer:
     """Awaits a future of rclpy."""
 
     def __init__(self, future: Any) -> None:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings, each
+from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample, each
 
 _TEXTS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
 _DISPLAYS = cst.List | cst.Tuple | cst.Dict | cst.Set | cst.ListComp | cst.SetComp | cst.DictComp
@@ -55,9 +55,9 @@ class ArithmeticReplacement(_BinaryOperator):
         cst.Power: ("pow", "**"),
     }
     needs = "number"
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("z = x + y\n", each("z = {}\n", "x - y, x * y, x / y, x // y, x % y, x ** y, x, y")),
-        Example(
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("z = x + y\n", each("z = {}\n", "x - y, x * y, x / y, x // y, x % y, x ** y, x, y")),
+        TextExample(
             "z = a * b % c\n",
             each(
                 "z = {}\n",
@@ -66,9 +66,9 @@ class ArithmeticReplacement(_BinaryOperator):
             ),
             note="operands stay what they are",
         ),
-        Example("z = 'lift/' + height\n", note="a text is no operand of arithmetic"),
-        Example("z = a + b\n", kinds={"a + b": "text"}, note="the baseline saw a text there"),
-        Example("z = a @ b\n", note="not arithmetic on numbers"),
+        TextExample("z = 'lift/' + height\n", note="a text is no operand of arithmetic"),
+        TextExample("z = a + b\n", kinds={"a + b": "text"}, note="the baseline saw a text there"),
+        TextExample("z = a @ b\n", note="not arithmetic on numbers"),
     )
 
 
@@ -80,20 +80,22 @@ class LogicalReplacement(_BinaryOperator):
     summary = "A bitwise operator becomes each of the others, or the operation one of its operands."
     signs: ClassVar = {cst.BitAnd: ("and", "&"), cst.BitOr: ("or", "|"), cst.BitXor: ("xor", "^")}
     needs = "bits"
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example(
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample(
             "z = x & y\n",
             each("z = {}\n", "x | y, x ^ y, x, y"),
             kinds={"x & y": "integer"},
         ),
-        Example(
+        TextExample(
             "z = x ^ y\n",
             each("z = {}\n", "x & y, x | y, x, y"),
             kinds={"x ^ y": "set"},
             note="sets and flags as well",
         ),
-        Example("Speed = int | float\n", kinds={"int | float": "types:UnionType"}, note="a type is no value"),
-        Example("def f(speed: A | B): ...\n", note="nor is an annotation"),
+        TextExample(
+            "Speed = int | float\n", kinds={"int | float": "types:UnionType"}, note="a type is no value"
+        ),
+        TextExample("def f(speed: A | B): ...\n", note="nor is an annotation"),
     )
 
 
@@ -106,10 +108,10 @@ class ShiftReplacement(_BinaryOperator):
     signs: ClassVar = {cst.LeftShift: ("left", "<<"), cst.RightShift: ("right", ">>")}
     needs = "integer"
     keeps_right = False
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("z = x << 2\n", ("z = x >> 2\n", "z = x\n"), kinds={"x << 2": "integer"}),
-        Example("z = x >> y\n", ("z = x << y\n", "z = x\n"), kinds={"x >> y": "integer"}),
-        Example("stream << 2\n", kinds={"stream << 2": "module:Stream"}, note="not a shift of numbers"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("z = x << 2\n", ("z = x >> 2\n", "z = x\n"), kinds={"x << 2": "integer"}),
+        TextExample("z = x >> y\n", ("z = x << y\n", "z = x\n"), kinds={"x >> y": "integer"}),
+        TextExample("stream << 2\n", kinds={"stream << 2": "module:Stream"}, note="not a shift of numbers"),
     )
 
 
@@ -137,12 +139,12 @@ class AssignmentReplacement(ClassicalOperator):
     name = "ASR"
     rank = 70
     summary = "An augmented assignment becomes another one of its kind, or a plain assignment."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("x += y\n", each("x {}\n", "-= y, *= y, /= y, //= y, %= y, **= y, = y")),
-        Example("x <<= 1\n", ("x >>= 1\n", "x = 1\n"), kinds={"x <<= 1": "integer"}),
-        Example("x &= y\n", ("x |= y\n", "x ^= y\n", "x = y\n"), kinds={"x &= y": "truth"}),
-        Example("x += y\n", kinds={"x += y": "text"}, note="the baseline saw a text there"),
-        Example("x = y\n", note="a name may not have a value before its plain assignment"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("x += y\n", each("x {}\n", "-= y, *= y, /= y, //= y, %= y, **= y, = y")),
+        TextExample("x <<= 1\n", ("x >>= 1\n", "x = 1\n"), kinds={"x <<= 1": "integer"}),
+        TextExample("x &= y\n", ("x |= y\n", "x ^= y\n", "x = y\n"), kinds={"x &= y": "truth"}),
+        TextExample("x += y\n", kinds={"x += y": "text"}, note="the baseline saw a text there"),
+        TextExample("x = y\n", note="a name may not have a value before its plain assignment"),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:

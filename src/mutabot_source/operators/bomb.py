@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import HELPER, ClassicalOperator, Draft, Example, Surroundings
+from mutabot_source.operator import HELPER, ClassicalOperator, Draft, Surroundings, TextExample
 
 _SIMPLE = (
     cst.Assign
@@ -30,12 +30,12 @@ class Bomb(ClassicalOperator):
     name = "BSR"
     rank = 110
     summary = "A statement raises as soon as it is reached: does any test get there, and would it notice?"
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("move(x)\n", ("Bomb()\n",)),
-        Example("while x:\n    move(x)\n", ("Bomb()\n", "while x:\n    Bomb()\n")),
-        Example("def f():\n    return 1\n", ("def f():\n    Bomb()\n",), note="but not the definition"),
-        Example('"""What it does."""\nfrom __future__ import annotations\nimport robot\n'),
-        Example("def f():\n    global x\n    pass\n", note="nothing happens there"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("move(x)\n", ("Bomb()\n",)),
+        TextExample("while x:\n    move(x)\n", ("Bomb()\n", "while x:\n    Bomb()\n")),
+        TextExample("def f():\n    return 1\n", ("def f():\n    Bomb()\n",), note="but not the definition"),
+        TextExample('"""What it does."""\nfrom __future__ import annotations\nimport robot\n'),
+        TextExample("def f():\n    global x\n    pass\n", note="nothing happens there"),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:

@@ -15,7 +15,7 @@ from typing import ClassVar
 import libcst as cst
 
 from mutabot_source.extension import TEXT
-from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
+from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample
 
 #: alternatives per text and operator
 LIMIT = 4
@@ -55,10 +55,10 @@ class DropCharacter(_Characters):
     name = "drop-character"
     rank = 120
     summary = "A character of a text argument is left out."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("send('up')\n", ("send('p')\n", "send('u')\n")),
-        Example("send(up)\n", note="only texts that stand in the call"),
-        Example("x = 'up'\n"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("send('up')\n", ("send('p')\n", "send('u')\n")),
+        TextExample("send(up)\n", note="only texts that stand in the call"),
+        TextExample("x = 'up'\n"),
     )
 
     def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
@@ -72,9 +72,9 @@ class DoubleCharacter(_Characters):
     name = "double-character"
     rank = 130
     summary = "A character of a text argument is there twice."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("send('up')\n", ("send('uup')\n", "send('upp')\n")),
-        Example("send(f'up/{x}')\n", note="not in formatted texts"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("send('up')\n", ("send('uup')\n", "send('upp')\n")),
+        TextExample("send(f'up/{x}')\n", note="not in formatted texts"),
     )
 
     def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
@@ -88,9 +88,9 @@ class ReplaceCharacter(_Characters):
     name = "replace-character"
     rank = 140
     summary = "A character of a text argument is another one: a digit for a digit, a letter for a letter."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("send('up5')\n", ("send('np5')\n", "send('ul5')\n", "send('up8')\n")),
-        Example("send('')\n", note="an empty text has no characters"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("send('up5')\n", ("send('np5')\n", "send('ul5')\n", "send('up8')\n")),
+        TextExample("send('')\n", note="an empty text has no characters"),
     )
 
     def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
@@ -106,9 +106,9 @@ class SwapCharacters(_Characters):
     name = "swap-characters"
     rank = 150
     summary = "Two neighbouring characters of a text argument change places."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("send('up')\n", ("send('pu')\n",)),
-        Example("send('aa')\n", note="equal neighbours"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("send('up')\n", ("send('pu')\n",)),
+        TextExample("send('aa')\n", note="equal neighbours"),
     )
 
     def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings, each
+from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample, each
 
 
 class ConditionalReplacement(ClassicalOperator):
@@ -16,14 +16,14 @@ class ConditionalReplacement(ClassicalOperator):
     name = "COR"
     rank = 40
     summary = "A condition's and becomes or, xor, one of its operands, always true, or always false."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("z = x and y\n", each("z = {}\n", "x or y, (not x) != (not y), x, y, False, True")),
-        Example(
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("z = x and y\n", each("z = {}\n", "x or y, (not x) != (not y), x, y, False, True")),
+        TextExample(
             "z = a or b or c\n",
             each("z = {}\n", "a and b or c, a or b and c, b or c, a or c, a or b, False, True"),
             note="a longer condition: one operator after the other, one operand less",
         ),
-        Example("z = x & y\n", note="bitwise operators are LOR's"),
+        TextExample("z = x & y\n", note="bitwise operators are LOR's"),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
@@ -94,9 +94,9 @@ class RelationalReplacement(ClassicalOperator):
     name = "ROR"
     rank = 30
     summary = "A comparison becomes each of the others, or always true, or always false."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("z = x < y\n", each("z = {}\n", "x <= y, x > y, x >= y, x == y, x != y, False, True")),
-        Example(
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("z = x < y\n", each("z = {}\n", "x <= y, x > y, x >= y, x == y, x != y, False, True")),
+        TextExample(
             "z = a < b in c\n",
             each(
                 "z = {}\n",
@@ -104,11 +104,11 @@ class RelationalReplacement(ClassicalOperator):
             ),
             note="a chain stays a chain: each value is computed once, and only if it is needed",
         ),
-        Example("z = x is None\n", ("z = x is not None\n", "z = False\n", "z = True\n")),
-        Example(
+        TextExample("z = x is None\n", ("z = x is not None\n", "z = False\n", "z = True\n")),
+        TextExample(
             "z = x == None\n", ("z = x != None\n", "z = False\n", "z = True\n"), note="None has no order"
         ),
-        Example("if __name__ == '__main__': main()\n", note="what is not run by a test is no place"),
+        TextExample("if __name__ == '__main__': main()\n", note="what is not run by a test is no place"),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:

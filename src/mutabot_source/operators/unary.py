@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import HELPER, ClassicalOperator, Draft, Example, Surroundings, is_scalar
+from mutabot_source.operator import HELPER, ClassicalOperator, Draft, Surroundings, TextExample, is_scalar
 
 
 class Absolute(ClassicalOperator):
@@ -16,16 +16,18 @@ class Absolute(ClassicalOperator):
     name = "ABS"
     rank = 10
     summary = "An arithmetic value becomes its absolute value, the negative of that, or raises if it is zero."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("y = x\n", ("y = abs(x)\n", "y = -abs(x)\n", "y = failOnZero(x)\n")),
-        Example(
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("y = x\n", ("y = abs(x)\n", "y = -abs(x)\n", "y = failOnZero(x)\n")),
+        TextExample(
             "y = arm.x\n",
             ("y = abs(arm.x)\n", "y = -abs(arm.x)\n", "y = failOnZero(arm.x)\n"),
             note="attributes, items, calls and sums as well",
         ),
-        Example("y = x\n", kinds={"x": "text"}, note="the baseline saw a text there"),
-        Example("y = 0.2\n", note="a literal shows its sign: that is UOI's"),
-        Example("f.g\n", kinds={"f.g": "module:Kind"}, note="what it is taken from is no arithmetic value"),
+        TextExample("y = x\n", kinds={"x": "text"}, note="the baseline saw a text there"),
+        TextExample("y = 0.2\n", note="a literal shows its sign: that is UOI's"),
+        TextExample(
+            "f.g\n", kinds={"f.g": "module:Kind"}, note="what it is taken from is no arithmetic value"
+        ),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
@@ -47,18 +49,18 @@ class UnaryInsertion(ClassicalOperator):
     name = "UOI"
     rank = 80
     summary = "A value gets a minus, a bitwise or a logical not in front, whichever its type takes."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("y = 0.2\n", ("y = -0.2\n",), note="a taught point"),
-        Example("y = x\n", ("y = -x\n",)),
-        Example("y = x\n", ("y = -x\n", "y = ~x\n"), kinds={"x": "integer"}),
-        Example("y = x\n", ("y = not x\n",), kinds={"x": "truth"}),
-        Example("y = a + b\n", ("y = -(a + b)\n", "y = -a + b\n", "y = a + -b\n")),
-        Example("while x: ...\n", ("while not x: ...\n",), kinds={"x": "text"}, note="any condition"),
-        Example("z = a < b\n", ("z = not a < b\n", "z = -a < b\n", "z = a < -b\n")),
-        Example("y = True\n", ("y = not True\n",)),
-        Example("y = -0.2\n", note="what has a sign is UOD's"),
-        Example("y = 0\n", note="a zero has no other sign"),
-        Example("y = 'red'\n", note="a text has no sign"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("y = 0.2\n", ("y = -0.2\n",), note="a taught point"),
+        TextExample("y = x\n", ("y = -x\n",)),
+        TextExample("y = x\n", ("y = -x\n", "y = ~x\n"), kinds={"x": "integer"}),
+        TextExample("y = x\n", ("y = not x\n",), kinds={"x": "truth"}),
+        TextExample("y = a + b\n", ("y = -(a + b)\n", "y = -a + b\n", "y = a + -b\n")),
+        TextExample("while x: ...\n", ("while not x: ...\n",), kinds={"x": "text"}, note="any condition"),
+        TextExample("z = a < b\n", ("z = not a < b\n", "z = -a < b\n", "z = a < -b\n")),
+        TextExample("y = True\n", ("y = not True\n",)),
+        TextExample("y = -0.2\n", note="what has a sign is UOD's"),
+        TextExample("y = 0\n", note="a zero has no other sign"),
+        TextExample("y = 'red'\n", note="a text has no sign"),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
@@ -86,12 +88,12 @@ class UnaryDeletion(ClassicalOperator):
     name = "UOD"
     rank = 90
     summary = "A unary minus, plus, bitwise or logical not is left out."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("y = -0.2\n", ("y = 0.2\n",), note="a taught point"),
-        Example("if not held: ...\n", ("if held: ...\n",)),
-        Example("y = ~x\n", ("y = x\n",)),
-        Example("y = a - b\n", note="that minus has two operands"),
-        Example("z = x not in y\n", note="part of a comparison: ROR's"),
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("y = -0.2\n", ("y = 0.2\n",), note="a taught point"),
+        TextExample("if not held: ...\n", ("if held: ...\n",)),
+        TextExample("y = ~x\n", ("y = x\n",)),
+        TextExample("y = a - b\n", note="that minus has two operands"),
+        TextExample("z = x not in y\n", note="part of a comparison: ROR's"),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:

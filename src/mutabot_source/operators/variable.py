@@ -12,7 +12,7 @@ from typing import ClassVar
 import libcst as cst
 
 from mutabot.model.mutant import Alternative
-from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
+from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample
 
 
 class VariableReplacement(ClassicalOperator):
@@ -22,17 +22,17 @@ class VariableReplacement(ClassicalOperator):
     rank = 100
     asks_variables = True
     summary = "A variable becomes another one in scope that had a value of the same type."
-    examples: ClassVar[tuple[Example, ...]] = (
-        Example("move(x)\n", ("move(y)\n", "move(z)\n"), variables={"x": ("y", "z")}),
-        Example(
+    examples: ClassVar[tuple[TextExample, ...]] = (
+        TextExample("move(x)\n", ("move(y)\n", "move(z)\n"), variables={"x": ("y", "z")}),
+        TextExample(
             "box.lift()\n",
             ("lid.lift()\n",),
             variables={"box": ("lid",)},
             kinds={"box": "cell:Part"},
             note="objects of the same class as well",
         ),
-        Example("move(x)\n", note="no other variable had its type"),
-        Example("x = 1\n", variables={"x": ("y",)}, note="only where a variable is read"),
+        TextExample("move(x)\n", note="no other variable had its type"),
+        TextExample("x = 1\n", variables={"x": ("y",)}, note="only where a variable is read"),
     )
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:

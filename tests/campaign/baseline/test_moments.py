@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.comparison import Event, Observation, compare, strides_of
+from mutabot.campaign.comparison import Observation, TraceCall, compare, strides_of
 from mutabot.campaign.run import run_campaign
 from mutabot.execution.processes import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary
@@ -113,7 +113,7 @@ def test_one_fork_server_serves_jobs_with_and_without_readings_along_the_way(tmp
 
 
 def moved(*places: float, key: str = "a") -> Observation:
-    events = [Event(key) for _ in places]
+    events = [TraceCall(key) for _ in places]
     moments = [(number, {"w:p.x": place, "w:p.y": 0.0}, True) for number, place in enumerate(places, start=1)]
     changes = [
         (call, parts if call == 1 else {"w:p.x": parts["w:p.x"]}, call == 1) for call, parts, _ in moments

@@ -7,19 +7,19 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.comparison import OTHER_WORLD, Difference, Event, Observation, compare, farthest
+from mutabot.campaign.comparison import OTHER_WORLD, Difference, Observation, TraceCall, compare, farthest
 from mutabot.model import Probe
 
 BOX = Probe("scene:box", tolerance=0.001)
 
 
-def seen(*events: Event, truncated: bool = False, **probes: Any) -> Observation:
+def seen(*events: TraceCall, truncated: bool = False, **probes: Any) -> Observation:
     values = {f"scene:box.{name}" if name != "box" else "scene:box": value for name, value in probes.items()}
     return Observation(events, values, truncated)
 
 
 def test_equal_worlds_are_indistinguishable() -> None:
-    one = seen(Event("a", {"x": 1.0}, {"y": 2.0}), x=1.0, colour="red")
+    one = seen(TraceCall("a", {"x": 1.0}, {"y": 2.0}), x=1.0, colour="red")
     assert compare(one, one, [BOX]) == Difference(True, 0.0, ())
 
 
@@ -75,21 +75,23 @@ def test_without_probes_there_is_no_distance() -> None:
 @pytest.mark.parametrize(
     ("mutant", "line"),
     [
-        ([Event("a", {"x": 1.0}, {"y": 2.5})], "call 1, a: read {y: 2.5} instead of {y: 2}"),
-        ([Event("a", {"x": -1.0}, {"y": 2.0})], "call 1, a: wrote {x: -1} instead of {x: 1}"),
-        ([Event("b")], "call 1: b instead of a"),
+        ([TraceCall("a", {"x": 1.0}, {"y": 2.5})], "call 1, a: read {y: 2.5} instead of {y: 2}"),
+        ([TraceCall("a", {"x": -1.0}, {"y": 2.0})], "call 1, a: wrote {x: -1} instead of {x: 1}"),
+        ([TraceCall("b")], "call 1: b instead of a"),
         ([], "1 call fewer"),
-        ([Event("a", {"x": 1.0}, {"y": 2.0}), Event("c")], "1 call more"),
+        ([TraceCall("a", {"x": 1.0}, {"y": 2.0}), TraceCall("c")], "1 call more"),
     ],
 )
-def test_the_first_call_that_differs_is_told(mutant: list[Event], line: str) -> None:
-    found = compare(seen(Event("a", {"x": 1.0}, {"y": 2.0})), seen(*mutant))
+def test_the_first_call_that_differs_is_told(mutant: list[TraceCall], line: str) -> None:
+    found = compare(seen(TraceCall("a", {"x": 1.0}, {"y": 2.0})), seen(*mutant))
     assert not found.indistinguishable
     assert found.divergence == (line,)
 
 
 def test_traces_that_were_cut_off_are_compared_as_far_as_they_go() -> None:
-    assert compare(seen(Event("a")), seen(Event("a"), Event("b"), truncated=True)).indistinguishable
+    assert compare(
+        seen(TraceCall("a")), seen(TraceCall("a"), TraceCall("b"), truncated=True)
+    ).indistinguishable
 
 
 def test_several_tests_of_a_mutant_are_as_far_as_the_farthest() -> None:
@@ -104,5 +106,5 @@ def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -
     line = compare(seen(x=-0.32741), seen(x=-0.32744), [Probe("scene:box", tolerance=1e-6)]).divergence[0]
     assert line == "box.x: -0.32744 instead of -0.32741 (off by 3e-05)"
     before, after = ([1.0, 2.00001], [1.0, 2.00002])
-    (call,) = compare(seen(Event("a", {"x": before})), seen(Event("a", {"x": after}))).divergence
+    (call,) = compare(seen(TraceCall("a", {"x": before})), seen(TraceCall("a", {"x": after}))).divergence
     assert call == "call 1, a: wrote {x: (1, 2.00002)} instead of {x: (1, 2.00001)}"

@@ -10,7 +10,7 @@ import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.unfit import refuse_unfit
-from mutabot.campaign.comparison import OTHER_WORLD, Difference, Event, Observation, compare
+from mutabot.campaign.comparison import OTHER_WORLD, Difference, Observation, TraceCall, compare
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Mode, Operation, Path, Probe, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.events import TestEnd
@@ -105,7 +105,7 @@ def test_what_is_no_orientation_is_never_equal_to_one(after: Any) -> None:
 def traced(quantity: Quantity, before: Any, after: Any) -> Difference:
     operation = Operation("robot:turn", (quantity,), ())
     events = [
-        Observation([Event("a", {quantity.name: value}, {}, ("robot:turn", None))])
+        Observation([TraceCall("a", {quantity.name: value}, {}, ("robot:turn", None))])
         for value in (before, after)
     ]
     return compare(*events, (), (operation,))

@@ -311,7 +311,9 @@ def test_a_trunk_that_dies_leaves_its_mutants_to_replay(tmp_path: Path, script: 
     progress = Quiet()
     path = run_campaign(request_for(tmp_path, engine="auto"), progress)
     found = {outcome.mutant.split(":")[1]: outcome for outcome in outcomes(path)}
-    assert any("fork parent of round 1 died: the process ended with exit code 3" in one for one in progress.lines)
+    assert any(
+        "fork parent of round 1 died: the process ended with exit code 3" in one for one in progress.lines
+    )
     assert {name: one.engine for name, one in found.items()} == {
         "back_off": "branch", "approach": "replay", "look": "replay",
     }  # fmt: skip

@@ -6,22 +6,26 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mutabot.campaign.search import LadderSearch
-from mutabot.model.graded import Seen, bracket_of
+from mutabot.model.graded import MagnitudeResult, bracket_of
 
 SIZE = 7
 #: the first step that is noticed in a round; SIZE if none is
 thresholds = st.lists(st.integers(0, SIZE), min_size=1, max_size=6)
 
 
-def truth(threshold: int, refused_from: int = SIZE) -> dict[int, Seen]:
+def truth(threshold: int, refused_from: int = SIZE) -> dict[int, MagnitudeResult]:
     """What each step of a monotone round shows."""
     return {
-        step: Seen.REFUSED if step >= refused_from else Seen.NOTICED if step >= threshold else Seen.MISSED
+        step: MagnitudeResult.REFUSED
+        if step >= refused_from
+        else MagnitudeResult.NOTICED
+        if step >= threshold
+        else MagnitudeResult.MISSED
         for step in range(SIZE)
     }
 
 
-def run(rows: list[dict[int, Seen]], **details: object) -> LadderSearch:
+def run(rows: list[dict[int, MagnitudeResult]], **details: object) -> LadderSearch:
     """A search to its end, as the campaign drives it: the first round, then the others."""
     search = LadderSearch(SIZE, len(rows), **details)  # type: ignore[arg-type]
     for rounds in (range(1), range(1, len(rows))):
@@ -37,7 +41,7 @@ def run(rows: list[dict[int, Seen]], **details: object) -> LadderSearch:
     return search
 
 
-def floats(row: dict[int, Seen]) -> dict[float, Seen]:
+def floats(row: dict[int, MagnitudeResult]) -> dict[float, MagnitudeResult]:
     return {float(step): one for step, one in row.items()}
 
 
@@ -72,14 +76,16 @@ def test_rounds_alike_see_every_magnitude_in_some_round() -> None:
 
 
 def test_at_the_first_violation_the_whole_ladder_is_run_in_all_rounds() -> None:
-    row = {**truth(2), SIZE - 1: Seen.MISSED}
+    row = {**truth(2), SIZE - 1: MagnitudeResult.MISSED}
     search = run([row] * 3)
     assert search.is_violated
     assert all(len(found) == SIZE for found in search.found.values())
 
 
-@given(st.lists(st.lists(st.sampled_from(Seen), min_size=SIZE, max_size=SIZE), min_size=1, max_size=4))
-def test_whatever_is_seen_the_search_ends(rows: list[list[Seen]]) -> None:
+@given(
+    st.lists(st.lists(st.sampled_from(MagnitudeResult), min_size=SIZE, max_size=SIZE), min_size=1, max_size=4)
+)
+def test_whatever_is_seen_the_search_ends(rows: list[list[MagnitudeResult]]) -> None:
     run([dict(enumerate(row)) for row in rows])
 
 

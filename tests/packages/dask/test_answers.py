@@ -34,10 +34,10 @@ from mutabot.model.job import Branching, Job
 from mutabot.model.mutant import Place
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.dispatch import Dispatch
-from mutabot_dask.far import Session
+from mutabot_dask.far import WorkerSession
 from mutabot_dask.link import News
 from mutabot_dask.roster import Roster
-from mutabot_dask.unit import MOST_BYTES, Answer, Ground, Introduction, Misfit, Unit
+from mutabot_dask.unit import MOST_BYTES, Ground, Introduction, Misfit, UnitAnswer, WorkUnit
 
 from .hostile import ODD
 
@@ -63,13 +63,13 @@ def task(number: int) -> Task:
     return Task(number, job)
 
 
-def unit(ticket: str = "ticket") -> Unit:
-    return Unit(GROUND, task(1), ticket)
+def unit(ticket: str = "ticket") -> WorkUnit:
+    return WorkUnit(GROUND, task(1), ticket)
 
 
-def trunk(ticket: str = "ticket") -> Unit:
+def trunk(ticket: str = "ticket") -> WorkUnit:
     job = replace(unit().task.job, mutant=None, branching=Branching((mutant(1),)))
-    return Unit(GROUND, Task(None, job, is_fork_parent=True), ticket)
+    return WorkUnit(GROUND, Task(None, job, is_fork_parent=True), ticket)
 
 
 def good(ticket: str = "ticket") -> dict[str, Any]:
@@ -82,7 +82,7 @@ def good(ticket: str = "ticket") -> dict[str, Any]:
         END,
         SessionEnd(0, (TEST,)),
     )
-    data: dict[str, Any] = to_data(Answer.of_result(lines, Result(task(1), wall=0.5)))
+    data: dict[str, Any] = to_data(UnitAnswer.of_result(lines, Result(task(1), wall=0.5)))
     return {**data, "ticket": ticket}
 
 
@@ -97,7 +97,7 @@ def changed(change: Callable[[dict[str, Any]], Any]) -> bytes:
 
 
 def test_what_a_worker_saw_arrives() -> None:
-    answer, lines = Answer.of(packed(good()), unit())
+    answer, lines = UnitAnswer.of(packed(good()), unit())
     found = answer.result(unit().task, lines)
     assert [to_data(end) for end in found.ends] == [to_data(END)]
     assert found.end == SessionEnd(0, (TEST,))
@@ -143,35 +143,35 @@ _WRONG: dict[str, bytes] = {
 @pytest.mark.parametrize("data", _WRONG.values(), ids=_WRONG.keys())
 def test_what_is_no_answer_to_a_unit_is_told(data: bytes) -> None:
     with pytest.raises(Misfit, match=r".{4}"):
-        Answer.of(data, unit())
+        UnitAnswer.of(data, unit())
 
 
 def test_an_answer_of_absurd_size_is_not_read() -> None:
     with pytest.raises(Misfit, match=f"more than {MOST_BYTES}"):
-        Answer.of(b" " * (MOST_BYTES + 1), unit())
+        UnitAnswer.of(b" " * (MOST_BYTES + 1), unit())
 
 
 def test_a_trunk_tells_of_its_own_mutants_only() -> None:
     data = good()
     data["lines"].append(event_to_data(BranchEnd(mutant(1).id, replace(END, trace=()))))
-    _, lines = Answer.of(packed(data), trunk())
+    _, lines = UnitAnswer.of(packed(data), trunk())
     assert sum(isinstance(line, BranchEnd) for line in lines) == 1
     data["lines"].append(event_to_data(BranchEnd(mutant(2).id, replace(END, trace=()))))
     with pytest.raises(Misfit, match="is no mutant of this unit"):
-        Answer.of(packed(data), trunk())
+        UnitAnswer.of(packed(data), trunk())
 
 
 def test_texts_can_be_stored() -> None:
     data = changed(lambda a: a["lines"][END_LINE].update(message="half \ud83d a sign", exception="\x00"))
-    (found,) = (line for line in Answer.of(data, unit())[1] if isinstance(line, TestEnd))
+    (found,) = (line for line in UnitAnswer.of(data, unit())[1] if isinstance(line, TestEnd))
     assert found.message == "half \\ud83d a sign"
 
 
 def test_a_worker_does_not_send_what_would_not_be_taken(tmp_path: Path) -> None:
     """What its process reports is the mutant's doing, not the worker's: it is not left out for it."""
-    session = Session(tmp_path, GROUND)
+    session = WorkerSession(tmp_path, GROUND)
     data = session._fitting(changed(lambda a: a["lines"][END_LINE].update(hits="many")), unit())
-    answer, _ = Answer.of(data, unit())
+    answer, _ = UnitAnswer.of(data, unit())
     assert answer.lost is not None
     assert "lines[4] (TestEnd): TypeError: a whole number was expected, not str" in answer.lost
 
@@ -213,7 +213,7 @@ class FakeLink:
         number = next(self._numbers)
         answer = Introduction({}, has=True).data()
         if function.__name__ == "run_unit":
-            asked = Unit.of(given[0])
+            asked = WorkUnit.of(given[0])
             data = packed(good(asked.ticket))
             assert asked.task.job.mutant is not None
             if asked.task.job.mutant.number in self._odd:

@@ -7,15 +7,15 @@ from pathlib import Path
 from mutabot.execution.task import Task
 from mutabot.model import Vocabulary
 from mutabot.model.job import Job
-from mutabot_dask.far import Session
-from mutabot_dask.unit import Answer, Ground, Unit
+from mutabot_dask.far import WorkerSession
+from mutabot_dask.unit import Ground, UnitAnswer, WorkUnit
 
 
 def test_what_is_wrong_with_a_workers_folder_names_it_as_it_is_there(tmp_path: Path) -> None:
     ground = Ground("digest", "/of/the/controller", "", (), {})
-    session = Session(tmp_path / "gone", ground)
+    session = WorkerSession(tmp_path / "gone", ground)
     job = Job(ground.root, ("mission.py",), (), Vocabulary(()), seed=1, round=0)
-    unit = Unit(ground, Task(None, job), "ticket")
-    answer, _ = Answer.of(session.answer(unit, lambda: None), unit)
+    unit = WorkUnit(ground, Task(None, job), "ticket")
+    answer, _ = UnitAnswer.of(session.answer(unit, lambda: None), unit)
     assert answer.is_unfit
     assert answer.fault == f"cannot write to {tmp_path}/gone/.mutabot: No such file or directory"

@@ -20,7 +20,7 @@ from mutabot.errors import ExitCode
 from mutabot.journal.journal import JournalReader
 from mutabot_live import server as serving
 from mutabot_live.pages import Pages
-from mutabot_live.server import MOST, Feed, Server
+from mutabot_live.server import MOST, LiveFeed, Server
 from packages.live.visits import PATIENCE, ask
 from report.html import reports
 from tests.campaign.project import write_project
@@ -96,7 +96,7 @@ def send(address: str, message: bytes) -> None:
 @pytest.fixture
 def served(tmp_path: Path) -> Iterator[Server]:
     journal, _ = reports.campaign(tmp_path)
-    feed = Feed()
+    feed = LiveFeed()
     given: list[str] = []
     server = Server(Pages(journal, "cell", lambda: 1), feed, {"stop": lambda: given.append("stop")})
     yield server

@@ -12,7 +12,7 @@ import pytest
 
 from mutabot.journal.journal import Journal
 from mutabot_live.pages import Pages
-from mutabot_live.server import Feed, Server
+from mutabot_live.server import LiveFeed, Server
 from results import samples
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="requirements-reports.lock is not installed")
@@ -61,7 +61,7 @@ def _wait_for_version(page: Any, version: int) -> None:
 def test_a_click_during_which_newer_data_come_is_not_lost(page: Any, tmp_path: Path) -> None:
     path = tmp_path / "journal.sqlite"
     version = [1]
-    feed, pages = Feed(), Pages(path, "cell", lambda: version[0])
+    feed, pages = LiveFeed(), Pages(path, "cell", lambda: version[0])
     server = Server(pages, feed, {})
     try:
         with Journal.create(path, meta=samples.meta()) as journal:
@@ -87,7 +87,7 @@ def test_it_fills_and_says_how_it_ended(page: Any, tmp_path: Path) -> None:
     known = [0]
     given: list[str] = []
     path = tmp_path / "journal.sqlite"
-    feed, pages = Feed(), Pages(path, "cell", lambda: known[0])
+    feed, pages = LiveFeed(), Pages(path, "cell", lambda: known[0])
     names = ("stop",)
     server = Server(pages, feed, {name: lambda name=name: given.append(name) for name in names})  # type: ignore[misc]
     try:

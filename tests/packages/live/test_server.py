@@ -14,7 +14,7 @@ import pytest
 import mutabot
 from mutabot.errors import UsageError
 from mutabot_live.pages import Pages
-from mutabot_live.server import Feed, Server
+from mutabot_live.server import LiveFeed, Server
 from packages.live.visits import ask, command, listening, origin
 from report.html import reports
 
@@ -24,7 +24,7 @@ class Served:
     """A server of the samples, with a log of its commands."""
 
     server: Server
-    feed: Feed
+    feed: LiveFeed
     folder: Path
     commands: list[str] = field(default_factory=list)
 
@@ -36,7 +36,7 @@ class Served:
 @pytest.fixture
 def served(tmp_path: Path) -> Iterator[Served]:
     journal, _ = reports.campaign(tmp_path)
-    feed, given = Feed(), []
+    feed, given = LiveFeed(), []
     pages = Pages(journal, "cell", lambda: 1)
     pages.look_at_once()
     names = ("stop", "other")
@@ -192,7 +192,7 @@ def test_a_port_that_is_taken_is_the_users_concern(served: Served) -> None:
     port = urlsplit(served.address).port
     assert port is not None
     with pytest.raises(UsageError, match=rf"--port {port} of 127.0.0.1"):
-        Server(Pages(served.folder / "none.sqlite", "cell", lambda: 0), Feed(), {}, port)
+        Server(Pages(served.folder / "none.sqlite", "cell", lambda: 0), LiveFeed(), {}, port)
 
 
 def test_before_there_is_a_journal_the_page_has_no_data_and_no_error(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track
+from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, Track, TrackKind
 from mutabot_motion.shown import Shown
 
 STEPS = 21
@@ -22,16 +22,16 @@ def recording(*, lets_go: bool = False, **changes: Any) -> Recording:
         box.extend((x if is_held else 0.5, 0.0, 0.3 if is_held else 0.025))
         opening.append(0.05 if is_held else 0.1)
     tracks = {
-        "tool": Track("tool", Kind.POSE, tool),
-        "a box": Track("a box", Kind.POINT, box, size=(0.05, 0.05, 0.05)),
-        "opening": Track("opening", Kind.VALUE, opening, "m"),
+        "tool": Track("tool", TrackKind.POSE, tool),
+        "a box": Track("a box", TrackKind.POINT, box, size=(0.05, 0.05, 0.05)),
+        "opening": Track("opening", TrackKind.VALUE, opening, "m"),
     }
     calls = [
         Told(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 1.0, "dy": 0}, {}),
         Told(2.0, 2.0, "robot:Camera.find", "tests/see.py:8", None, {}, {"x": 0.5}, "oracle"),
         Told(None, None, "robot:Arm.home", "mission.py:4", None, {}, {}),
     ]
-    moments = [Moment(1.1, "part", "a box, fingers")] if lets_go else []
+    moments = [RecordedMoment(1.1, "part", "a box, fingers")] if lets_go else []
     found = Recording(times, tracks, (TABLE,), moments, calls)
     if lets_go:
         found.fault, found.faulty_call = 1.0, 1

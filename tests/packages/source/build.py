@@ -15,7 +15,7 @@ from typing import Any
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
 from mutabot.runtime.program_text.import_hook import ImportHook
 from mutabot_source.nodes import same_program
-from mutabot_source.operator import Example
+from mutabot_source.operator import TextExample
 from mutabot_source.refine import refine
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
@@ -29,7 +29,7 @@ def text_of(folder: Path, source: str, *operators: str) -> ProgramText:
     return text
 
 
-def refined(text: ProgramText, example: Example) -> ProgramText:
+def refined(text: ProgramText, example: TextExample) -> ProgramText:
     """The text after a baseline that saw what the example says."""
     seen = {}
     for place in text.places:

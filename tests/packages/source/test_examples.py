@@ -9,14 +9,14 @@ import pytest
 
 from mutabot.runtime.program_text.instrument import instrumented
 from mutabot.runtime.program_text.loading import compile_tree
-from mutabot_source.operator import Example
+from mutabot_source.operator import TextExample
 from mutabot_source.registry import names, operator
 from tests.packages.source.build import choices, refined, spliced, text_of
 
 CASES = [(name, index) for name in names() for index in range(len(operator(name).examples))]
 
 
-def example_of(name: str, index: int) -> Example:
+def example_of(name: str, index: int) -> TextExample:
     return operator(name).examples[index]
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
+from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, Track, TrackKind, to_bytes
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model.outcome import Apart, Diverged, Near
 from mutabot.report.html.folder import Contents, Written, write_folder
@@ -41,12 +41,15 @@ def recording(*, off: float = 0.0, name: str = "box") -> Recording:
         Told(2.0, 9.0, "robot:Arm.move_by", "mission.py:4", None, {"dx": -0.3, "how": "slowly " * 9}, {}),
         Told(9.5, 9.5, "tracker:box_position", "tests/sensors.py:2", None, {}, {".x": 0.5 + off}, "oracle"),
     ]
-    moments = [Moment(1.0, "touch", f"{name}, table")]
+    moments = [RecordedMoment(1.0, "touch", f"{name}, table")]
     if not off:  # the mutant has nothing beside it
-        moments.append(Moment(8.0, "part", f"{name}, table"))
+        moments.append(RecordedMoment(8.0, "part", f"{name}, table"))
     return Recording(
         array("d", _TIMES),
-        {"tool": Track("tool", Kind.POSE, tool), name: Track(name, Kind.POINT, box, size=(0.1, 0.1, 0.1))},
+        {
+            "tool": Track("tool", TrackKind.POSE, tool),
+            name: Track(name, TrackKind.POINT, box, size=(0.1, 0.1, 0.1)),
+        },
         (Block(name, (0.5, 0.0, 0.0), (1.0, 1.0, 0.1)),),
         moments,
         calls,

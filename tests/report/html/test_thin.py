@@ -11,7 +11,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.evidence.recording import Kind, Track
+from mutabot.evidence.recording import Track, TrackKind
 from mutabot.report.html.mutant import thinned
 
 _PLACES = st.lists(
@@ -20,7 +20,7 @@ _PLACES = st.lists(
 
 
 def point(places: Any) -> Track:
-    return Track("box", Kind.POINT, array("f", [value for place in places for value in place]))
+    return Track("box", TrackKind.POINT, array("f", [value for place in places for value in place]))
 
 
 def decoded(data: Any, usual: Any = None) -> tuple[list[float], list[tuple[float, ...]]]:
@@ -87,13 +87,13 @@ def test_where_a_thing_is_not_there_is_a_gap() -> None:
 
 def test_the_two_quaternions_of_a_pose_are_no_jump() -> None:
     values = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]
-    data = thinned(Track("tool", Kind.POSE, array("f", values)), [0.0, 0.1], None, ())
+    data = thinned(Track("tool", TrackKind.POSE, array("f", values)), [0.0, 0.1], None, ())
     assert data["v"][3] == [1000, 0]
 
 
 def test_a_value_keeps_a_hundredth_of_its_range() -> None:
     times = [0.01 * number for number in range(500)]
     values = [1e-6 * sin(time) for time in times]
-    track = Track("current", Kind.VALUE, array("f", values), "A")
+    track = Track("current", TrackKind.VALUE, array("f", values), "A")
     made = decoded(thinned(track, times, None, ()))
     assert all(abs(at(*made, time)[0] - value) < 2e-8 for time, value in zip(times, values, strict=True))

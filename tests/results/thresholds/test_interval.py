@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.model.graded import Seen, bracket_of
+from mutabot.model.graded import MagnitudeResult, bracket_of
 from mutabot.results.ladders import (
     binomial_at_most,
     exact,
@@ -83,7 +83,9 @@ def test_the_interval_holds_the_median_as_often_as_it_promises(rounds: int, devi
         middle = random.uniform(math.log10(2.0), math.log10(20.0))
         thresholds = [10 ** random.gauss(middle, deviation) for _ in range(rounds)]
         brackets = [
-            bracket_of({size: Seen.NOTICED if size >= at else Seen.MISSED for size in LADDER})
+            bracket_of(
+                {size: MagnitudeResult.NOTICED if size >= at else MagnitudeResult.MISSED for size in LADDER}
+            )
             for at in thresholds
         ]
         found = median_between(

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.runtime.program_text.foresee import Form, Forms, UnforeseenError, form_of, is_identical
+from mutabot.runtime.program_text.foresee import ForeseenForm, Forms, UnforeseenError, form_of, is_identical
 
 
 def foresee(text: str, **variables: Any) -> Any:
@@ -20,8 +20,8 @@ def foresee(text: str, **variables: Any) -> Any:
     return form(text).value(frame_of(**variables))
 
 
-def form(text: str) -> Form:
-    return Form(ast.parse(text, mode="eval").body)
+def form(text: str) -> ForeseenForm:
+    return ForeseenForm(ast.parse(text, mode="eval").body)
 
 
 def frame_of(**variables: Any) -> Any:

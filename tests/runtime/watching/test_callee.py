@@ -9,7 +9,7 @@ from unittest import mock
 
 import pytest
 
-from mutabot.model.watched import Call
+from mutabot.model.watched import WatchedCallable
 from mutabot.runtime.watching.callee import Callee, meant_by
 from mutabot.runtime.watching.watch import Watch
 
@@ -73,7 +73,7 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return module  # type: ignore[no-any-return]
 
 
-def seen(value: Any, name: str, *args: Any) -> Call:
+def seen(value: Any, name: str, *args: Any) -> WatchedCallable:
     """What is seen of the program's call of a method or of a module's function."""
     watch = Watch({"mission.py": "mission.py"}, {})
     watch.method(value, name, watch._place("mission.py", 1))(*args)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.campaign.baseline.site_names import Sources
-from mutabot.campaign.comparison import Event, Observation, as_steady
+from mutabot.campaign.comparison import Observation, TraceCall, as_steady
 from mutabot.errors import MutabotError
 from mutabot.execution.task import Result
 from mutabot.families import CALLS, CONTROL, MESSAGES
@@ -93,7 +93,7 @@ class PlantedFaults:
         if mutant.family == CONTROL:
             place = Place.of(mutant)
             is_own = place in self.providers and place not in self._numbers
-            how = InProcess(f"{_CONTROLS}:{mutant.operator.capitalize()}") if is_own else None
+            how = InProcess(f"{_CONTROLS}:Process{mutant.operator.capitalize()}") if is_own else None
         else:
             planted = self.by_id.get(mutant.id)
             how = planted.in_process if planted is not None else None
@@ -422,7 +422,7 @@ def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     events = []
     for index, written, read, _ in end.trace:
         place = places[index]
-        events.append(Event(place.key, written, read, (place.operation, place.pattern)))
+        events.append(TraceCall(place.key, written, read, (place.operation, place.pattern)))
     prepared, called = end.returned[: end.prepared], end.returned[end.prepared :]
     return Observation(
         events, end.probes, end.truncated, end.unread, end.outcome, prepared, called, end.moments

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mutabot.languages.front_end import Name, front_end_of
+from mutabot.languages.front_end import SiteName, front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of, unused_calls
 from mutabot.model import Role, Site, Span
@@ -168,8 +168,8 @@ class Sources:
     def site(self, seen: SiteSeen) -> Site:
         """The site at which something was seen."""
         span = seen.span
-        names: Mapping[Extent, Name] = self._in(span.file, front_end_of(span.file).names) or {}
-        text, occurrence = names.get(_extent(span), Name(f"line {span.line}", 1))
+        names: Mapping[Extent, SiteName] = self._in(span.file, front_end_of(span.file).names) or {}
+        text, occurrence = names.get(_extent(span), SiteName(f"line {span.line}", 1))
         return Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
 
     def is_written_through(self, span: Span) -> bool:

@@ -12,7 +12,7 @@ from mutabot.model.graded import Demand, is_same, wanted_magnitudes
 
 
 @frozen
-class Ladder:
+class FaultLadder:
     """One graded fault at one site, of one quantity, in one direction.
 
     Attributes:
@@ -24,7 +24,7 @@ class Ladder:
     mutants: tuple[Mutant, ...]
 
 
-def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[Ladder]]:
+def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[FaultLadder]]:
     """The mutants that stand alone, and the ladders."""
     alone: list[Mutant] = []
     found: dict[str, list[Mutant]] = {}
@@ -34,7 +34,7 @@ def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[Ladder]
         else:
             alone.append(mutant)
     ladders = [
-        Ladder(name, tuple(sorted(those, key=lambda one: one.magnitude or 0.0)))
+        FaultLadder(name, tuple(sorted(those, key=lambda one: one.magnitude or 0.0)))
         for name, those in found.items()
     ]
     return alone, ladders
@@ -77,7 +77,7 @@ def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
 
 
 def demanded_of(
-    ladders: Sequence[Ladder], demands: Sequence[Demand], vocabulary: Vocabulary
+    ladders: Sequence[FaultLadder], demands: Sequence[Demand], vocabulary: Vocabulary
 ) -> dict[str, tuple[float, ...]]:
     """The demanded magnitudes of each ladder, by its id."""
     first = {one.id: one.mutants[0] for one in ladders if demands}

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.request import Progress, Request
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import Row
+from mutabot.journal.records import MovedOutcome
 from mutabot.model import Mutant, Verdict
 
 from .keys import Dependencies, Parts, Tree, Was
@@ -53,7 +53,7 @@ class Earlier:
         names = self._now.why(self.was(self.kept[pair].key), mutant, pair[1], is_known=is_known)
         return in_short(names) if names else None
 
-    def row(self, pair: Pair, mutant: Mutant) -> Row | None:
+    def row(self, pair: Pair, mutant: Mutant) -> MovedOutcome | None:
         """An outcome as it is now; None if it names a line that nobody can find, or is none at all."""
         row = self._journal.row(*pair)
         if row is None:
@@ -64,7 +64,7 @@ class Earlier:
             return None
         return replace(row, data=data, key=self._now.renewed(row.key, was, mutant, row.round))
 
-    def is_unasked(self, row: Row, mutant: Mutant) -> bool:
+    def is_unasked(self, row: MovedOutcome, mutant: Mutant) -> bool:
         """Whether it is a survivor that some tests do not reach, and only these could notice what changed."""
         some, all = (self._now.tests(mutant, row.round, whole=whole) for whole in (False, True))
         if row.verdict != Verdict.SURVIVED or len(some) == len(all):
@@ -152,7 +152,7 @@ def reuse(
     return found
 
 
-def _taken(found: Reused, mutant: Mutant, round: int) -> Row | None:
+def _taken(found: Reused, mutant: Mutant, round: int) -> MovedOutcome | None:
     """One outcome from the first source in which it holds; else why it does not in the first that has it."""
     pair = (mutant.id, round)
     first: str | None = None

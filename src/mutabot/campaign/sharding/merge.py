@@ -34,7 +34,7 @@ _INCOMPLETE = "not all shards are there"
 
 
 @frozen
-class Part:
+class ShardJournal:
     """The journal of a shard, opened.
 
     Attributes:
@@ -52,7 +52,7 @@ class Part:
     mutants: tuple[Mutant, ...]
 
     @classmethod
-    def of(cls, path: Path, journal: JournalReader) -> Part:
+    def of(cls, path: Path, journal: JournalReader) -> ShardJournal:
         """What is in the journal. Raises MergeError if that is no shard."""
         meta = journal.meta()
         if SHARD not in meta:
@@ -67,10 +67,10 @@ class Part:
         return f"{self.shard.words} ({self.path})"
 
 
-def refuse_strangers(parts: Sequence[Part]) -> None:
+def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
     """Raise MergeError if these are not different shards of one plan, and say what differs."""
     first, *others = parts
-    by_number: dict[int, Part] = {}
+    by_number: dict[int, ShardJournal] = {}
     for part in parts:
         other = by_number.setdefault(part.shard.number, part)
         if other is not part:
@@ -90,7 +90,7 @@ def refuse_strangers(parts: Sequence[Part]) -> None:
             )
 
 
-def _differing(old: Part, new: Part) -> list[str]:
+def _differing(old: ShardJournal, new: ShardJournal) -> list[str]:
     if old.shard.of != new.shard.of:
         return [f"one is of {new.shard.of} shards, the other of {old.shard.of}"]
     told = changes(old.shard.depends or {}, new.shard.depends or {})
@@ -142,14 +142,14 @@ def found_in(path: Path) -> Path:
     return found
 
 
-def _opened(stack: ExitStack, path: Path) -> Part:
+def _opened(stack: ExitStack, path: Path) -> ShardJournal:
     refuse_tracked(path)
     if is_written(path):
         raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
-    return Part.of(path, stack.enter_context(JournalReader.open(path)))
+    return ShardJournal.of(path, stack.enter_context(JournalReader.open(path)))
 
 
-def _missing(parts: Sequence[Part]) -> Iterator[str]:
+def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
     """What a whole campaign would have beyond these."""
     first = parts[0]
     of, rounds = first.shard.of, int(first.meta.get("rounds") or 1)
@@ -186,7 +186,7 @@ def _missing(parts: Sequence[Part]) -> Iterator[str]:
             )
 
 
-def _meta(parts: Sequence[Part]) -> dict[str, Any]:
+def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
     """What the campaign says about itself: that of the first shard, and sums of what was counted."""
     metas = [part.meta for part in parts]
     found = {key: value for key, value in metas[0].items() if key != SHARD}
@@ -215,7 +215,7 @@ def _summed(said: Sequence[Any]) -> Any:
     return [item for one in said for item in one] if isinstance(first, list) else sum(said)
 
 
-def _known(journal: Journal, parts: Sequence[Part]) -> list[tuple[Mutant, bool]]:
+def _known(journal: Journal, parts: Sequence[ShardJournal]) -> list[tuple[Mutant, bool]]:
     """Mutants of earlier campaigns beside the plan: what the last shard says of them counts."""
     planned = parts[0].mutants
     readers = [journal, *(part.journal for part in parts)]
@@ -226,7 +226,7 @@ def _known(journal: Journal, parts: Sequence[Part]) -> list[tuple[Mutant, bool]]
 
 
 def _merge_recordings(
-    stack: ExitStack, parts: Sequence[Part], target: Path, room: int, known: set[str]
+    stack: ExitStack, parts: Sequence[ShardJournal], target: Path, room: int, known: set[str]
 ) -> None:
     is_there = target.exists()  # a shard may lie where the whole is to lie
     found = [Recordings.to_read(part.path, copied=is_there and part.path.samefile(target)) for part in parts]

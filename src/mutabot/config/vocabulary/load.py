@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mutabot.config.document import Document
-from mutabot.config.mistakes import Place, raise_errors
+from mutabot.config.mistakes import DocumentPlace, raise_errors
 from mutabot.errors import ConfigurationError, UnknownNameError
 from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
@@ -73,7 +73,7 @@ class _Merged:
     own: set[str] = field(default_factory=set)
 
     def add(self, document: Document, is_shipped: bool) -> None:
-        place = Place(document, self.errors)
+        place = DocumentPlace(document, self.errors)
         table = place.table(VocabularyTable, document.data, salvage=True)
         if table is None:
             return
@@ -103,7 +103,7 @@ class _Merged:
             self.own.add(what)
         return not is_shipped or what not in self.own
 
-    def _add_operation(self, place: Place, operation: Operation) -> None:
+    def _add_operation(self, place: DocumentPlace, operation: Operation) -> None:
         known = self.read.get(operation.target)
         self.entries.append((operation, place))
         if known is None:
@@ -123,7 +123,7 @@ class _Merged:
             where.error(f"{what}is described twice, differently: also in {also}")
 
     def _add_other(
-        self, place: Place, key: str, found: Clock | Wait | Probe | None, is_shipped: bool
+        self, place: DocumentPlace, key: str, found: Clock | Wait | Probe | None, is_shipped: bool
     ) -> None:
         """Add the clock, the wait or a probe, if it has no mistake, and note an earlier one that differs."""
         if found is None or not self._counts(key, is_shipped):
@@ -158,7 +158,7 @@ def _file_of(source: str) -> str:
 
 
 #: an operation with the place it was read from
-Read = tuple[Operation, Place]
+Read = tuple[Operation, DocumentPlace]
 
 
 def check_operations(entries: Iterable[Read], read: Mapping[str, Read]) -> None:

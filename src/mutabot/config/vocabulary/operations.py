@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from mutabot.config.mistakes import Place, shown
+from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Probe, Quantity, Wait
 from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.signature import parse_signature
@@ -40,7 +40,7 @@ _ONLY = {"overrides": "call", "direction": "topic"}
 _REFUSED = 'such as refused = { path = "status", values = [5, 6] }'
 
 
-def read_operations(place: Place, raw: Any) -> list[Operation]:
+def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
     """Read one ``[[operation]]``: a callable, or all that is done under a name. Mistakes are noted."""
     mistakes = len(place.errors)
     table = place.table(OperationTable, raw, salvage=True)
@@ -65,7 +65,7 @@ def read_operations(place: Place, raw: Any) -> list[Operation]:
     return [_read_operation(place, table, one.target, one, is_main=one is names[0]) for one in names]
 
 
-def _check_keys(place: Place, table: OperationTable, key: str, forms: Sequence[Form] = ()) -> None:
+def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Sequence[Form] = ()) -> None:
     """Note keys that say nothing of an operation with such a name."""
     sides = [SIDES[form] for form in forms if form in SIDES] if forms else [CALLABLE]
     fitting = {one for side in sides for one in (side.written, side.read) if one}
@@ -93,7 +93,7 @@ def _check_keys(place: Place, table: OperationTable, key: str, forms: Sequence[F
         (place / other).error(text)
 
 
-def _read_name(place: Place, table: OperationTable, key: str) -> Named | None:
+def _read_name(place: DocumentPlace, table: OperationTable, key: str) -> Named | None:
     """The name on a middleware, with the first of its forms; None if it has mistakes, which are noted."""
     mistakes = len(place.errors)
     name = (place / key).attempt(name_of, key, getattr(table, key))
@@ -105,7 +105,7 @@ def _read_name(place: Place, table: OperationTable, key: str) -> Named | None:
     return Named(forms_of(key, table.direction)[0], name, node, kind)
 
 
-def _read_callable(place: Place, table: OperationTable) -> Operation:
+def _read_callable(place: DocumentPlace, table: OperationTable) -> Operation:
     target = table.call or ""
     if table.method is not None:
         target, table = f"{ANY}.{table.method}", table.model_copy(update=_of_any(table))
@@ -124,7 +124,7 @@ def _of_any(table: OperationTable) -> dict[str, str]:
     return {key: f"{ANY}.{name}" for key, name in names.items() if name is not None and is_name(name)}
 
 
-def _check_self(place: Place, operation: Operation) -> None:
+def _check_self(place: DocumentPlace, operation: Operation) -> None:
     """Note what is said of the object or class of a callable that is no method."""
     target = operation.target
     if "." in target.partition(":")[2]:
@@ -138,7 +138,12 @@ def _check_self(place: Place, operation: Operation) -> None:
 
 
 def _read_operation(
-    place: Place, table: OperationTable, target: str, named: Named | None = None, *, is_main: bool = True
+    place: DocumentPlace,
+    table: OperationTable,
+    target: str,
+    named: Named | None = None,
+    *,
+    is_main: bool = True,
 ) -> Operation:
     """Read one of the operations of an entry: a callable, or one form of a name on a middleware."""
     form = named.form if named is not None else None
@@ -163,7 +168,7 @@ def _read_operation(
 
 
 def _with_commands(
-    place: Place,
+    place: DocumentPlace,
     table: OperationTable,
     operation: Operation,
     sides: Sides,
@@ -203,7 +208,7 @@ def _with_commands(
 
 
 def _read_result(
-    place: Place, table: OperationTable, form: Form | None, sides: Sides
+    place: DocumentPlace, table: OperationTable, form: Form | None, sides: Sides
 ) -> tuple[Quantity, ...]:
     if sides.read is None:
         return ()
@@ -228,7 +233,9 @@ def _is_command(table: OperationTable, operation: Operation) -> bool:
     return bool(patterns) or not result
 
 
-def _read_message(place: Place, table: OperationTable, root: str | None, operation: Operation) -> str | None:
+def _read_message(
+    place: DocumentPlace, table: OperationTable, root: str | None, operation: Operation
+) -> str | None:
     """The path to what says which command a call is; None if there is none, or a mistake, which is noted."""
     what = "argument" if root is None else "field"
     if table.message is None:
@@ -257,7 +264,7 @@ def _rooted(cases: tuple[Case, ...], root: str | None) -> tuple[Case, ...]:
     return tuple(replace(case, argument=str(in_message(bare_path(case.argument), root))) for case in cases)
 
 
-def _check_from_self(place: Place, operation: Operation) -> None:
+def _check_from_self(place: DocumentPlace, operation: Operation) -> None:
     """Note what a text cannot say that lies in the object itself, and is no argument of the call."""
     if operation.message is None or Path.parse(operation.message, rooted=True).root != "self":
         return
@@ -271,7 +278,7 @@ def _check_from_self(place: Place, operation: Operation) -> None:
             )
 
 
-def _check_signature(place: Place, operation: Operation) -> None:
+def _check_signature(place: DocumentPlace, operation: Operation) -> None:
     at = place / "signature"
     if operation.signature is None:
         if operation.kind == "methods" and operation.described:
@@ -292,7 +299,7 @@ def _check_signature(place: Place, operation: Operation) -> None:
             where.unknown("argument", name, signature.parameters)
 
 
-def _read_refused(place: Place, raw: Any, named: Named | None) -> tuple[Refused, ...]:
+def _read_refused(place: DocumentPlace, raw: Any, named: Named | None) -> tuple[Refused, ...]:
     """Read ``refused``: a table, a list of tables, or for an action also how its goal ends."""
     action = named.name if named is not None and named.form is Form.GOAL else None
     if raw is None:
@@ -314,7 +321,9 @@ def _read_refused(place: Place, raw: Any, named: Named | None) -> tuple[Refused,
     return tuple(one for one in read if one is not None)
 
 
-def _read_refused_table(place: Place, raw: Any, action: str | None, needs_topic: bool) -> Refused | None:
+def _read_refused_table(
+    place: DocumentPlace, raw: Any, action: str | None, needs_topic: bool
+) -> Refused | None:
     if not isinstance(raw, dict):
         place.error(f"expected a table, got {shown(raw)}; {_REFUSED}")
         return None
@@ -337,7 +346,7 @@ def _path_in_answer(text: str) -> Path:
     return in_message(bare_path(text), None)
 
 
-def read_clock(place: Place, raw: dict[str, Any]) -> Clock | None:
+def read_clock(place: DocumentPlace, raw: dict[str, Any]) -> Clock | None:
     """Read ``clock = { tick = …, time or step = …, unit = … }``; None if it has mistakes, which are noted."""
     table = place.table(ClockTable, raw)
     if table is None:
@@ -349,7 +358,7 @@ def read_clock(place: Place, raw: dict[str, Any]) -> Clock | None:
     return Clock(table.tick, table.time, rooted, table.unit, place.source("clock"), table.step)
 
 
-def read_wait(place: Place, raw: dict[str, Any]) -> Wait | None:
+def read_wait(place: DocumentPlace, raw: dict[str, Any]) -> Wait | None:
     """Read ``wait = { call = …, unit = … }``; None if it has mistakes, which are noted."""
     table = place.table(WaitTable, raw)
     if table is None:
@@ -357,7 +366,7 @@ def read_wait(place: Place, raw: dict[str, Any]) -> Wait | None:
     return Wait(table.call, table.unit, place.source("wait"))
 
 
-def read_probe(place: Place, raw: Any) -> Probe | None:
+def read_probe(place: DocumentPlace, raw: Any) -> Probe | None:
     """Read one ``[[probe]]``; None if it has mistakes, which are noted."""
     table = place.table(ProbeTable, raw)
     if table is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from mutabot.config.mistakes import Place
+from mutabot.config.mistakes import DocumentPlace
 from mutabot.errors import nearest_name
 from mutabot.model import Path, Pattern, Quantity
 from mutabot.model.notation import Field, Notation
@@ -17,7 +17,11 @@ from .when import in_each_mode, name_of
 
 
 def read_patterns(
-    place: Place, raw: list[Any], source: str, common: tuple[Quantity, ...] = (), sides: Sides = CALLABLE
+    place: DocumentPlace,
+    raw: list[Any],
+    source: str,
+    common: tuple[Quantity, ...] = (),
+    sides: Sides = CALLABLE,
 ) -> tuple[Pattern, ...]:
     """Read the patterns of an operation.
 
@@ -43,7 +47,7 @@ def read_patterns(
 
 
 def _read_pattern(
-    place: Place, raw: Any, source: str, common: tuple[Quantity, ...], sides: Sides
+    place: DocumentPlace, raw: Any, source: str, common: tuple[Quantity, ...], sides: Sides
 ) -> Iterator[Pattern]:
     """Read one entry, once for each value of the arguments that decide about modes."""
     own = raw
@@ -76,7 +80,9 @@ def _read_pattern(
         )
 
 
-def _arguments(place: Place, raw: dict[str, Any], notation: Notation, sides: Sides) -> tuple[Quantity, ...]:
+def _arguments(
+    place: DocumentPlace, raw: dict[str, Any], notation: Notation, sides: Sides
+) -> tuple[Quantity, ...]:
     """The quantities of the fields, and of arguments beside the text."""
     inline = {key: value for key, value in raw.items() if key in QuantityTable.model_fields}
     arguments: dict[str, Any] = raw.get("arguments") or {}
@@ -98,7 +104,7 @@ def _arguments(place: Place, raw: dict[str, Any], notation: Notation, sides: Sid
     return (*quantities, *read_quantities(place / "arguments", beside, sides, is_written=True))
 
 
-def _only_field(place: Place, notation: Notation, *, has_more: bool) -> Field | None:
+def _only_field(place: DocumentPlace, notation: Notation, *, has_more: bool) -> Field | None:
     """The one field that keys of a quantity beside the text describe; None if that is a mistake."""
     fields = notation.fields
     if has_more:
@@ -118,7 +124,7 @@ def _only_field(place: Place, notation: Notation, *, has_more: bool) -> Field | 
     return None
 
 
-def _read_field(place: Place, raw: Any, field: Field) -> tuple[Quantity, ...]:
+def _read_field(place: DocumentPlace, raw: Any, field: Field) -> tuple[Quantity, ...]:
     quantities = tuple(read_quantity(place, raw, Path(field.name), is_written=True))
     for quantity in quantities:
         place.attempt(_check_field, field, quantity)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from mutabot.config.mistakes import Place, shown
+from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.model import Kind, Path, Quantity
 from mutabot.model.path import Step
 
@@ -19,7 +19,7 @@ _ALIKE = ("kind", "frame", "mode", "noise", "order", "relative", "repeatability"
 
 
 def read_quantities(
-    place: Place, raw: dict[str, Any] | None, sides: Sides = CALLABLE, *, is_written: bool = False
+    place: DocumentPlace, raw: dict[str, Any] | None, sides: Sides = CALLABLE, *, is_written: bool = False
 ) -> tuple[Quantity, ...]:
     """Read a table whose keys are paths to quantities; what a callable returns may be one quantity."""
     raw = raw or {}
@@ -63,7 +63,13 @@ def is_quantity(raw: dict[str, Any]) -> bool:
 
 
 def read_quantity(
-    place: Place, raw: Any, path: Path, sides: Sides = CALLABLE, *, is_written: bool, name: str | None = None
+    place: DocumentPlace,
+    raw: Any,
+    path: Path,
+    sides: Sides = CALLABLE,
+    *,
+    is_written: bool,
+    name: str | None = None,
 ) -> Iterator[Quantity]:
     """Read the quantity of a table, or one per axis where a slice has several; mistakes are noted."""
     if sides.is_message and isinstance(raw, dict) and raw.get("kind") == Kind.QUATERNION:
@@ -90,7 +96,9 @@ def read_quantity(
         yield _quantity(table, part, axis, None)
 
 
-def _leaves(raw: dict[str, Any], before: str, place: Place) -> Iterator[tuple[str, Any, Place]]:
+def _leaves(
+    raw: dict[str, Any], before: str, place: DocumentPlace
+) -> Iterator[tuple[str, Any, DocumentPlace]]:
     """Path, table and place of each quantity; ``arguments.pose.x`` without quotes is nested in TOML."""
     for key, item in raw.items():
         text = f"{before}{key}" if not before or key.startswith((".", "[")) else f"{before}.{key}"

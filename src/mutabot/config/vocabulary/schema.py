@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field
 
-from mutabot.config.mistakes import Place, shown
+from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.config.table import Table
 from mutabot.model import Kind, Mode
 
@@ -205,7 +205,7 @@ class VocabularyTable(Table):
     probe: list[Any] = Field(default_factory=list)
 
 
-def read_idle(place: Place, raw: Any) -> Any:
+def read_idle(place: DocumentPlace, raw: Any) -> Any:
     """``idle = …`` as data that ``model.answer.restore`` understands; mistakes are noted.
 
     A TOML value is the answer itself; ``{ call = "module:name" }`` names a function that makes it.
@@ -219,7 +219,7 @@ def read_idle(place: Place, raw: Any) -> Any:
     return _data(place, raw)
 
 
-def _data(place: Place, raw: Any) -> Any:
+def _data(place: DocumentPlace, raw: Any) -> Any:
     if isinstance(raw, list):
         return {"list": [_data(place, item) for item in raw]}
     if isinstance(raw, dict):

@@ -15,7 +15,7 @@ from dataclasses import replace
 from itertools import product
 from typing import Any
 
-from mutabot.config.mistakes import Place, shown
+from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.model import Case, Mode, Operation, Path, Pattern
 
 from .schema import CaseTable
@@ -24,7 +24,7 @@ _MODE = 'such as mode = { argument = "relative", true = "by", false = "to" }'
 _WHEN = 'such as when = { argument = "type", value = "gripper" }'
 
 
-def in_each_mode(place: Place, raw: Any) -> list[tuple[tuple[Case, ...], Place, Any]]:
+def in_each_mode(place: DocumentPlace, raw: Any) -> list[tuple[tuple[Case, ...], DocumentPlace, Any]]:
     """A table of quantities with plain modes, once for each case of the arguments that decide about them.
 
     There is one case without a condition if nothing decides. Mistakes are noted at the place of the first.
@@ -44,7 +44,7 @@ def in_each_mode(place: Place, raw: Any) -> list[tuple[tuple[Case, ...], Place, 
     ]
 
 
-def _choices(place: Place, raw: Any) -> Iterator[tuple[Place, dict[str, Any]]]:
+def _choices(place: DocumentPlace, raw: Any) -> Iterator[tuple[DocumentPlace, dict[str, Any]]]:
     """The quantities in a table whose mode is a table."""
     if not isinstance(raw, dict):
         return
@@ -56,7 +56,7 @@ def _choices(place: Place, raw: Any) -> Iterator[tuple[Place, dict[str, Any]]]:
         yield from _choices(place / key, item)
 
 
-def _read_choice(place: Place, mode: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
+def _read_choice(place: DocumentPlace, mode: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
     """The argument that decides, and its values; no argument if there is a mistake, which is noted."""
     argument = mode.get("argument")
     named = {key: value for key, value in mode.items() if key != "argument"}
@@ -100,7 +100,7 @@ def name_of(cases: Sequence[Case]) -> str:
     return text.replace("{", "{{").replace("}", "}}")
 
 
-def read_when(place: Place, raw: Any) -> tuple[Case, ...]:
+def read_when(place: DocumentPlace, raw: Any) -> tuple[Case, ...]:
     """Read ``when``: a table, or a list of tables that all have to fit. Mistakes are noted."""
     tables = (
         [(place / index, item) for index, item in enumerate(raw)] if isinstance(raw, list) else [(place, raw)]
@@ -117,7 +117,7 @@ def read_when(place: Place, raw: Any) -> tuple[Case, ...]:
     return tuple(cases.values())
 
 
-def _read_case(place: Place, raw: Any) -> Case | None:
+def _read_case(place: DocumentPlace, raw: Any) -> Case | None:
     if not isinstance(raw, dict):
         place.error(f"needs an argument and its value, {_WHEN}")
         return None

@@ -28,7 +28,7 @@ from mutabot.operators.examples import (
     unchanged,
     writing,
 )
-from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
+from mutabot.operators.magnitudes import Magnitudes, ladder_in, own_ladder, per_second
 from mutabot.operators.operator import Context, Draws, Example, Need, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, is_number, label
 
@@ -169,7 +169,7 @@ class Offset(NumberOperator):
         unchanged(_LIFT, 0.45, "0.55 m is outside the range [0, 0.5]", size=("+", 100.0, "mm")),
     )
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         return None if quantity.kind is Kind.DURATION else own_ladder(quantity)
 
     def number(self, size: float, value: float, context: Context) -> float:
@@ -197,7 +197,7 @@ class Scale(NumberOperator):
         unchanged(_MOVE, 0.0, "nothing is no share of", size=("+", 5.0, "percent")),
     )
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         is_target_angle = quantity.kind is Kind.ROTATION and quantity.mode is Mode.TO
         if quantity.is_whole or quantity.kind in _ANY_ZERO or is_target_angle:
             return None
@@ -236,7 +236,7 @@ class SensorNoise(NumberOperator):
         unchanged(LOCATE, None, "there is no number to disturb", size=("", 10.0, "mm")),
     )
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         return own_ladder(quantity)
 
     def number(self, size: float, value: float, context: Context) -> float:
@@ -266,7 +266,7 @@ class Drift(NumberOperator):
         unchanged(_FEEL, 0.3, "no time has passed yet", size=("-", 2.0, "mm/s")),
     )
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         return per_second(quantity)
 
     def number(self, size: float, value: float, context: Context) -> float:
@@ -294,7 +294,7 @@ class Quantise(NumberOperator):
         unchanged(_MOVE, 0.2, "it is a multiple of the step", size=("", 50.0, "mm")),
     )
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         return None if quantity.is_whole or quantity.kind is Kind.COUNT else own_ladder(quantity)
 
     def number(self, size: float, value: float, context: Context) -> float:
@@ -320,7 +320,7 @@ class Deadband(NumberOperator):
         unchanged(_GO, 0.45, "it is far enough from the last target", size=("", 20.0, "mm"), earlier=(0.4,)),
     )
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         return None if quantity.is_whole or quantity.kind is Kind.DURATION else own_ladder(quantity)
 
     def number(self, size: float, value: float, context: Context) -> float:
@@ -350,7 +350,7 @@ class Early(NumberOperator):
         unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
     )
 
-    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         return ladder_in(quantity, Dimension.TIME) if quantity.kind is Kind.DURATION else None
 
     def number(self, size: float, value: float, context: Context) -> float:
@@ -386,7 +386,7 @@ class Lag(CommandOperator):
         waits = any(one.kind is Kind.DURATION for one in whole.written)
         return (whole.is_command or bool(whole.read)) and not waits
 
-    def magnitudes(self, whole: Subject) -> Ladder | None:
+    def magnitudes(self, whole: Subject) -> Magnitudes | None:
         named = next((one for one in (*whole.written, *whole.read) if one.ladder_unit is not None), None)
         return ladder_in(named, Dimension.TIME)
 

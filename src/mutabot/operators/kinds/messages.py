@@ -10,7 +10,7 @@ from mutabot.model import Call, Mishap, Proceed, Reply
 from mutabot.model.operation import COMING, WRITTEN, Form
 from mutabot.model.quantity import Value
 from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
-from mutabot.operators.magnitudes import Ladder
+from mutabot.operators.magnitudes import Magnitudes
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import CallOrReply
 
@@ -193,8 +193,8 @@ class Delay(MessageOperator):
         ),
     )
 
-    def magnitudes(self, whole: Subject) -> Ladder | None:
-        return Ladder(None, (0.1, 1.0))  # seconds: a network that is busy, and one that has trouble
+    def magnitudes(self, whole: Subject) -> Magnitudes | None:
+        return Magnitudes(None, (0.1, 1.0))  # seconds: a network that is busy, and one that has trouble
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         seconds = context.subject.magnitude or 0.0

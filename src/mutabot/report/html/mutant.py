@@ -12,7 +12,7 @@ from itertools import pairwise
 from math import inf, isnan
 from typing import Any
 
-from mutabot.evidence.recording import Kind, Recording, Told, Track
+from mutabot.evidence.recording import Recording, Told, Track, TrackKind
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of
 from mutabot.report.texts import mapped
@@ -102,7 +102,7 @@ def _rows(track: Track, times: Sequence[float]) -> tuple[list[Row], list[float],
         if gone is not None:
             gaps.append([round(1000 * gone), round(1000 * time)])
             gone = None
-        rows.append(_turned_like(rows[-1], row) if rows and track.kind is Kind.POSE else row)
+        rows.append(_turned_like(rows[-1], row) if rows and track.kind is TrackKind.POSE else row)
         when.append(time)
     if gone is not None:
         gaps.append([round(1000 * gone), round(1000 * times[-1]) + 1])
@@ -116,8 +116,8 @@ def _turned_like(before: Row, row: Row) -> Row:
     return row
 
 
-def _scales(kind: Kind, rows: Sequence[Row]) -> tuple[list[float], list[float]]:
-    if kind is Kind.VALUE:
+def _scales(kind: TrackKind, rows: Sequence[Row]) -> tuple[list[float], list[float]]:
+    if kind is TrackKind.VALUE:
         values = [row[0] for row in rows]
         reach = max(max(values) - min(values), 1e-9 * max(map(abs, values)), 1e-12)
         return [float(f"{reach / _STEPS:.3g}")], [_MISS_VALUE]

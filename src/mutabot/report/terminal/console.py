@@ -110,7 +110,7 @@ def print_section(console: Console, section: Section, at_most: int | None = None
 
 
 @frozen
-class Mark:
+class VerdictMark:
     """How an outcome is shown: a letter, so that colour is not needed, its colour, and the legend's words."""
 
     letter: str
@@ -118,23 +118,23 @@ class Mark:
     words: str
 
 
-_BY_CHECK = Mark("C", "green", "killed by a check")
-_BY_EXCEPTION = Mark("X", "cyan", "killed by an exception")
+_BY_CHECK = VerdictMark("C", "green", "killed by a check")
+_BY_EXCEPTION = VerdictMark("X", "cyan", "killed by an exception")
 _OTHERS = {
-    Verdict.SURVIVED: Mark("S", "bold red", "survived"),
-    Verdict.NOT_COVERED: Mark("N", "red", "not covered"),
-    Verdict.TIMEOUT: Mark("T", "yellow", "killed by a timeout"),
-    Verdict.REFUSED: Mark("R", "blue", "refused by the robot"),
-    Verdict.INVALID: Mark("I", "blue", "invalid"),
-    Verdict.NO_EFFECT: Mark("=", "dim", "no effect"),
-    Verdict.UNSTABLE: Mark("U", "magenta", "unstable"),
-    Verdict.ERROR: Mark("E", "bold magenta", "error"),
+    Verdict.SURVIVED: VerdictMark("S", "bold red", "survived"),
+    Verdict.NOT_COVERED: VerdictMark("N", "red", "not covered"),
+    Verdict.TIMEOUT: VerdictMark("T", "yellow", "killed by a timeout"),
+    Verdict.REFUSED: VerdictMark("R", "blue", "refused by the robot"),
+    Verdict.INVALID: VerdictMark("I", "blue", "invalid"),
+    Verdict.NO_EFFECT: VerdictMark("=", "dim", "no effect"),
+    Verdict.UNSTABLE: VerdictMark("U", "magenta", "unstable"),
+    Verdict.ERROR: VerdictMark("E", "bold magenta", "error"),
 }
-_NOT_RUN = Mark("·", "dim", "not run")
+_NOT_RUN = VerdictMark("·", "dim", "not run")
 _ORDER = [_BY_CHECK, _BY_EXCEPTION, *_OTHERS.values(), _NOT_RUN]
 
 
-def mark_of(outcome: Outcome | None) -> Mark:
+def mark_of(outcome: Outcome | None) -> VerdictMark:
     """Return the mark of an outcome; None is one that has not been run."""
     if outcome is None:
         return _NOT_RUN
@@ -143,7 +143,7 @@ def mark_of(outcome: Outcome | None) -> Mark:
     return _OTHERS[outcome.verdict]
 
 
-def marks_in(outcomes: Iterable[Outcome | None]) -> list[tuple[Mark, int]]:
+def marks_in(outcomes: Iterable[Outcome | None]) -> list[tuple[VerdictMark, int]]:
     """Return the marks that occur and how often, in the order of the legend."""
     marks = [mark_of(outcome) for outcome in outcomes]
     return [(mark, marks.count(mark)) for mark in _ORDER if mark in marks]

@@ -12,7 +12,7 @@ from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.evidence.recording import Told
-from mutabot.languages.front_end import Position, front_ends
+from mutabot.languages.front_end import SourcePosition, front_ends
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.answer import NotKeptError, is_plain, keep
@@ -268,5 +268,5 @@ class Locator:
             known = self._spans[key] = (span, code)
         return known[0]
 
-    def _span_at(self, filename: str, position: Position) -> Span:
+    def _span_at(self, filename: str, position: SourcePosition) -> Span:
         return Span(self.relative(filename), *position.extent, position.function)

@@ -58,7 +58,7 @@ _HELPERS = SimpleNamespace(absolute=abs, fail_if=_fail_if)
 _HELPER_NAMES = frozenset(f"{RUNTIME}[0].{name}" for name in vars(_HELPERS))
 
 
-class Form:
+class ForeseenForm:
     """An expression whose value is known as soon as those of its leaves are.
 
     Raises UnforeseenError for one that does more than to calculate and to compare; the tree is changed.
@@ -148,8 +148,8 @@ class _Leaves(ast.NodeTransformer):
 class Forms:
     """A place as an expression, and what it could read instead; None for what cannot be foreseen."""
 
-    original: Form | None
-    alternatives: tuple[Form | None, ...]
+    original: ForeseenForm | None
+    alternatives: tuple[ForeseenForm | None, ...]
 
     def differing(self, indexes: frozenset[int], frame: FrameType) -> frozenset[int]:
         """Of these alternatives, those that would not give what the original gives in a frame, or may not."""
@@ -166,15 +166,15 @@ class Forms:
             return False
 
 
-def form_of(tree: ast.expr) -> Form | None:
+def form_of(tree: ast.expr) -> ForeseenForm | None:
     """The form of an expression; None if it cannot be foreseen. The tree is changed."""
     try:
-        return Form(tree)
+        return ForeseenForm(tree)
     except UnforeseenError:
         return None
 
 
-def value_of(form: Form | None, frame: FrameType) -> Any:
+def value_of(form: ForeseenForm | None, frame: FrameType) -> Any:
     """What an expression gives in a frame; raises as ``Form.value`` does."""
     if form is None:
         raise UnforeseenError

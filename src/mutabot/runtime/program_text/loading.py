@@ -24,7 +24,7 @@ from typing import Any, Protocol
 from mutabot.languages.python import head_size
 
 
-class Step(Protocol):
+class SourceStep(Protocol):
     """Something that changes source files on their way.
 
     One with an attribute ``is_optional`` leaves files alone whose loader compiles them in a way of its own.
@@ -44,18 +44,18 @@ class Step(Protocol):
 
 
 #: in the order of their turns
-_steps: list[Step] = []
+_steps: list[SourceStep] = []
 _original = SourceFileLoader.get_code
 
 
-def add(step: Step) -> None:
+def add(step: SourceStep) -> None:
     """Let a step take the last turn at all files that are imported from now on."""
     _steps.append(step)
     # get_code is inherited; it is put where the inherited one is found last
     SourceFileLoader.get_code = _get_code  # type: ignore[method-assign, assignment]
 
 
-def remove(step: Step) -> None:
+def remove(step: SourceStep) -> None:
     """Import without a step from now on."""
     _steps.remove(step)
     if not _steps and "get_code" in vars(SourceFileLoader):

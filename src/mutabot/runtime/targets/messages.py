@@ -24,7 +24,7 @@ from typing import Any
 import wrapt
 
 from mutabot.errors import ExtensionError
-from mutabot.extensions import Part, brought
+from mutabot.extensions import ExtensionPart, brought
 from mutabot.frozen import frozen
 from mutabot.model import Operation
 from mutabot.model.operation import Form, Named, Refused, named_of
@@ -149,7 +149,7 @@ class Messages(Targets):
             if named.fits(used.form, used.name, used.node):
                 self._here.add(named.target)
 
-    def _hook(self, part: Part, _: object) -> None:
+    def _hook(self, part: ExtensionPart, _: object) -> None:
         """The program has imported a client library."""
         if self._removed:
             return

@@ -17,7 +17,7 @@ from typing import Any
 from mutabot.model import ANY
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, takes_anything
-from mutabot.model.watched import Call
+from mutabot.model.watched import WatchedCallable
 from mutabot.runtime.targets.target import NotFoundError, resolve
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
@@ -131,11 +131,11 @@ def function_of(found: Any, spelt: str = "") -> Callee | None:
     return next((callee for callee in made if callee is not None), None)
 
 
-def described(callee: Callee, *, of_tests: bool, own: bool) -> Call:
+def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
     """A call with all that the callable says about itself."""
     function, signature, owner = _function(callee.raw), callee.signature, callee.owner
     parameters = signature.parameters.values() if signature is not None else ()
-    return Call(
+    return WatchedCallable(
         callee.target,
         of_tests,
         own,

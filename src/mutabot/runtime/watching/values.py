@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from mutabot.model.watched import Part, Values
+from mutabot.model.watched import Values, WatchedPart
 
 #: different values that are kept of each part, elements of a sequence, parts of a value
 MOST_VALUES, MOST_ELEMENTS, MOST_PARTS = 8, 16, 64
@@ -30,7 +30,7 @@ def look(values: Values, value: Any, root: str = "", *, message: bool = False) -
     """Look at one more value; the paths of a ``message`` begin with the names of its fields."""
     values.times += 1
     values.type = values.type or type_of(value)
-    whole = Part(root, type=type_of(value) if message else "")
+    whole = WatchedPart(root, type=type_of(value) if message else "")
     found = _parts(value, whole, _DEPTH_OF_MESSAGES if message else _DEPTH)
     for _, part in zip(range(MOST_PARTS), found, strict=False):
         if message:
@@ -38,7 +38,7 @@ def look(values: Values, value: Any, root: str = "", *, message: bool = False) -
         merge_part(values, part)
 
 
-def merge_part(values: Values, part: Part) -> None:
+def merge_part(values: Values, part: WatchedPart) -> None:
     """Add what is known of a part to what was seen of it before."""
     known = values.parts.get(part.path)
     part.count = part.count or 1
@@ -65,7 +65,7 @@ def type_of(value: Any) -> str:
     return kind.__name__
 
 
-def _parts(value: Any, part: Part, depth: int) -> Iterator[Part]:
+def _parts(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
     value = plain(value)
     declared, part.type = part.type, part.type or type_of(value)
     seconds = _seconds(value)
@@ -83,7 +83,7 @@ def _parts(value: Any, part: Part, depth: int) -> Iterator[Part]:
         yield from _fields(value, part, depth)
 
 
-def _elements(value: list[Any] | tuple[Any, ...], part: Part, depth: int) -> Iterator[Part]:
+def _elements(value: list[Any] | tuple[Any, ...], part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
     if value and _message_fields(value[-1]) is not None:
         yield from _parts(value[-1], dataclasses.replace(part, path=f"{part.path}[-1]", type=""), depth - 1)
         return
@@ -94,10 +94,10 @@ def _elements(value: list[Any] | tuple[Any, ...], part: Part, depth: int) -> Ite
         yield part
         return
     for index, item in enumerate(items[:8]):
-        yield from _parts(item, Part(f"{part.path}[{index}]", doc=part.doc), depth - 1)
+        yield from _parts(item, WatchedPart(f"{part.path}[{index}]", doc=part.doc), depth - 1)
 
 
-def _fields(value: Any, part: Part, depth: int) -> Iterator[Part]:
+def _fields(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
     types = _message_fields(value)
     doc = (type(value).__doc__ or "")[:300] if types is None else ""
     empty = True
@@ -105,7 +105,7 @@ def _fields(value: Any, part: Part, depth: int) -> Iterator[Part]:
         empty = False
         within = (*part.within, (type_of(value), name)) if types is not None else ()
         kind = types[name] if types is not None else ""
-        yield from _parts(inner, Part(f"{part.path}{step}", name, doc, kind, within), depth - 1)
+        yield from _parts(inner, WatchedPart(f"{part.path}{step}", name, doc, kind, within), depth - 1)
     if empty:
         yield part
 

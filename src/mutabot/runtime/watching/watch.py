@@ -23,7 +23,7 @@ from types import FrameType, ModuleType
 from typing import Any
 
 from mutabot.model.path import class_name
-from mutabot.model.watched import Call, Command, Seen, Values
+from mutabot.model.watched import Command, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text import loading as scripts
@@ -143,7 +143,7 @@ class _Seen:
     """A callable and what was seen of it."""
 
     callee: Callee
-    call: Call
+    call: WatchedCallable
     is_coroutine: bool
     returns_coroutine: bool = False
     looked_at: int = 0
@@ -219,11 +219,11 @@ class Watch:
                 self._answer(seen, found)
         return found
 
-    def data(self) -> Seen:
+    def data(self) -> WatchedCalls:
         """What was seen: callables, what was done under names, and all places that were come by."""
         uses = list(self._names.uses.values()) if self._names is not None else []
         reached = [(*self._places[place], name) for place, name in list(self._reached)]
-        return Seen([self._call(seen) for seen in list(self._seen.values())], uses, reached)
+        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses, reached)
 
     def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
         """File, line and side of a frame or the nearest one around it, or of what is called back."""
@@ -397,7 +397,7 @@ class Watch:
             if command is not None:
                 look(command.result, result)
 
-    def _call(self, seen: _Seen) -> Call:
+    def _call(self, seen: _Seen) -> WatchedCallable:
         sides = (self._seen.get((seen.call.target, of_tests)) for of_tests in (False, True))
         raised = [
             name for side in sides if side is not None for name in side.raised
