@@ -1,0 +1,49 @@
+"""A mock is handed on as an operation without being asked what it would refuse to tell."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+from unittest.mock import MagicMock, create_autospec
+
+import wrapt
+
+from mutabot.runtime.program_text.handing import Handing
+
+
+def move(metres: float) -> None:
+    """What a robot does."""
+
+
+def test_wrapt_gets_no_refusal_from_a_mock_made_after_a_wrapped_function() -> None:
+    """``wrapt`` does not expect one: on Python 3.13 that ends in a SystemError of the user's test."""
+    wrapped = wrapt.FunctionWrapper(move, lambda wrapped, instance, args, kwargs: wrapped(*args, **kwargs))
+    refused: list[str] = []
+
+    class Asked(MagicMock):
+        def __getattr__(self, name: str) -> Any:
+            try:
+                return super().__getattr__(name)
+            except AttributeError:
+                refused.append(name)
+                raise
+
+    mock = Asked(spec=wrapped)
+    assert isinstance(mock, wrapt.FunctionWrapper)  # so it says
+    handing = Handing(cast(Any, None), {})
+    try:
+        handed = handing._wrapped(cast(Any, None), cast(Any, None), None, mock, mock)
+    finally:
+        handing.remove()
+    assert handed.__wrapped__ is mock
+    assert "_self_binding" not in refused
+    assert "_self_binding" not in vars(mock)
+
+
+def test_a_function_made_by_autospec_is_handed_on_as_well() -> None:
+    function = create_autospec(move)
+    handing = Handing(cast(Any, None), {})
+    try:
+        handed = handing._wrapped(cast(Any, None), cast(Any, None), None, function, function)
+    finally:
+        handing.remove()
+    assert handed.__wrapped__ is function
