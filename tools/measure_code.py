@@ -101,6 +101,9 @@ def longest_chain(graph: dict[Path, set[Path]]) -> int:
 
 def main(folders: list[Path]) -> None:
     """Print the measures."""
+    unknown = [str(folder) for folder in folders if not folder.is_dir()]
+    if unknown:
+        raise SystemExit(f"no such folder: {', '.join(unknown)}\n\n{__doc__}")
     total = 0
     for folder in folders:
         texts = {file: file.read_text(encoding="utf-8") for file in sorted(folder.rglob("*.py"))}

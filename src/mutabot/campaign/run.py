@@ -44,7 +44,6 @@ from mutabot.model.codec import to_data
 
 #: remarks that are told where there are no mutants
 _REMARKS = 8
-#: what else decides how a campaign ends, beside the user's own files
 
 
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
