@@ -454,13 +454,15 @@ class _Worker:
         return self._taken(self.events.read())
 
     def _taken(self, events: list[Event]) -> list[Event]:
+        seconds = None
         for event in events:
             self.result.take(event)
             if isinstance(event, TestEnd):
-                self._allow(self.task.startup)
+                seconds = self.task.startup
             elif isinstance(event, TestStart) or self.task.is_fork_parent:
-                running = self.result.running or ""
-                self._allow(self.task.deadlines.get(running, self.task.deadline))
+                seconds = self.task.deadlines.get(self.result.running or "", self.task.deadline)
+        if seconds is not None:
+            self._allow(seconds)
         return events
 
     def _allow(self, seconds: float) -> None:

@@ -15,6 +15,7 @@ import signal
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from functools import cache
 from itertools import takewhile
 from pathlib import Path
 from time import monotonic  # before a simulation takes over the clock
@@ -111,6 +112,7 @@ def is_crowded() -> bool:
     return os.getloadavg()[0] > processors
 
 
+@cache
 def _are_kept() -> bool:
     """Whether the kernel keeps accounts: this very process must have run."""
     with suppress(OSError, IndexError, ValueError):

@@ -11,7 +11,7 @@ import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines import rerun
-from mutabot.campaign.engines.rerun import Doubts
+from mutabot.campaign.engines.rerun import SECONDS, Doubts
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
@@ -100,13 +100,13 @@ def test_more_kills_are_repeated_once_one_does_not_come_out_again(
             return CHECKED if is_noticed else {}
 
         script.mutated = mutated
-        clock = count(0.0, 0.5)
+        clock = count(0.0, 0.25)
         monkeypatch.setattr(Request, "clock", lambda _, clock=clock: next(clock))
         text = f"import mission\nfrom robot import Arm\n{tests}"
         folder = write_project(tmp_path / str(comes_again), mission, text)
         _, _, progress = campaign(folder, repeats=True)
         lines[comes_again] = next(line for line in progress.lines if line.startswith("re-runs:"))
-    told = r"re-runs: (\d) of \1 doubtful kills confirmed; (\d) were left, .* 2 s"
+    told = rf"re-runs: (\d) of \1 doubtful kills confirmed; (\d) were left, .* {SECONDS:.0f} s"
     left = re.fullmatch(told, lines[True])
     assert left is not None
     assert int(left[1]) + int(left[2]) == len(names)

@@ -1,7 +1,7 @@
 """Confirm with the whole suite what mutants did that were run without some of its tests.
 
-The whole suite judges a mutant. Where the tests that do not reach one, after the first that does, would take
-longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than as a
+The whole suite judges a mutant. Where the tests that do not reach survivors, after the first that does, would
+take longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than as a
 survivor after tests were left out is run with all of them before it counts. Of those that are let through, so
 many are run again with the whole suite, drawn at random, as at most double the campaign. If that notices one,
 all are run.
@@ -25,6 +25,9 @@ from .engine import run_trials
 
 #: seconds of tests below which nothing is left out
 LEAST = 30.0
+#: the share of mutants that are taken to survive, before any has run. To leave out tests saves time for these
+#: alone: most of the others end early, and those that do not are run twice
+SURVIVORS = 1 / 3
 
 
 def earlier_decision(journal: Journal) -> Confirmation | None:
@@ -38,8 +41,8 @@ def decide(
 ) -> Campaign:
     """The campaign with or without the tests that are left out at first. The journal says which.
 
-    This goes by what the tests took in the baseline, as if every mutant survived: then it is too much at
-    most. ``earlier``: what this campaign has decided before it was interrupted.
+    This goes by what the tests took in the baseline, and by how many mutants are taken to survive.
+    ``earlier``: what this campaign has decided before it was interrupted.
     """
     short = replace(campaign, is_short=not campaign.request.every_test)
     alone, _ = split_ladders(mutants)  # a search goes by what it finds: it needs the whole suite
@@ -51,7 +54,7 @@ def decide(
             reaching = sum(walls[number] for number in numbers)
             without += reaching
             rest += until[-1] - until[numbers[0]] - reaching
-    is_short = rest > max(without, LEAST) if earlier is None else earlier.is_short and short.is_short
+    is_short = rest * SURVIVORS > max(without, LEAST) if earlier is None else earlier.is_short and short.is_short
     journal.set_meta(CONFIRMATION, to_data(Confirmation(is_short, rest, without)))
     return replace(campaign, is_short=is_short)
 

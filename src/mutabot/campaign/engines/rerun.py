@@ -51,7 +51,7 @@ Key = tuple[str, int]
 #: so many kills of a test, or this share of what it judges, could be failures at random
 _FEW, _SHARE = 2, 0.1
 #: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
-SHARE, SECONDS = 0.05, 2.0
+SHARE, SECONDS = 0.05, 1.0
 #: the same once a kill has not come out again, and for what is left to chance
 MOST_SHARE, MOST_SECONDS = 0.1, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
