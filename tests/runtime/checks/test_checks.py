@@ -55,6 +55,7 @@ HELPERS = """
 #: assertion, or statement of a TestCase, to the values that it compares and how far they are apart
 ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "sensor().x < 0.3": ("0.25 < 0.3", 0.05),
+    "len('äß') * sensor().x < 0.8": ("0.5 < 0.8", 0.3),
     "0.2 <= sensor().x <= 0.3": ("0.2 <= 0.25", 0.05),
     "sensor().x == pytest.approx(0.26, abs=0.05)": ("0.25 == approx(0.26)", 0.04),
     "[sensor().x, 1.0] == pytest.approx([0.26, 1.0], abs=0.05)": ("[0.25, 1] == approx([0.26, 1])", 0.04),

@@ -1,10 +1,10 @@
 """Confirm with the whole suite what mutants did that were run without some of its tests.
 
 The whole suite judges a mutant. Where the tests that do not reach survivors, after the first that does, would
-take longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than as a
-survivor after tests were left out is run with all of them before it counts. Of those that are let through, so
-many are run again with the whole suite, drawn at random, as at most double the campaign. If that notices one,
-all are run.
+take longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than
+as a survivor after tests were left out is run with all of them before it counts. Of those that are let
+through, so many are run again with the whole suite, drawn at random, as at most double the campaign. If that
+notices one, all are run.
 """
 
 from __future__ import annotations
@@ -54,7 +54,9 @@ def decide(
             reaching = sum(walls[number] for number in numbers)
             without += reaching
             rest += until[-1] - until[numbers[0]] - reaching
-    is_short = rest * SURVIVORS > max(without, LEAST) if earlier is None else earlier.is_short and short.is_short
+    is_short = (
+        rest * SURVIVORS > max(without, LEAST) if earlier is None else earlier.is_short and short.is_short
+    )
     journal.set_meta(CONFIRMATION, to_data(Confirmation(is_short, rest, without)))
     return replace(campaign, is_short=is_short)
 

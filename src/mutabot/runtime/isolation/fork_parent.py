@@ -132,6 +132,7 @@ class ForkParent:
     _overtaken: bool = False
     _forking: bool = False
     _copied: bool = False
+    _places: dict[int, frozenset[int]] | None = None
 
     def __post_init__(self) -> None:
         os.register_at_fork(before=self._note_copy)
@@ -174,8 +175,10 @@ class ForkParent:
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
-        found = {place: frozenset(map(self._index, here)) for place, here in self._live_places()}
-        return {place: indexes for place, indexes in found.items() if indexes}
+        if self._places is None:
+            found = {place: frozenset(map(self._index, here)) for place, here in self._live_places()}
+            self._places = {place: indexes for place, indexes in found.items() if indexes}
+        return self._places
 
     def tell_undiverged(self, hits: Mapping[int, int], early: Mapping[int, int]) -> None:
         """The test is over: tell which mutants of the program text were no different from the original.
@@ -209,6 +212,7 @@ class ForkParent:
             return
         with alarm_held():
             self._gone.update(mutant.id for mutant in due)
+            self._places = None
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
             own = (child.pid for child in self._children.values())

@@ -15,7 +15,7 @@ import linecache
 import math
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from types import ModuleType
 from typing import Any
@@ -290,11 +290,11 @@ class Checks:
 
     def _conditions(self, tree: ast.Module, source: bytes, path: str) -> dict[_Position, int]:
         """Numbers of the comparisons and calls that decide about assertions, by where they stand."""
-        text = source.decode("utf-8", "replace")
+        lines = source.splitlines(keepends=True)  # ``ast.get_source_segment`` splits all of it for each part
         found: dict[_Position, int] = {}
         for node in ast.walk(tree):
             for part in _deciding(node.test) if isinstance(node, ast.Assert) else ():
-                words = " ".join((ast.get_source_segment(text, part) or "").split())
+                words = " ".join(_segment(lines, part).decode("utf-8", "replace").split())
                 found[_position(part)] = len(self._told)
                 self._told.append((self._place(path, part.lineno), words))
         return found
@@ -352,6 +352,14 @@ def _deciding(test: ast.expr) -> Iterator[ast.Compare | ast.Call]:
 
 def _position(node: ast.expr) -> _Position:
     return node.lineno, node.col_offset, node.end_lineno, node.end_col_offset
+
+
+def _segment(lines: Sequence[bytes], node: ast.expr) -> bytes:
+    """The source text of an expression, given all lines with their ends."""
+    last = node.end_lineno or node.lineno
+    found = b"".join(lines[node.lineno - 1 : last])
+    after = len(lines[last - 1]) - (node.end_col_offset or 0)
+    return found[node.col_offset : len(found) - after]
 
 
 class _Inserter(ast.NodeTransformer):
