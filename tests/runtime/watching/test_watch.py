@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,21 +17,20 @@ import pytest
 from mutabot.model.watched import Values
 from mutabot.runtime.watching.values import look
 from mutabot.runtime.watching.watch import METHOD, NAME, READ, Watch
-from mutabot.runtime.watching.watch import watch as watch_tree
 
 ORDINARY = Path(__file__).parents[2] / "packages" / "source" / "ordinary.py"
 
 
 def run(source: str, name: str, monkeypatch: pytest.MonkeyPatch) -> tuple[ModuleType, Watch]:
     """A module whose calls are watched; its own file is part of the program."""
-    watch = Watch({name: name}, {})
+    watch = Watch({os.path.realpath(name): name}, {})
     for word, function in ((METHOD, watch.method), (NAME, watch.named), (READ, watch.read)):
         monkeypatch.setattr(builtins, word, function, raising=False)
     module = ModuleType(Path(name).stem)
     module.__dict__["__file__"] = name
     monkeypatch.setitem(sys.modules, module.__name__, module)
     tree = ast.parse(source, name)
-    watch_tree(tree, lambda line: watch._place(name, line))
+    watch.change(tree, b"", name)
     exec(compile(tree, name, "exec"), vars(module))
     return module, watch
 

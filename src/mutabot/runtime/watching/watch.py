@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import ast
 import builtins
-import functools
 import inspect
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
+from functools import cached_property, partial
 from types import FrameType, ModuleType
 from typing import Any
 
@@ -26,7 +26,6 @@ from mutabot.model.path import class_name
 from mutabot.model.watched import Command, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text import loading as scripts
 from mutabot.runtime.targets.target import Where
 from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
 from mutabot.runtime.watching.names import NamesSeen
@@ -37,28 +36,8 @@ METHOD, NAME, READ = "__mutabot_method__", "__mutabot_name__", "__mutabot_read__
 _BOUND_TO_FRAME = frozenset({"super", "locals", "globals", "vars", "dir", "eval", "exec", "breakpoint"})
 
 
-class _Watched:
-    """Puts the watch into files while they are compiled. See ``loading.Step``."""
-
-    def __init__(self, files: Mapping[str, str], new_place: Callable[[str, int], int]) -> None:
-        self._files, self._new_place = files, new_place
-
-    def wants(self, path: str) -> bool:
-        """Whether the file is to be watched."""
-        return os.path.realpath(path) in self._files
-
-    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Let every call and every attribute that is read ask the watch first."""
-        name = self._files[os.path.realpath(path)]
-        watch(tree, lambda line: self._new_place(name, line))
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """What cannot be compiled says so itself."""
-
-
-def watch(tree: ast.Module, place: Callable[[int], int]) -> None:
-    """Put the watch into a tree."""
-    ast.fix_missing_locations(_Watcher(place).visit(tree))
+#: annotations may be read as text, and the names of a pattern are no values
+_NOT_RUN = ("annotation", "returns", "pattern", "type_params")
 
 
 class _Watcher(ast.NodeTransformer):
@@ -66,6 +45,13 @@ class _Watcher(ast.NodeTransformer):
 
     def __init__(self, place: Callable[[int], int]) -> None:
         self._place = place
+
+    def visit(self, node: ast.AST) -> Any:
+        hidden = {name: vars(node).pop(name) for name in _NOT_RUN if name in vars(node)}
+        try:
+            return super().visit(node)
+        finally:
+            vars(node).update(hidden)
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         node.args = [self.visit(one) for one in node.args]
@@ -85,30 +71,6 @@ class _Watcher(ast.NodeTransformer):
         if not isinstance(node.ctx, ast.Load) or node.attr.startswith("_"):
             return node
         return self._asked(READ, node, node.value, ast.Constant(node.attr))
-
-    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AnnAssign:
-        node.value = self.visit(node.value) if node.value is not None else None
-        return node
-
-    def visit_arg(self, node: ast.arg) -> ast.arg:
-        return node  # an annotation may be read as text
-
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
-        return self._function(node)
-
-    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AST:
-        return self._function(node)
-
-    def visit_match_case(self, node: ast.match_case) -> ast.match_case:
-        node.guard = self.visit(node.guard) if node.guard is not None else None
-        node.body = [self.visit(one) for one in node.body]
-        return node
-
-    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:
-        node.decorator_list = [self.visit(one) for one in node.decorator_list]
-        self.visit(node.args)
-        node.body = [self.visit(one) for one in node.body]
-        return node
 
     def _asked(self, function: str, at: ast.expr, *arguments: ast.expr) -> ast.Call:
         place = ast.Constant(self._place(at.end_lineno or at.lineno))
@@ -144,10 +106,6 @@ class _Seen:
 
     callee: Callee
     call: WatchedCallable
-    is_coroutine: bool
-    returns_coroutine: bool = False
-    looked_at: int = 0
-    raised: dict[str, None] = field(default_factory=dict)
     has_no_commands: bool = False
 
 
@@ -156,7 +114,7 @@ _under_way: ContextVar[tuple[_Seen, ...]] = ContextVar("mutabot_watched_calls", 
 
 
 class Watch:
-    """What is seen of the calls in some files.
+    """What is seen of the calls in some files. See ``loading.SourceStep``.
 
     Args:
         program, tests: real paths to names for people.
@@ -188,8 +146,21 @@ class Watch:
         setattr(builtins, METHOD, self.method)
         setattr(builtins, NAME, self.named)
         setattr(builtins, READ, self.read)
-        loading.add(_Watched({**self._program, **self._tests}, self._place))
-        scripts.hook_runpy()
+        loading.add(self)
+        loading.hook_runpy()
+
+    def wants(self, path: str) -> bool:
+        """Return whether a file is to be watched."""
+        return self._side(path) is not None
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Let every call and every attribute that is read ask the watch first."""
+        side = self._side(path)
+        assert side is not None
+        ast.fix_missing_locations(_Watcher(partial(self._place, side[0])).visit(tree))
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """Do nothing: a file that cannot be compiled says so itself."""
 
     def method(self, value: Any, name: str, place: int) -> Any:
         """``value.name`` is about to be called."""
@@ -213,7 +184,7 @@ class Watch:
         """``value.name`` is read."""
         found = getattr(value, name)
         raw = inspect.getattr_static(type(value), name, None)
-        if isinstance(raw, property | functools.cached_property):
+        if isinstance(raw, property | cached_property):
             seen = self._of(method_of(value, name), place)
             if seen is not None and self._counts(seen, place):
                 self._answer(seen, found)
@@ -306,8 +277,7 @@ class Watch:
                 return None
             call = described(callee, of_tests=key[1], own=callee.file in self._program)
             call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
-            is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
-            known = self._seen[key] = _Seen(callee, call, is_coroutine)
+            known = self._seen[key] = _Seen(callee, call)
         return known
 
     def _wrapped(self, function: Any, seen: _Seen | None, place: int) -> Any:
@@ -321,16 +291,10 @@ class Watch:
             with suppress(Exception):  # looking at values must not disturb the program
                 values = self._arguments(seen, args, kwargs, instance)
                 command = _command(seen, instance, values)
-            token = _under_way.set((*_under_way.get(), seen))
-            try:
+            with _making(seen):
                 result = function(*args, **kwargs)
-            except Exception as error:
-                seen.raised[class_name(type(error))] = None
-                raise
-            finally:
-                _under_way.reset(token)
             if inspect.iscoroutine(result):
-                seen.returns_coroutine = not seen.is_coroutine
+                self._check_coroutine(seen)
                 return self._awaited(seen, command, result)
             self._answer(seen, result, command)
             return result
@@ -338,17 +302,16 @@ class Watch:
         return watched
 
     async def _awaited(self, seen: _Seen, command: Command | None, waiting: Any) -> Any:
-        token = _under_way.set((*_under_way.get(), seen))
-        try:
+        with _making(seen):
             result = await waiting
-        except Exception as error:
-            seen.raised[class_name(type(error))] = None
-            raise
-        finally:
-            with suppress(ValueError):  # a coroutine that is closed from elsewhere
-                _under_way.reset(token)
         self._answer(seen, result, command)
         return result
+
+    def _check_coroutine(self, seen: _Seen) -> None:
+        raw = seen.callee.raw
+        if not seen.call.stands_in and not inspect.iscoroutinefunction(getattr(raw, "__func__", raw)):
+            text = "it returns a coroutine but is no coroutine function: name the one behind it"
+            seen.call.problem = text
 
     def _counts(self, seen: _Seen, place: int) -> bool:
         """Count a call; whether its values are to be looked at."""
@@ -358,8 +321,7 @@ class Watch:
         file, line = self._places[place]
         where = f"{file}:{line}"
         seen.call.sites[where] = seen.call.sites.get(where, 0) + 1
-        seen.looked_at += 1
-        return seen.looked_at <= MOST_CALLS
+        return seen.call.count <= MOST_CALLS
 
     def _is_of_tests(self, place: int) -> bool:
         return self._places[place][0] in self._tests.values()
@@ -398,14 +360,28 @@ class Watch:
                 look(command.result, result)
 
     def _call(self, seen: _Seen) -> WatchedCallable:
+        """Return a callable with what it raised on either side: tests make robots refuse."""
         sides = (self._seen.get((seen.call.target, of_tests)) for of_tests in (False, True))
-        raised = [
-            name for side in sides if side is not None for name in side.raised
-        ]  # tests make robots refuse
-        call = replace(seen.call, raised=list(dict.fromkeys([*seen.call.raised, *raised])))
-        if seen.returns_coroutine and not call.stands_in:
-            call.problem = "it returns a coroutine but is no coroutine function: name the one behind it"
-        return call
+        raised = dict.fromkeys(
+            name for side in (seen, *sides) if side is not None for name in side.call.raised
+        )
+        return replace(seen.call, raised=list(raised))
+
+
+@contextmanager
+def _making(seen: _Seen) -> Iterator[None]:
+    """Note that a call is under way, and what it raises."""
+    token = _under_way.set((*_under_way.get(), seen))
+    try:
+        yield
+    except Exception as error:
+        name = class_name(type(error))
+        if name not in seen.call.raised:
+            seen.call.raised.append(name)
+        raise
+    finally:
+        with suppress(ValueError):  # a coroutine that is closed from elsewhere
+            _under_way.reset(token)
 
 
 def _limits(value: Any, instance: Any) -> list[list[float]] | None:
