@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -30,7 +30,7 @@ from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.handing import Handing
 from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.program_text.session_text import SessionText
-from mutabot.runtime.program_text.standing import Candidate, Standing, StandIns, last_name
+from mutabot.runtime.program_text.standing import Standing, StandIns, last_name
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Interception
@@ -114,13 +114,9 @@ class Session:
         if self.returns is not None:
             self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
-        candidates: list[Candidate] = []
         for operation in vocabulary.operations:
-            handler = self._handler(operation)
-            self.interception.wrap(operation, handler)
-            if operation.kind in (None, "methods"):
-                candidates.append(Candidate(operation, handler, self._adapters[-1]))
-        self._see_calls(candidates)
+            self.interception.wrap(operation, self._handler(operation))
+        self._see_calls()
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.wait is not None:
             self.instances.watch([vocabulary.wait.owner])
@@ -134,13 +130,14 @@ class Session:
         if self.job.record or self.job.serving is not None:
             self._watch_imports()
 
-    def _see_calls(self, candidates: Sequence[Candidate]) -> None:
+    def _see_calls(self) -> None:
         """See calls where they are written, of whatever stands in the place of an operation."""
+        called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
         callables = self.interception.of()
         assert isinstance(callables, Callables)
-        self.standing = Standing(candidates, callables, self.locator, self._sees_itself)
+        self.standing = Standing(called, callables, self.locator, self._sees_itself)
         self._tell_standing()
-        names = {last_name(one.operation) for one in candidates}
+        names = {last_name(one.operation) for one in called}
         self.handing = Handing(self.standing, self.passing.given)
         self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
         self.call_sites.install()
@@ -186,9 +183,9 @@ class Session:
         told = partial(self.inspection.path_is_wrong, operation)
         adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), self._time)
         self._adapters.append(adapter)
-        handler = self.passing.handler(adapter)
-        self._sees_itself.add(handler)
-        return handler
+        adapter.handler = self.passing.handler(adapter)
+        self._sees_itself.add(adapter.handler)
+        return adapter.handler
 
     def _watch_imports(self) -> None:
         """What the program does while it is imported counts for every test that comes after."""

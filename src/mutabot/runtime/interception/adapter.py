@@ -29,7 +29,7 @@ from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
 from mutabot.runtime.observation.clock import ProgramTime
-from mutabot.runtime.targets.target import NOWHERE, Where, resolve
+from mutabot.runtime.targets.target import NOWHERE, Handler, Where, resolve
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
@@ -166,6 +166,7 @@ class Adapter:
         lately: values that last came by under the names of a middleware, by target; adapters share it.
         handles: classes that are part of the robot API: their objects are never copied.
         time: the program's time.
+        handler: what stands around the operation.
         commands: how often the robot was made to do this, if it does anything.
     """
 
@@ -175,6 +176,7 @@ class Adapter:
     lately: dict[str, Mapping[str, Value]]
     handles: Collection[str]
     time: ProgramTime
+    handler: Handler = field(init=False)
     commands: int = 0
     _message: Path | None = None
     _declared: Signature | None = None

@@ -22,12 +22,12 @@ from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import FrameType, FunctionType, MethodType
-from typing import Any, Protocol
+from typing import Any
 
 import wrapt
 
 from mutabot.languages.python import extent_of
-from mutabot.model import Role
+from mutabot.model import Role, Span
 from mutabot.model.mutant import Extent
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.instrument import declare_global, is_ours
@@ -110,6 +110,7 @@ class CallSite:
         is_given: whether what is handed on is given to the call that stands there.
         left_alone: what is called as it is there, by the classes of its object and of itself, as long as some
             names mean what they did.
+        place: the same as a span, once it was looked up.
     """
 
     path: str
@@ -120,17 +121,12 @@ class CallSite:
     is_awaited: bool = False
     is_given: bool = False
     left_alone: dict[tuple[type, Any], Guards] = field(default_factory=dict)
+    place: tuple[Span, Role] | None = None
 
 
-class Stands(Protocol):
-    """Decides what is called at a site."""
-
-    def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        """What is called in place of ``found``, which may be itself.
-
-        ``receiver`` is the object that it was read from; ``NOTHING`` where it was read from a name.
-        """
-
+#: decides what is called at a site: told the site, what stands there, the object that it was read from
+#: (``NOTHING`` where it was read from a name) and the frame
+Decide = Callable[[CallSite, Any, Any, FrameType], Any]
 
 #: the receiver of what was read from a name
 NOTHING = object()
@@ -156,9 +152,9 @@ class CallSites:
         self,
         names: Collection[str],
         role: Callable[[str], Role | None],
-        stands: Stands,
+        stands: Decide,
         sees_itself: Collection[Any] = (),
-        hands: Stands | None = None,
+        hands: Decide | None = None,
     ) -> None:
         self._names = frozenset(names)
         self._role = role
@@ -184,43 +180,26 @@ class CallSites:
 
     def hook_pytest(self) -> None:
         """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
-        rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
-        if rewriting is None or not self._names:
-            return
-        rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
-
-        def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
-            rewrite(tree, source, path, *rest)
-            if path is not None:
-                self.instrument(tree, path)
-
-        def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
-            return None if self.wants(str(source)) else read(source, *rest, **named)
-
-        rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
+        if self._names:
+            loading.hook_pytest(self.wants, self.change)
 
     def wants(self, path: str) -> bool:
         """Whether a file may have sites."""
         return self._role(path) is not None
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Put questions into a file."""
-        self.instrument(tree, path)
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """It is compiled without: its calls are seen by what they call."""
-
-    def instrument(self, tree: ast.Module, path: str) -> None:
         """Put questions into the tree of a file, which pytest may have rewritten."""
         role = self._role(path)
-        if role is None:
-            return
+        assert role is not None
         are_handed = self._hands is not None and role is Role.PROGRAM
         writer = _Writer(self._names, partial(self._number, path, role), are_handed=are_handed)
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
             self.loaded.append(path)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """It is compiled without: its calls are seen by what they call."""
 
     def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
         key = (path, extent_of(node), form)

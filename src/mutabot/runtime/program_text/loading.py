@@ -16,6 +16,7 @@ import os
 import runpy
 import sys
 import warnings
+from collections.abc import Callable
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
 from types import CodeType, ModuleType
@@ -88,6 +89,24 @@ def _get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
         except (RecursionError, SyntaxError, ValueError) as error:
             steps.pop(0).give_up(path, error)
     return _original(self, fullname)
+
+
+def hook_pytest(wants: Callable[[str], bool], change: Callable[[ast.Module, bytes, str], None]) -> None:
+    """Let ``change`` have the files that pytest rewrites and ``wants`` names, after pytest."""
+    rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
+    if rewriting is None:
+        return
+    rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
+
+    def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
+        rewrite(tree, source, path, *rest)
+        if path is not None and wants(path):
+            change(tree, source, path)
+
+    def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
+        return None if wants(str(source)) else read(source, *rest, **named)
+
+    rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
 
 
 def hook_runpy() -> None:

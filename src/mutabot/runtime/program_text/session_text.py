@@ -7,6 +7,7 @@ import hashlib
 import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +60,7 @@ class SessionText:
         size = max(self._places, default=0)
         self.alternatives = Alternatives(size)
         self.alternatives.activate(*instrumentation.active)
-        self.alternatives.forms = self._forms
+        self.alternatives.forms = cache(self._forms)
         self.alternatives.on_act = self._acted
         self.sightings: Sightings | None = None
         if instrumentation.record:

@@ -128,28 +128,11 @@ WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
 
 @dataclass(slots=True)
-class Candidate:
-    """An operation that a name may mean.
-
-    Attributes:
-        operation: the operation.
-        handler: what its calls go through.
-        adapter: reads its calls.
-        signature: what its arguments are, as the operation itself tells; None if it does not.
-    """
-
-    operation: Operation
-    handler: Handler
-    adapter: Adapter
-    signature: Signature | None = None
-
-
-@dataclass(slots=True)
 class Standing:
     """Decides what is called at the sites of one process.
 
     Args:
-        candidates: the operations that can be called.
+        adapters: of the operations that can be called.
         callables: where they were found.
         locator: whose file is whose.
         sees_itself: handlers of what sees its calls itself.
@@ -161,7 +144,7 @@ class Standing:
         alone: where something was left alone.
     """
 
-    candidates: Iterable[Candidate]
+    adapters: Iterable[Adapter]
     callables: Callables
     locator: Locator
     sees_itself: Collection[Handler]
@@ -169,12 +152,12 @@ class Standing:
     noted: StandIns | None = None
     stood: dict[Span, str] = field(default_factory=dict)
     alone: set[Span] = field(default_factory=set)
-    _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
-    _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
+    _by_name: dict[str, list[Adapter]] = field(default_factory=dict)
+    _signatures: dict[Adapter, Signature | None] = field(default_factory=dict)
     _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for one in self.candidates:
+        for one in self.adapters:
             self._by_name.setdefault(last_name(one.operation), []).append(one)
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
@@ -209,7 +192,7 @@ class Standing:
                 self._names_of(vars(module))
 
     def call(
-        self, one: Candidate, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
+        self, one: Adapter, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
         """Make a call of what was read from ``receiver`` as an operation's; ``where`` is of ``Where``."""
         __tracebackhide__ = True
@@ -225,11 +208,10 @@ class Standing:
 
     def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
         """Where a site stands."""
-        place = self._places.get(id(site))
-        if place is None:
+        if site.place is None:
             span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
-            place = self._places[id(site)] = (span, site.role)
-        return place
+            site.place = (span, site.role)
+        return site.place
 
     @property
     def names(self) -> Collection[str]:
@@ -240,11 +222,11 @@ class Standing:
         """Whether code of the program or of the oracle runs in a frame."""
         return self.locator.role(frame.f_code.co_filename) is not None
 
-    def candidate_of(self, handler: Handler) -> Candidate | None:
+    def candidate_of(self, handler: Handler) -> Adapter | None:
         """The operation that this handler stands around."""
         return next((one for ones in self._by_name.values() for one in ones if one.handler is handler), None)
 
-    def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+    def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """The operation that stands at a site, if it does not see its calls itself."""
         if self._sees_itself(found):
             return None
@@ -258,21 +240,21 @@ class Standing:
             self.stood[self.place(site, frame)[0]] = one.operation.target
         return one
 
-    def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+    def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name in whose place something stands."""
         mock = mock_of(found)
         is_read = stands_for_property(mock)
         ones = [one for one in self._by_name[name] if self._is_read(one) is is_read]
         fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
         if fitting:
-            return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target][0].__mro__))
+            return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target].__mro__))
         fitting += [one for one in ones if self._means(one, found, receiver, frame)]
         if mock is not None:
             fitting += ones if len(ones) == 1 else [one for one in ones if self._is_mocked(one, mock)]
         fitting += [one for one in ones if one.operation.target.startswith(ANY)]
         return fitting[0] if fitting else None
 
-    def _is_read(self, one: Candidate) -> bool:
+    def _is_read(self, one: Adapter) -> bool:
         """Whether an operation is an attribute, which nobody calls."""
         return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
 
@@ -280,7 +262,7 @@ class Standing:
         seen = self.sees_itself
         return any(type(one) in WRAPPERS and one._self_wrapper in seen for one in _layers(found))
 
-    def _is_of_class(self, one: Candidate, found: Any, receiver: Any, frame: FrameType) -> bool:
+    def _is_of_class(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Whether what is called is an attribute of an object of the operation's class."""
         if receiver is NOTHING and isinstance(found, MethodType):
             receiver = found.__self__
@@ -291,7 +273,7 @@ class Standing:
             return False
         return any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame))
 
-    def _kinds(self, one: Candidate, owner: type, frame: FrameType) -> Iterator[Any]:
+    def _kinds(self, one: Adapter, owner: type, frame: FrameType) -> Iterator[Any]:
         """The operation's class, and what was put in its place."""
         yield owner
         yield named_class(one.operation.target.rpartition(".")[0])
@@ -299,7 +281,7 @@ class Standing:
             if meant is owner:
                 yield frame.f_globals.get(name)
 
-    def _means(self, one: Candidate, found: Any, receiver: Any, frame: FrameType) -> bool:
+    def _means(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Whether what is called is what the operation's name means now, or a name that meant it first."""
         if self._owner(one) is None and named_class(one.operation.target) is found:
             return True
@@ -307,7 +289,7 @@ class Standing:
         names = frame.f_globals
         return any(value is one.handler and names.get(name) is found for name, value in meant)
 
-    def _is_mocked(self, one: Candidate, mock: Any) -> bool:
+    def _is_mocked(self, one: Adapter, mock: Any) -> bool:
         """Whether a mock tells by what it is made of that it stands for an operation."""
         wrapped = vars(mock).get("_mock_wraps")
         parent = vars(mock).get("_mock_parent") or vars(mock).get("_mock_new_parent")
@@ -333,7 +315,7 @@ class Standing:
         """
         known = self._meant.get(id(names))
         if known is None:
-            owners = [owner for owner, _ in self.callables.owners.values()]
+            owners = self.callables.owners.values()
             found: dict[str, Any] = {}
             for name, value in list(names.items()):
                 if type(value) is wrapt.FunctionWrapper and value._self_wrapper in self.sees_itself:
@@ -343,22 +325,22 @@ class Standing:
             known = self._meant[id(names)] = (names, found)
         return known[1]
 
-    def _owner(self, one: Candidate) -> type | None:
-        owner = self.callables.owners.get(one.operation.target)
-        return owner[0] if owner is not None else None
+    def _owner(self, one: Adapter) -> type | None:
+        return self.callables.owners.get(one.operation.target)
 
-    def _signature_of(self, one: Candidate) -> Signature | None:
+    def _signature_of(self, one: Adapter) -> Signature | None:
+        """What the arguments are, as the operation itself tells; None if it does not, or is not found yet."""
         original = self.callables.found.get(one.operation.target)
-        if one.signature is None and original is not None:
+        if one not in self._signatures and original is not None:
             found = signature_of(getattr(original, "__func__", original))
             is_method = self._owner(one) is not None and not isinstance(original, staticmethod)
             if found is not None and is_method:
                 found = found.replace(parameters=list(found.parameters.values())[1:])
-            one.signature = found
-        return one.signature
+            self._signatures[one] = found
+        return self._signatures.get(one)
 
 
-def _is_of_objects(owner: type | None, one: Candidate) -> bool:
+def _is_of_objects(owner: type | None, one: Adapter) -> bool:
     """Whether an operation is a method of objects, rather than one of their class."""
     if owner is None:
         return False

@@ -5,8 +5,8 @@ else E``. ``__mutabot__`` is a plain list with False at places that are off, so 
 a built-in name: modules keep the names they have.
 
 In a baseline the text becomes ``__mutabot__[0](p) or __mutabot__[p](E)``: the first call notes that the place
-is reached, whatever becomes of ``E``. A place is examined a few times per test; from then on the function there
-passes the value through, as cheaply as a call can.
+is reached, whatever becomes of ``E``. A place is examined a few times per test; from then on the function
+there passes the value through, as cheaply as a call can.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any, NoReturn
 
 from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice, Sighting
 from mutabot.model.path import class_name
-from mutabot.runtime.program_text.foresee import Forms, locals_of, value_of
+from mutabot.runtime.program_text.foresee import Forms, locals_of
 
 
 @cache
@@ -114,7 +114,6 @@ class Alternatives:
         self._told: set[int] = set()
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
-        self._forms: dict[int, Forms | None] = {}
         self.on_act: Callable[[int], None] | None = None
         self.on_first: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
@@ -192,20 +191,15 @@ class Alternatives:
 
     def foreseen(self, place: int, frame: FrameType) -> Any:
         """What the original gives, if that can be known without letting anything happen."""
-        forms = self._forms_of(place)
+        forms = self.forms(place)
         try:
-            return _UNKNOWN if forms is None else value_of(forms.original, frame)
+            return _UNKNOWN if forms is None else forms.original.value(frame)
         except Exception:  # it cannot be known; or only the original would have raised this
             return _UNKNOWN
 
-    def _forms_of(self, place: int) -> Forms | None:
-        if place not in self._forms:
-            self._forms[place] = self.forms(place)
-        return self._forms[place]
-
     def _differing(self, switch: Switch, frame: FrameType) -> frozenset[int]:
         """The watched alternatives that differ from the original, or may."""
-        forms = self._forms_of(switch.place)
+        forms = self.forms(switch.place)
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
         unforeseeable = frozenset(index for index in switch.watched if index < 0)

@@ -84,7 +84,7 @@ class Callables(Targets):
         super().__init__(tell)
         self.pending: set[str] = set()
         self.found: dict[str, Any] = {}
-        self.owners: dict[str, tuple[type, str]] = {}
+        self.owners: dict[str, type] = {}
         self._undo: list[Undo] = []
         self._wrappers: list[tuple[Any, Any]] = []
         self._removed = False
@@ -155,7 +155,7 @@ class Callables(Targets):
         except (AttributeError, TypeError) as error:
             if not isinstance(owner, type):
                 raise NotCallableError(f"{target} cannot be intercepted: {error}") from error
-            self.found[target], self.owners[target] = original, (owner, name)
+            self.found[target], self.owners[target] = original, owner
             text = f"{target} cannot be wrapped ({error}): only calls that are written as such are seen"
             self._tell(target, Finding("call", text, is_remark=True))
             return
@@ -166,7 +166,7 @@ class Callables(Targets):
         )
         self.found[target] = original
         if isinstance(owner, type):
-            self.owners[target] = (owner, name)
+            self.owners[target] = owner
         self._wrappers.append((original, wrapper))
         if late:
             self._undo.extend(_rebind(list(sys.modules.values()), original, wrapper))
