@@ -18,7 +18,7 @@ import ast
 import builtins
 import copy
 import sys
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Container, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import FrameType, FunctionType, MethodType
@@ -138,11 +138,12 @@ class CallSites:
     """Puts the questions into files, and answers them. See ``loading.Step``.
 
     Args:
-        names: last names of the operations.
+        names: last names that are asked about: those of the operations.
         role: whose file a path is.
         stands: decides what is called.
         sees_itself: handlers of what sees its calls itself: of that nothing is asked.
         hands: decides what is handed on; None to leave that as it is.
+        are_read: whether ``hands`` decides about each attribute that is read, handed on or not.
 
     Attributes:
         loaded: files that were given questions.
@@ -150,17 +151,20 @@ class CallSites:
 
     def __init__(
         self,
-        names: Collection[str],
+        names: Container[str],
         role: Callable[[str], Role | None],
         stands: Decide,
         sees_itself: Collection[Any] = (),
         hands: Decide | None = None,
+        *,
+        are_read: bool = False,
     ) -> None:
-        self._names = frozenset(names)
+        self._names = names
         self._role = role
         self._stands = stands
         self._sees_itself = sees_itself
         self._hands = hands
+        self._are_read = are_read
         self.loaded: list[str] = []
         self._is_on = True
         self._numbers: dict[tuple[str, Extent, str], int] = {}
@@ -191,8 +195,9 @@ class CallSites:
         """Put questions into the tree of a file, which pytest may have rewritten."""
         role = self._role(path)
         assert role is not None
-        are_handed = self._hands is not None and role is Role.PROGRAM
-        writer = _Writer(self._names, partial(self._number, path, role), are_handed=are_handed)
+        are_handed = self._hands is not None and role is Role.PROGRAM and not self._are_read
+        number = partial(self._number, path, role)
+        writer = _Writer(self._names, number, are_handed=are_handed, are_read=self._are_read)
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
@@ -262,20 +267,27 @@ class CallSites:
         return read
 
     def _handed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
-        sites = {name: replace(site, name=name) for name in self._names}
+        sites: dict[str, CallSite] = {}
 
         def read(function: Any) -> Any:
             is_ours = function is getattr and self._is_on
-            return partial(self._got, sites, sys._getframe(1)) if is_ours else function
+            return partial(self._got, site, sites, sys._getframe(1)) if is_ours else function
 
         return read
 
     def _got(
-        self, sites: dict[str, CallSite], frame: FrameType, /, receiver: Any, name: str, *default: Any
-    ) -> Any:
+        self, site: CallSite, sites: dict[str, CallSite], frame: FrameType, /, receiver: Any, name: str,
+        *default: Any,
+    ) -> Any:  # fmt: skip
         __tracebackhide__ = True
         found = getattr(receiver, name, *default)
-        return self._decide(sites[name], found, receiver, frame) if name in sites else found
+        if name not in self._names:
+            return found
+        return self._decide(sites.setdefault(name, replace(site, name=name)), found, receiver, frame)
+
+
+#: annotations may be read as text, and the names of a pattern are no values
+_NOT_RUN = ("annotation", "returns", "pattern", "type_params")
 
 
 class _Writer(ast.NodeTransformer):
@@ -286,9 +298,15 @@ class _Writer(ast.NodeTransformer):
     """
 
     def __init__(
-        self, names: Collection[str], number: Callable[[ast.expr, str, str], int], *, are_handed: bool
+        self,
+        names: Container[str],
+        number: Callable[[ast.expr, str, str], int],
+        *,
+        are_handed: bool,
+        are_read: bool,
     ) -> None:
         self._names = names
+        self._are_read = are_read
         self._number = number
         self._are_handed = are_handed
         self._read: dict[str, ast.expr] = {}
@@ -299,7 +317,11 @@ class _Writer(ast.NodeTransformer):
             return node
         if self._are_handed:
             note_parts(node)
-        return super().visit(node)
+        hidden = {name: vars(node).pop(name) for name in _NOT_RUN if name in vars(node)}
+        try:
+            return super().visit(node)
+        finally:
+            vars(node).update(hidden)
 
     def visit_Await(self, node: ast.Await) -> ast.AST:  # the name that ast looks for
         if isinstance(node.value, ast.Call):
@@ -334,7 +356,8 @@ class _Writer(ast.NodeTransformer):
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
         self.generic_visit(node)
-        if is_handed_on(node) and node.attr in self._names and not is_ours(node):
+        is_asked = is_handed_on(node) or (self._are_read and isinstance(node.ctx, ast.Load))
+        if is_asked and node.attr in self._names and not is_ours(node):
             number = self._number(node, node.attr, "handed_attribute")
             return self._question(number, node, [node.value])
         return node

@@ -1,14 +1,11 @@
 """What one process sees of the calls in some files: which callables, with which values.
 
-Every call and every attribute that is read asks the watch first: ``arm.move(1)`` becomes
-``__mutabot_method__(arm, 'move', 7)(1)``, where 7 is the place; a function's name likewise. Nothing is
-written: the text is changed while it is imported, and nothing changes that the program can see.
+Every call, and every attribute that is read, asks the watch first: see ``program_text.call_sites``. Nothing
+changes that the program can see.
 """
 
 from __future__ import annotations
 
-import ast
-import builtins
 import inspect
 import os
 import re
@@ -18,65 +15,20 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from functools import cached_property, partial
+from functools import cached_property
 from types import FrameType, ModuleType
 from typing import Any
 
+from mutabot.model import Role
 from mutabot.model.path import class_name
 from mutabot.model.watched import Command, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
 from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
 from mutabot.runtime.targets.target import Where
 from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
 from mutabot.runtime.watching.names import NamesSeen
 from mutabot.runtime.watching.values import look, plain
-
-METHOD, NAME, READ = "__mutabot_method__", "__mutabot_name__", "__mutabot_read__"
-#: these look at the frame that calls them
-_BOUND_TO_FRAME = frozenset({"super", "locals", "globals", "vars", "dir", "eval", "exec", "breakpoint"})
-
-
-#: annotations may be read as text, and the names of a pattern are no values
-_NOT_RUN = ("annotation", "returns", "pattern", "type_params")
-
-
-class _Watcher(ast.NodeTransformer):
-    """Puts the watch into a tree."""
-
-    def __init__(self, place: Callable[[int], int]) -> None:
-        self._place = place
-
-    def visit(self, node: ast.AST) -> Any:
-        hidden = {name: vars(node).pop(name) for name in _NOT_RUN if name in vars(node)}
-        try:
-            return super().visit(node)
-        finally:
-            vars(node).update(hidden)
-
-    def visit_Call(self, node: ast.Call) -> ast.expr:
-        node.args = [self.visit(one) for one in node.args]
-        for keyword in node.keywords:
-            keyword.value = self.visit(keyword.value)
-        match node.func:
-            case ast.Attribute(value=inner, attr=name) if not name.startswith("_"):
-                node.func = self._asked(METHOD, node.func, self.visit(inner), ast.Constant(name))
-            case ast.Name(id=name) if name not in _BOUND_TO_FRAME:
-                node.func = self._asked(NAME, node.func, node.func)
-            case _:
-                node.func = self.visit(node.func)
-        return node
-
-    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
-        node.value = self.visit(node.value)
-        if not isinstance(node.ctx, ast.Load) or node.attr.startswith("_"):
-            return node
-        return self._asked(READ, node, node.value, ast.Constant(node.attr))
-
-    def _asked(self, function: str, at: ast.expr, *arguments: ast.expr) -> ast.Call:
-        place = ast.Constant(self._place(at.end_lineno or at.lineno))
-        asked = ast.Call(ast.Name(function, ast.Load()), [*arguments, place], [])
-        return ast.copy_location(asked, at)
-
 
 #: calls of one callable whose values are looked at; more are only counted
 MOST_CALLS = 300
@@ -113,8 +65,15 @@ class _Seen:
 _under_way: ContextVar[tuple[_Seen, ...]] = ContextVar("mutabot_watched_calls", default=())
 
 
+class _Public:
+    """All names that are not private."""
+
+    def __contains__(self, name: object) -> bool:
+        return not str(name).startswith("_")
+
+
 class Watch:
-    """What is seen of the calls in some files. See ``loading.SourceStep``.
+    """What is seen of the calls in some files.
 
     Args:
         program, tests: real paths to names for people.
@@ -131,70 +90,46 @@ class Watch:
         pulse: Callable[[], None] = lambda: None,
     ) -> None:
         self._program, self._tests, self._libraries, self._pulse = program, tests, tuple(libraries), pulse
-        self._places: list[tuple[str, int]] = []
-        self._numbers: dict[tuple[str, int], int] = {}
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._known: dict[tuple[Any, str], Callee | None] = {}
         self._patches: dict[tuple[str, str], type | None] = {}
-        self._reached: dict[tuple[int, str], None] = {}
+        self._reached: dict[tuple[str, int, str], None] = {}
         self._names: NamesSeen | None = None
+        self.sites = CallSites(_Public(), self._role, self.called, hands=self.read, are_read=True)
         self._files: dict[str, tuple[str, bool] | None] = {}
 
     def install(self) -> None:
         """Watch what is imported from now on."""
         self._names = NamesSeen(self._place_of, self._leads, self._pulse)
-        setattr(builtins, METHOD, self.method)
-        setattr(builtins, NAME, self.named)
-        setattr(builtins, READ, self.read)
-        loading.add(self)
+        self.sites.install()
         loading.hook_runpy()
 
-    def wants(self, path: str) -> bool:
-        """Return whether a file is to be watched."""
-        return self._side(path) is not None
-
-    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Let every call and every attribute that is read ask the watch first."""
-        side = self._side(path)
-        assert side is not None
-        ast.fix_missing_locations(_Watcher(partial(self._place, side[0])).visit(tree))
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """Do nothing: a file that cannot be compiled says so itself."""
-
-    def method(self, value: Any, name: str, place: int) -> Any:
-        """``value.name`` is about to be called."""
-        found = getattr(value, name)
-        self._reached[place, name] = None
+    def called(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """Return what is called in the place of ``found``, which was read from ``receiver``."""
+        is_plain = receiver is NOTHING
+        self._reached[*self._place(site), "" if is_plain else site.name] = None
         if isinstance(found, type):
             return found
-        callee = self._method(value, name)
-        if not self._is_of_tests(place):
-            callee = self._stood_for(value, name, callee, found)
-        return self._wrapped(found, self._of(callee, place), place)
+        callee = function_of(found) if is_plain else self._method(receiver, site.name)
+        if not is_plain and site.role is Role.PROGRAM:
+            callee = self._stood_for(receiver, site.name, callee, found)
+        return self._wrapped(found, self._of(callee, site), site)
 
-    def named(self, function: Any, place: int) -> Any:
-        """A function is about to be called by its name."""
-        self._reached[place, ""] = None
-        if isinstance(function, type):
-            return function
-        return self._wrapped(function, self._of(function_of(function), place), place)
-
-    def read(self, value: Any, name: str, place: int) -> Any:
-        """``value.name`` is read."""
-        found = getattr(value, name)
-        raw = inspect.getattr_static(type(value), name, None)
+    def read(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """Note that an attribute was read from ``receiver``."""
+        raw = inspect.getattr_static(type(receiver), site.name, None)
         if isinstance(raw, property | cached_property):
-            seen = self._of(method_of(value, name), place)
-            if seen is not None and self._counts(seen, place):
+            seen = self._of(method_of(receiver, site.name), site)
+            if seen is not None and self._counts(seen, site):
                 self._answer(seen, found)
         return found
 
     def data(self) -> WatchedCalls:
         """What was seen: callables, what was done under names, and all places that were come by."""
         uses = list(self._names.uses.values()) if self._names is not None else []
-        reached = [(*self._places[place], name) for place, name in list(self._reached)]
-        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses, reached)
+        return WatchedCalls(
+            [self._call(seen) for seen in list(self._seen.values())], uses, list(self._reached)
+        )
 
     def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
         """File, line and side of a frame or the nearest one around it, or of what is called back."""
@@ -216,16 +151,19 @@ class Watch:
             self._files[file] = (name, real not in self._program) if name is not None else None
         return self._files[file]
 
+    def _role(self, file: str) -> Role | None:
+        side = self._side(file)
+        return side and (Role.ORACLE if side[1] else Role.PROGRAM)
+
+    def _place(self, site: CallSite) -> tuple[str, int]:
+        side = self._side(site.path)
+        assert side is not None
+        return side[0], site.extent[0]
+
     def _leads(self) -> None:
         """Something is done under a name: the calls that are under way lead to it."""
         for seen in _under_way.get():
             seen.call.leads_to_names = True
-
-    def _place(self, file: str, line: int) -> int:
-        if (file, line) not in self._numbers:
-            self._numbers[file, line] = len(self._places)
-            self._places.append((file, line))
-        return self._numbers[file, line]
 
     def _method(self, value: Any, name: str) -> Callee | None:
         """A method by its name; looked up once for each class."""
@@ -265,11 +203,11 @@ class Watch:
         self._patches[root, name] = next(iter(kinds.values())) if len(kinds) == 1 else None
         return self._patches[root, name]
 
-    def _of(self, callee: Callee | None, place: int) -> _Seen | None:
+    def _of(self, callee: Callee | None, site: CallSite) -> _Seen | None:
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
         if callee is None:
             return None
-        key = (callee.target, self._is_of_tests(place))
+        key = (callee.target, site.role is Role.ORACLE)
         known = self._seen.get(key)
         if known is None or (known.callee.raw is None and callee.raw is not None):
             top = callee.target.partition(":")[0].partition(".")[0]
@@ -280,8 +218,8 @@ class Watch:
             known = self._seen[key] = _Seen(callee, call)
         return known
 
-    def _wrapped(self, function: Any, seen: _Seen | None, place: int) -> Any:
-        if seen is None or not self._counts(seen, place):
+    def _wrapped(self, function: Any, seen: _Seen | None, site: CallSite) -> Any:
+        if seen is None or not self._counts(seen, site):
             return function
 
         instance = getattr(function, "__self__", None)
@@ -313,18 +251,15 @@ class Watch:
             text = "it returns a coroutine but is no coroutine function: name the one behind it"
             seen.call.problem = text
 
-    def _counts(self, seen: _Seen, place: int) -> bool:
+    def _counts(self, seen: _Seen, site: CallSite) -> bool:
         """Count a call; whether its values are to be looked at."""
         if seen.call.of_tests and (seen.call.own or seen.callee.file in self._tests):
             return False
         self._pulse()
-        file, line = self._places[place]
+        file, line = self._place(site)
         where = f"{file}:{line}"
         seen.call.sites[where] = seen.call.sites.get(where, 0) + 1
         return seen.call.count <= MOST_CALLS
-
-    def _is_of_tests(self, place: int) -> bool:
-        return self._places[place][0] in self._tests.values()
 
     def _arguments(
         self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any], instance: Any
