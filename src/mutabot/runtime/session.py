@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import threading
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
 from random import Random
@@ -371,9 +370,8 @@ class Session:
 
     def _read_probes(self, *, along: bool = False) -> Reading:
         meter, self.passing.meter = self.meter, None  # probes are no operations of the program's
-        returns = self.returns.pause() if self.returns is not None else nullcontext()
         try:
-            with returns:
+            with Aside(self.returns):
                 return take(self._probes(along=along), self.instances)
         finally:
             self.passing.meter = meter

@@ -12,7 +12,7 @@ from __future__ import annotations
 import copy
 import inspect
 import sys
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from inspect import Parameter, Signature
@@ -272,10 +272,13 @@ class Adapter:
         return False
 
     def _values(self, quantities: tuple[Quantity, ...], invocation: Invocation) -> dict[str, Value]:
-        starts = ((one, invocation.get(one.path.root or "")) for one in quantities)
-        return self._read(((one, start) for one, start in starts if start is not None), "arguments")
+        starts = [(one, invocation.get(one.path.root or "")) for one in quantities]
+        return self._read([pair for pair in starts if pair[1] is not None], "arguments")
 
-    def _read(self, quantities: Iterator[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
+    def _read_result(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
+        return self._read([(one, result) for one in quantities], "result")
+
+    def _read(self, quantities: list[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
         """Read quantities, each from what its path begins at."""
         values: dict[str, Value] = {}
         for quantity, start in quantities:
@@ -289,9 +292,6 @@ class Adapter:
             if value is not None:
                 values[quantity.name] = value
         return values
-
-    def _read_result(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
-        return self._read(((one, result) for one in quantities), "result")
 
     def _tell_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
         """No mode fits: say which argument has a value that the vocabulary does not mention."""

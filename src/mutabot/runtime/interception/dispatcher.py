@@ -16,7 +16,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import wrapt
 
@@ -37,14 +37,11 @@ from mutabot.runtime.targets.target import NOWHERE, Handler, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
+    from mutabot.runtime.program_text.returns import Returns
 
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
 is_under_way = _under_way.get
-
-
-class _Noting(Protocol):
-    is_on: bool
 
 
 class Aside:
@@ -58,7 +55,7 @@ class Aside:
 
     __slots__ = ("_returns", "_token", "_was")
 
-    def __init__(self, returns: _Noting | None) -> None:
+    def __init__(self, returns: Returns | None) -> None:
         self._returns = returns
 
     def __enter__(self) -> None:

@@ -16,7 +16,6 @@ import builtins
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
@@ -95,15 +94,6 @@ class Returns:
     def begin_call(self) -> None:
         """Its fixtures are set up."""
         self.prepared = len(self.entries)
-
-    @contextmanager
-    def pause(self) -> Iterator[None]:
-        """Note nothing for the moment."""
-        was, self.is_on = self.is_on, False
-        try:
-            yield
-        finally:
-            self.is_on = was
 
     def stop(self) -> None:
         """What comes now is no more part of the test."""
