@@ -175,7 +175,7 @@ def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) 
         module.f(1.0, 2.0, "z")
         module.f(1, 2.0, "z")
         seen = {sighting.place: sighting for sighting in hook.sightings.seen()}
-        reached = hook.sightings.reached()
+        reached = frozenset(hook.sightings.entered)
     by_text = {place.text: seen[place.number] for place in text.places if place.number in seen}
     assert by_text["x"].kinds == ("integer", "number")
     assert by_text["x"].variables == ()

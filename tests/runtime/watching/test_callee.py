@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import sys
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 from unittest import mock
@@ -12,6 +12,7 @@ import pytest
 
 from mutabot.model import Role
 from mutabot.model.watched import WatchedCallable
+from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import CallSite
 from mutabot.runtime.watching.callee import Callee, meant_by
 from mutabot.runtime.watching.watch import Watch
@@ -84,7 +85,7 @@ def make(watch: Watch, value: Any, name: str, *args: Any) -> None:
 
 def seen(value: Any, name: str, *args: Any) -> WatchedCallable:
     """What is seen of the program's call of a method or of a module's function."""
-    watch = Watch({os.path.realpath("mission.py"): "mission.py"}, {})
+    watch = Watch(Locator(str(Path.cwd()), ("mission.py",), ()))
     make(watch, value, name, *args)
     (call,) = watch.data().calls
     return call
@@ -125,7 +126,7 @@ def test_a_class_in_a_function_has_no_name_to_stand_for() -> None:
 
 
 def test_a_real_call_tells_more_than_the_mock_before_it(robot: Any) -> None:
-    watch = Watch({os.path.realpath("mission.py"): "mission.py"}, {})
+    watch = Watch(Locator(str(Path.cwd()), ("mission.py",), ()))
     with mock.patch.object(robot, "lift"):
         make(watch, robot, "lift", 0.25)
     lift.__module__, before = robot.__name__, lift.__module__

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import builtins
-import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from unittest.mock import MagicMock
 import pytest
 
 from mutabot.model.watched import Values
+from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import call_sites
 from mutabot.runtime.program_text.call_sites import CALLS
 from mutabot.runtime.watching.values import look
@@ -25,7 +25,7 @@ ORDINARY = Path(__file__).parents[2] / "packages" / "source" / "ordinary.py"
 
 def run(source: str, name: str, monkeypatch: pytest.MonkeyPatch) -> tuple[ModuleType, Watch]:
     """A module whose calls are watched; its own file is part of the program."""
-    watch = Watch({os.path.realpath(name): name}, {})
+    watch = Watch(Locator(str(Path.cwd()), (name,), ()))
     monkeypatch.setattr(builtins, CALLS, call_sites._entries, raising=False)
     module = ModuleType(Path(name).stem)
     module.__dict__["__file__"] = name

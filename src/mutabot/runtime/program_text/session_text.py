@@ -225,7 +225,7 @@ class SessionText:
 
     def _tell_reached(self) -> None:
         assert self.sightings is not None
-        self._send(PlacesReached(self._test or "", tuple(sorted(self.sightings.reached()))))
+        self._send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
 
     def _count(self, place: int) -> tuple[int, int]:
         hits, acted = self._early.get(place, (0, 0))

@@ -352,10 +352,6 @@ class Sightings:
             witness.looks = witness.looks_around = 0
         self.switches[1:] = self._witnesses
 
-    def reached(self) -> frozenset[int]:
-        """Places that were reached since the start of the test."""
-        return frozenset(self.entered)
-
     def seen(self) -> tuple[Sighting, ...]:
         """What was seen so far, over all tests, by place."""
         return tuple(witness.sighting() for witness in self._witnesses if witness.hits)

@@ -11,13 +11,14 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from contextvars import ContextVar
-from types import FrameType
 from typing import Any
 
+from mutabot.model import Role, Span
 from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.watched import Use, Values
+from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.targets.messages import Messages
-from mutabot.runtime.targets.target import Handler, Where
+from mutabot.runtime.targets.target import NOWHERE, Handler, Where
 
 from .values import look
 
@@ -32,19 +33,18 @@ class NamesSeen(Messages):
     """All that the program and the tests do under names.
 
     Args:
-        place_of: file for people, line, and whether it is on the tests' side, of a frame or the nearest one
-            around it; None if it is nobody's.
+        locator: tells whose file is whose.
         passed: told of each use: calls that are under way lead to it.
         pulse: called now and then, while nothing is held.
     """
 
     def __init__(
         self,
-        place_of: Callable[[FrameType | None, Where | None], tuple[str, int, bool] | None],
+        locator: Locator,
         passed: Callable[[], None],
         pulse: Callable[[], None],
     ) -> None:
-        self._place_of, self._passed, self._pulse = place_of, passed, pulse
+        self._locator, self._passed, self._pulse = locator, passed, pulse
         self.uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
         super().__init__(lambda target, finding: None)
@@ -53,7 +53,7 @@ class NamesSeen(Messages):
         """What looks at a use; None where something is set up, which is noted at once."""
         self._passed()
         if form in SETTING_UP and not _under_way.get():
-            self._use(form, name, self._place_of(sys._getframe(1), None), False)
+            self._use(form, name, self._locator.locate(sys._getframe(1)), False)
         if form not in _LOOKED_AT:
             return None
 
@@ -62,12 +62,13 @@ class NamesSeen(Messages):
             instance: Any,
             args: tuple[Any, ...],
             kwargs: dict[str, Any],
-            where: Where | None = None,
+            where: Where = NOWHERE,
         ) -> Any:
             if _under_way.get():
                 return wrapped(*args, **kwargs)
-            is_called_back = where is not None and where.code is not None
-            use = self._use(form, name, self._place_of(sys._getframe(1), where), is_called_back)
+            code, locator = where.code, self._locator
+            place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
+            use = self._use(form, name, place, code is not None)
             if use is not None and args:
                 self._look(use.written, args[0])
             if inspect.iscoroutinefunction(wrapped):
@@ -83,17 +84,17 @@ class NamesSeen(Messages):
         return handle
 
     def _use(
-        self, form: Form, name: str, place: tuple[str, int, bool] | None, is_called_back: bool
+        self, form: Form, name: str, place: tuple[Span, Role] | None, is_called_back: bool
     ) -> Use | None:
         """The use that a place is one of, if its message is to be looked at."""
         if place is None:
             return None
         self._pulse()
-        file, line, of_tests = place
+        span, role = place
         with self._lock:
-            key = (form, name, of_tests, is_called_back)
+            key = (form, name, role is Role.ORACLE, is_called_back)
             use = self.uses.setdefault(key, Use(*key))
-            where = f"{file}:{line}"
+            where = f"{span.file}:{span.line}"
             use.sites[where] = use.sites.get(where, 0) + 1
             return use if sum(use.sites.values()) <= _MOST else None
 

@@ -7,7 +7,6 @@ changes that the program can see.
 from __future__ import annotations
 
 import inspect
-import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -23,9 +22,9 @@ from mutabot.model import Role
 from mutabot.model.path import class_name
 from mutabot.model.watched import Command, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
+from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
-from mutabot.runtime.targets.target import Where
 from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
 from mutabot.runtime.watching.names import NamesSeen
 from mutabot.runtime.watching.values import look, plain
@@ -76,7 +75,7 @@ class Watch:
     """What is seen of the calls in some files.
 
     Args:
-        program, tests: real paths to names for people.
+        locator: tells whose file is whose.
         libraries: client libraries of middlewares, with ``*`` for any text: what is done through them has a
             name of its own.
         pulse: called whenever something is seen, while nothing is held.
@@ -84,23 +83,27 @@ class Watch:
 
     def __init__(
         self,
-        program: dict[str, str],
-        tests: dict[str, str],
+        locator: Locator,
         libraries: Iterable[str] = (),
         pulse: Callable[[], None] = lambda: None,
     ) -> None:
-        self._program, self._tests, self._libraries, self._pulse = program, tests, tuple(libraries), pulse
+        self._locator, self._libraries, self._pulse = locator, tuple(libraries), pulse
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._known: dict[tuple[Any, str], Callee | None] = {}
         self._patches: dict[tuple[str, str], type | None] = {}
         self._reached: dict[tuple[str, int, str], None] = {}
         self._names: NamesSeen | None = None
-        self.sites = CallSites(_Public(), self._role, self.called, hands=self.read, are_read=True)
-        self._files: dict[str, tuple[str, bool] | None] = {}
+        self.sites = CallSites(_Public(), locator.role, self.called, hands=self.read, are_read=True)
+
+    @classmethod
+    def of(cls, order: Mapping[str, Any], pulse: Callable[[], None] = lambda: None) -> Watch:
+        """Return the watch of a process; ``order`` is what ``mutabot init`` asks for."""
+        program, tests = (tuple(order[kind].values()) for kind in ("program", "tests"))
+        return cls(Locator(order["root"], program, tests), order["libraries"], pulse)
 
     def install(self) -> None:
         """Watch what is imported from now on."""
-        self._names = NamesSeen(self._place_of, self._leads, self._pulse)
+        self._names = NamesSeen(self._locator, self._leads, self._pulse)
         self.sites.install()
         loading.hook_runpy()
 
@@ -131,39 +134,16 @@ class Watch:
             [self._call(seen) for seen in list(self._seen.values())], uses, list(self._reached)
         )
 
-    def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
-        """File, line and side of a frame or the nearest one around it, or of what is called back."""
-        if where is not None and where.code is not None:
-            found = self._side(where.code.co_filename)
-            return (found[0], where.code.co_firstlineno, found[1]) if found is not None else None
-        while frame is not None:
-            found = self._side(frame.f_code.co_filename)
-            if found is not None:
-                return found[0], frame.f_lineno, found[1]
-            frame = frame.f_back
-        return None
-
-    def _side(self, file: str) -> tuple[str, bool] | None:
-        """A file's name for people, and whether it is on the tests' side; None if it is on none."""
-        if file not in self._files:
-            real = os.path.realpath(file)
-            name = self._program.get(real, self._tests.get(real))
-            self._files[file] = (name, real not in self._program) if name is not None else None
-        return self._files[file]
-
-    def _role(self, file: str) -> Role | None:
-        side = self._side(file)
-        return side and (Role.ORACLE if side[1] else Role.PROGRAM)
-
-    def _place(self, site: CallSite) -> tuple[str, int]:
-        side = self._side(site.path)
-        assert side is not None
-        return side[0], site.extent[0]
-
     def _leads(self) -> None:
         """Something is done under a name: the calls that are under way lead to it."""
         for seen in _under_way.get():
             seen.call.leads_to_names = True
+
+    def _place(self, site: CallSite) -> tuple[str, int]:
+        return self._locator.relative(site.path), site.extent[0]
+
+    def _is_of_tests(self, callee: Callee) -> bool:
+        return self._locator.role(callee.file) is Role.ORACLE
 
     def _method(self, value: Any, name: str) -> Callee | None:
         """A method by its name; looked up once for each class."""
@@ -183,10 +163,10 @@ class Watch:
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
             is_class = name[:1].isupper()
             return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
-        if callee is None or callee.owner is None or callee.file not in self._tests:
+        if callee is None or callee.owner is None or not self._is_of_tests(callee):
             return callee
         meant = (meant_by(kind, name) for kind in callee.owner.__mro__[1:-1])
-        robots = next((one for one in meant if one is not None and one.file not in self._tests), None)
+        robots = next((one for one in meant if one is not None and not self._is_of_tests(one)), None)
         return robots or any_method(name, callee)
 
     def _patched(self, spelt: str, name: str) -> type | None:
@@ -213,7 +193,7 @@ class Watch:
             top = callee.target.partition(":")[0].partition(".")[0]
             if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
                 return None
-            call = described(callee, of_tests=key[1], own=callee.file in self._program)
+            call = described(callee, of_tests=key[1], own=self._locator.role(callee.file) is Role.PROGRAM)
             call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
             known = self._seen[key] = _Seen(callee, call)
         return known
@@ -253,7 +233,7 @@ class Watch:
 
     def _counts(self, seen: _Seen, site: CallSite) -> bool:
         """Count a call; whether its values are to be looked at."""
-        if seen.call.of_tests and (seen.call.own or seen.callee.file in self._tests):
+        if seen.call.of_tests and (seen.call.own or self._is_of_tests(seen.callee)):
             return False
         self._pulse()
         file, line = self._place(site)
