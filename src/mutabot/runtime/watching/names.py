@@ -10,12 +10,12 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
-from contextvars import ContextVar
 from typing import Any
 
 from mutabot.model import Role, Span
 from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.watched import Use, Values
+from mutabot.runtime.interception.dispatcher import Aside, is_under_way
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.targets.messages import Messages
 from mutabot.runtime.targets.target import NOWHERE, Handler, Where
@@ -25,8 +25,6 @@ from .values import look
 #: uses of one name whose messages are looked at; more are only counted
 _MOST = 300
 _LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
-#: whether something is done under a name here: only the outermost counts, as in a campaign
-_under_way: ContextVar[bool] = ContextVar("mutabot_watched_name", default=False)
 
 
 class NamesSeen(Messages):
@@ -52,7 +50,7 @@ class NamesSeen(Messages):
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
         """What looks at a use; None where something is set up, which is noted at once."""
         self._passed()
-        if form in SETTING_UP and not _under_way.get():
+        if form in SETTING_UP and not is_under_way():
             self._use(form, name, self._locator.locate(sys._getframe(1)), False)
         if form not in _LOOKED_AT:
             return None
@@ -64,7 +62,7 @@ class NamesSeen(Messages):
             kwargs: dict[str, Any],
             where: Where = NOWHERE,
         ) -> Any:
-            if _under_way.get():
+            if is_under_way():
                 return wrapped(*args, **kwargs)
             code, locator = where.code, self._locator
             place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
@@ -73,11 +71,8 @@ class NamesSeen(Messages):
                 self._look(use.written, args[0])
             if inspect.iscoroutinefunction(wrapped):
                 return self._awaited(use, wrapped(*args, **kwargs))
-            token = _under_way.set(True)
-            try:
+            with Aside(None):  # only the outermost counts, as in a campaign
                 result = wrapped(*args, **kwargs)
-            finally:
-                _under_way.reset(token)
             self._answer(use, result)
             return result
 
