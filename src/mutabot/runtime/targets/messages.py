@@ -98,10 +98,6 @@ class Messages(Targets):
         if self.on_heard is not None:
             self.on_heard(name, message)
 
-    def tell(self, target: str, finding: Finding) -> None:
-        """Say what is wrong with a target that was found."""
-        self._tell(target, finding)
-
     def remove(self) -> None:
         """Take all hooks away."""
         self._removed = True
