@@ -74,9 +74,6 @@ class SessionText:
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._real_paths: dict[str, str] = {}
         self._test: str | None = None
-        #: hits before any test, and those at which something changed, by place
-        self._early: dict[int, tuple[int, int]] = {}
-        self._early_example: tuple[Any, ...] | None = None
         self._refusals: tuple[BaseException, ...] = ()
         self._unknown = False
 
@@ -148,8 +145,10 @@ class SessionText:
 
     def start_test(self, test: str) -> None:
         """A test begins."""
-        if self._test is None:
-            self._note_early()
+        if self._test is None:  # what happened before any test
+            if self.sightings is not None:
+                self._tell_reached()
+            self.alternatives.keep()
         self._test, self._refusals, self._unknown = test, (), False
         if self.sightings is not None:
             self.sightings.start()
@@ -185,13 +184,8 @@ class SessionText:
 
     @property
     def hits(self) -> Mapping[int, int]:
-        """Evaluations in the running test of each place that was on."""
+        """Evaluations of each place that was on, in the running test and before any."""
         return self.alternatives.hits
-
-    @property
-    def early(self) -> Mapping[int, int]:
-        """The same before any test."""
-        return {place: hits for place, (hits, _) in self._early.items()}
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
@@ -205,37 +199,24 @@ class SessionText:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test. One of several alternatives acts if all of them did."""
-        counts = [self._count(place) for place in self.alternatives.active]
-        examples = self.alternatives.examples
+        active, alternatives = self.alternatives.active, self.alternatives
         return Evidence(
-            hits=min((hits for hits, _ in counts), default=0),
-            acted=min((acted for _, acted in counts), default=0),
-            example=next(iter(examples.values()), self._early_example),
+            hits=min((alternatives.hits.get(place, 0) for place in active), default=0),
+            acted=min(map(alternatives.acted, active), default=0),
+            example=next(iter(alternatives.examples.values()), None),
             refusals=self._refusals,
             is_of_text=True,
             is_unknown=self._unknown,
         )
 
-    def _note_early(self) -> None:
-        alternatives = self.alternatives
-        if self.sightings is not None:
-            self._tell_reached()
-        self._early = {place: self._count(place) for place in alternatives.hits}
-        self._early_example = next(iter(alternatives.examples.values()), None)
-
     def _tell_reached(self) -> None:
         assert self.sightings is not None
         self._send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
 
-    def _count(self, place: int) -> tuple[int, int]:
-        hits, acted = self._early.get(place, (0, 0))
-        alternatives = self.alternatives
-        return hits + alternatives.hits.get(place, 0), acted + alternatives.acted(place)
-
     @property
     def has_acted(self) -> bool:
         """Whether all active alternatives have changed something in this test, or before any."""
-        return all(self._count(place)[1] for place in self.alternatives.active)
+        return all(map(self.alternatives.acted, self.alternatives.active))
 
     def _acted(self, place: int) -> None:
         if self.has_acted:

@@ -111,6 +111,7 @@ class Alternatives:
         self.hits: dict[int, int] = {}
         self.idle: dict[int, int] = {}
         self.examples: dict[int, tuple[Any, Any]] = {}
+        self._kept: tuple[dict[int, Any], ...] = ({}, {}, {})
         self._told: set[int] = set()
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
@@ -127,10 +128,14 @@ class Alternatives:
         self.active = {}
         self._set({})
 
+    def keep(self) -> None:
+        """Count what was counted so far in every test."""
+        self._kept = (self.hits, self.idle, self.examples)
+
     def start(self) -> None:
         """A new test begins: count anew."""
-        for counts in (self.hits, self.idle, self.examples, self._told):
-            counts.clear()
+        self.hits, self.idle, self.examples = map(dict, self._kept)
+        self._told.clear()
 
     def acted(self, place: int) -> int:
         """Evaluations at which the active alternative changed something, or raised."""
@@ -168,7 +173,7 @@ class Alternatives:
         """A place that is on is evaluated; whether an alternative stands for it."""
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
-        if hits == 1 and self.on_first is not None:
+        if self.on_first is not None and hits == 1 + self._kept[0].get(place, 0):
             self.on_first(place)
         if switch.watched:
             self._look_ahead(switch, frame)
