@@ -383,7 +383,7 @@ class Session:
             return probes
         modules = {probe: sys.modules.get(probe.target.partition(":")[0]) for probe in probes}
         files = {probe: getattr(module, "__file__", None) or "" for probe, module in modules.items()}
-        return tuple(probe for probe in probes if not self.returns.is_program(files[probe]))
+        return tuple(probe for probe in probes if not self.returns.wants(files[probe]))
 
     def look_ahead(self) -> None:
         """The tests are about to begin: say what can be said about the targets that are there already."""

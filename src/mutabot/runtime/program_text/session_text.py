@@ -72,7 +72,7 @@ class SessionText:
         self._on_act = on_act
         self._originals: dict[int, ast.expr] = {}
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
-        self._real_paths: dict[str, str] = {}
+        self._real: Callable[[str], str] = cache(os.path.realpath)
         self._test: str | None = None
         self._refusals: tuple[BaseException, ...] = ()
         self._unknown = False
@@ -125,10 +125,7 @@ class SessionText:
         self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
 
     def _text_of(self, path: str) -> ProgramText | None:
-        real = self._real_paths.get(path)
-        if real is None:
-            real = self._real_paths[path] = os.path.realpath(path)
-        return self._texts.get(real)
+        return self._texts.get(self._real(path))
 
     def _forms(self, place: int) -> Forms | None:
         original = self._originals.get(place)

@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from functools import cached_property
+from functools import cache, cached_property
 from types import FrameType, ModuleType
 from typing import Any
 
@@ -179,8 +179,8 @@ class Watch:
     ) -> None:
         self._locator, self._libraries, self._pulse = locator, tuple(libraries), pulse
         self._seen: dict[tuple[str, bool], _Seen] = {}
-        self._known: dict[tuple[Any, str], Callee | None] = {}
-        self._patches: dict[tuple[str, str], type | None] = {}
+        self._method_of = cache(method_of)
+        self._only_class = cache(_only_class)
         self._reached: dict[tuple[str, int, str], None] = {}
         self._names: NamesSeen | None = None
         self.sites = CallSites(_Public(), locator.role, self.called, hands=self.read, are_read=True)
@@ -239,15 +239,13 @@ class Watch:
         """A method by its name; looked up once for each class."""
         if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
             return method_of(value, name)
-        key = (value if isinstance(value, type) else type(value), name)
-        if key not in self._known:
-            self._known[key] = method_of(value, name)
-        return self._known[key]
+        return self._method_of(value if isinstance(value, type) else type(value), name)
 
     def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
         """What a mock or a class of the tests stands for: the robot's callable, or any of its name."""
         if is_mock(value):
-            kind = vars(value).get("_spec_class") or self._patched(value._extract_mock_name(), name)
+            spelt = re.split(r"\W", value._extract_mock_name())[0]
+            kind = vars(value).get("_spec_class") or self._only_class(spelt, name)
             return (meant_by(kind, name) if kind is not None else None) or any_method(name)
         if is_mock(found) and isinstance(value, type | ModuleType):
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
@@ -258,20 +256,6 @@ class Watch:
         meant = (meant_by(kind, name) for kind in callee.owner.__mro__[1:-1])
         robots = next((one for one in meant if one is not None and not self._is_of_tests(one)), None)
         return robots or any_method(name, callee)
-
-    def _patched(self, spelt: str, name: str) -> type | None:
-        """The class that a mock of this name stands for: the only one of that name with such a method."""
-        root = re.split(r"\W", spelt)[0]
-        if (root, name) in self._patches:
-            return self._patches[root, name]
-        kinds = {
-            id(kind): kind
-            for module in list(sys.modules.values())
-            for kind in [getattr(module, "__dict__", {}).get(root)]
-            if isinstance(kind, type) and kind.__name__ == root and callable(getattr(kind, name, None))
-        }
-        self._patches[root, name] = next(iter(kinds.values())) if len(kinds) == 1 else None
-        return self._patches[root, name]
 
     def _of(self, callee: Callee | None, site: CallSite) -> _Seen | None:
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
@@ -387,6 +371,17 @@ def _making(seen: _Seen) -> Iterator[None]:
     finally:
         with suppress(ValueError):  # a coroutine that is closed from elsewhere
             _under_way.reset(token)
+
+
+def _only_class(name: str, method: str) -> type | None:
+    """Return the class that a mock of this name stands for: the only one of the name with such a method."""
+    kinds = {
+        id(kind): kind
+        for module in list(sys.modules.values())
+        for kind in [getattr(module, "__dict__", {}).get(name)]
+        if isinstance(kind, type) and kind.__name__ == name and callable(getattr(kind, method, None))
+    }
+    return next(iter(kinds.values())) if len(kinds) == 1 else None
 
 
 def _limits(value: Any, instance: Any) -> list[list[float]] | None:
