@@ -354,7 +354,7 @@ class Session:
         self.placed.end_test()
         if self.text is not None:
             if self.fork_parent is not None:
-                self.fork_parent.tell_undiverged(self.text.hits)
+                self.fork_parent.tell_undiverged(self.text.alternatives.hits)
             self.text.end_test()
 
     def take_probes(self) -> Reading:

@@ -165,7 +165,7 @@ class Handing:
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
         is_written = bool(args) and stands_for_property(mock)
-        if is_under_way() or is_written or (mark is None and name not in self._standing.names):
+        if is_under_way() or is_written or (mark is None and name not in self._standing.by_name):
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if mark is not None:
@@ -173,7 +173,7 @@ class Handing:
         else:
             parent = own.get("_mock_new_parent")
             one, receiver, place = None, NOTHING if parent is None else parent, None
-            if caller is not None and self._standing.is_of_project(caller):
+            if caller is not None and self._standing.locator.role(caller.f_code.co_filename) is not None:
                 one = self._standing.named(name, mock, receiver, caller)
         if one is None:
             return original(mock, *args, **kwargs)

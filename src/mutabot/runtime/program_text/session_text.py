@@ -179,11 +179,6 @@ class SessionText:
         self.alternatives.on_place = None
         self.alternatives.activate(*choices)
 
-    @property
-    def hits(self) -> Mapping[int, int]:
-        """Evaluations of each place that was on, in the running test and before any."""
-        return self.alternatives.hits
-
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
         from mutabot.runtime.interception.active_mutant import is_refusal, with_refusal  # noqa: PLC0415

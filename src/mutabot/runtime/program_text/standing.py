@@ -142,6 +142,7 @@ class Standing:
         noted: what is to be told of it; None if nobody asks.
         stood: operations that stood at sites which something was left alone at, or could be.
         alone: where something was left alone.
+        by_name: the operations by their last names.
     """
 
     adapters: Iterable[Adapter]
@@ -152,13 +153,13 @@ class Standing:
     noted: StandIns | None = None
     stood: dict[Span, str] = field(default_factory=dict)
     alone: set[Span] = field(default_factory=set)
-    _by_name: dict[str, list[Adapter]] = field(default_factory=dict)
+    by_name: dict[str, list[Adapter]] = field(default_factory=dict)
     _signatures: dict[Adapter, Signature | None] = field(default_factory=dict)
     _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for one in self.adapters:
-            self._by_name.setdefault(last_name(one.operation), []).append(one)
+            self.by_name.setdefault(last_name(one.operation), []).append(one)
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is called at a site: ``found``, or what makes the same call as one of an operation."""
@@ -179,7 +180,7 @@ class Standing:
         """What must be as it is for the same to be left alone: all that names an operation, or its class."""
         here = frame.f_globals
         named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
-        for one in self._by_name[site.name]:
+        for one in self.by_name[site.name]:
             module, _, qualname = one.operation.target.partition(":")
             names, first = vars(sys.modules.get(module, sys)), qualname.partition(".")[0]
             named[id(names), first] = (names, first, names.get(first))
@@ -213,18 +214,9 @@ class Standing:
             site.place = (span, site.role)
         return site.place
 
-    @property
-    def names(self) -> Collection[str]:
-        """Last names of the operations."""
-        return self._by_name
-
-    def is_of_project(self, frame: FrameType) -> bool:
-        """Whether code of the program or of the oracle runs in a frame."""
-        return self.locator.role(frame.f_code.co_filename) is not None
-
     def candidate_of(self, handler: Handler) -> Adapter | None:
         """The operation that this handler stands around."""
-        return next((one for ones in self._by_name.values() for one in ones if one.handler is handler), None)
+        return next((one for ones in self.by_name.values() for one in ones if one.handler is handler), None)
 
     def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """The operation that stands at a site, if it does not see its calls itself."""
@@ -233,7 +225,7 @@ class Standing:
         one = self.named(site.name, found, receiver, frame)
         if one is None and self.known:
             target = self.known.get(self.place(site, frame)[0])
-            one = next((one for one in self._by_name[site.name] if one.operation.target == target), None)
+            one = next((one for one in self.by_name[site.name] if one.operation.target == target), None)
         if one is None:
             self.alone.add(self.place(site, frame)[0])
         else:
@@ -244,7 +236,7 @@ class Standing:
         """Return the operation of this name in whose place something stands."""
         mock = mock_of(found)
         is_read = stands_for_property(mock)
-        ones = [one for one in self._by_name[name] if self._is_read(one) is is_read]
+        ones = [one for one in self.by_name[name] if self._is_read(one) is is_read]
         fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
         if fitting:
             return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target].__mro__))
@@ -259,8 +251,7 @@ class Standing:
         return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
 
     def _sees_itself(self, found: Any) -> bool:
-        seen = self.sees_itself
-        return any(type(one) in WRAPPERS and one._self_wrapper in seen for one in _layers(found))
+        return any(handler in self.sees_itself for handler in _handlers(found))
 
     def _is_of_class(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Whether what is called is an attribute of an object of the operation's class."""
@@ -297,9 +288,7 @@ class Standing:
         owner = self._owner(one)
         if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
             return True
-        return any(
-            type(layer) in WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
-        )
+        return any(handler is one.handler for handler in _handlers(wrapped))
 
     def _is_of_program(self, found: Any) -> bool:
         function = found.__func__ if isinstance(found, MethodType) else found
@@ -348,11 +337,12 @@ def _is_of_objects(owner: type | None, one: Adapter) -> bool:
     return not isinstance(getattr(raw, "__wrapped__", raw), classmethod | staticmethod)
 
 
-def _layers(found: Any) -> Iterator[Any]:
-    """A callable, and what it is bound to or stands around."""
+def _handlers(found: Any) -> Iterator[Any]:
+    """What stands around a callable, or around what it is bound to or wraps."""
     for _ in range(9):
-        yield found
         kind = type(found)
+        if kind in WRAPPERS:
+            yield found._self_wrapper
         if kind is MethodType:
             found = found.__func__
         elif issubclass(kind, WRAPPERS) or (kind is FunctionType and "__wrapped__" in vars(found)):

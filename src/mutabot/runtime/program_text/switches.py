@@ -90,7 +90,7 @@ class Alternatives:
 
     Attributes:
         active: index of the active alternative by place; more than one for mutants of higher order.
-        hits: evaluations of each place that was on.
+        hits: evaluations of each place that was on, in the running test and before any.
         idle: evaluations of each active place at which the alternative had the value of the original; of a
             watched place, those at which all alternatives that are still watched had it.
         examples: value of the original and of the alternative when they first differed, by place; of what
