@@ -18,9 +18,9 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Instrumentation, ProgramText
-from mutabot.runtime.program_text.import_hook import ImportHook
 from mutabot.runtime.program_text.instrument import instrumented
 from mutabot.runtime.program_text.loading import compile_tree
+from mutabot.runtime.program_text.session_text import SessionText
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
 
@@ -103,7 +103,7 @@ class _Counter:
 
 
 def _evaluations(folder: Path, text: ProgramText, size: int) -> int:
-    hook = ImportHook(str(folder), Instrumentation((text,)))
+    hook = SessionText(str(folder), Instrumentation((text,)))
     hook.install()
     counter = _Counter()
     hook.alternatives.switches[1:] = [counter] * len(text.places)
@@ -115,7 +115,7 @@ def _evaluations(folder: Path, text: ProgramText, size: int) -> int:
 
 
 def _hooked(folder: Path, text: ProgramText, *, record: bool = False) -> Callable[[int], Any]:
-    hook = ImportHook(str(folder), Instrumentation((text,), record))
+    hook = SessionText(str(folder), Instrumentation((text,), record))
     hook.install()
     try:
         run: Callable[[int], Any] = _loaded(folder / text.file).run

@@ -169,9 +169,9 @@ def _inside(job: dict[str, Any]) -> None:
     answer = Path.cwd() / "answer.json"
     hook = None
     if job["instrumentation"] is not None:
-        from mutabot.runtime.program_text.import_hook import ImportHook  # noqa: PLC0415  # only where it is needed
+        from mutabot.runtime.program_text.session_text import SessionText  # noqa: PLC0415  # only where it is needed
 
-        hook = ImportHook(job["root"], from_data(Instrumentation, job["instrumentation"]))
+        hook = SessionText(job["root"], from_data(Instrumentation, job["instrumentation"]))
     for name in list(sys.modules):
         if name == job["module"]:
             del sys.modules[name]

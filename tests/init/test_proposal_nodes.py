@@ -112,7 +112,7 @@ def test_check_accepts_commands_that_nodes_tell_apart(project: Path) -> None:
 
 
 def test_more_names_than_a_list_of_commands_has_are_given_up() -> None:
-    seen = _Seen(any_method("send"), WatchedCallable("*:*.send"), is_coroutine=False)
+    seen = _Seen(any_method("send"), WatchedCallable("*:*.send"))
     for number in range(30):
         _command(seen, None, {"channel": number, "value": 1})
     assert seen.call.told_by == ""

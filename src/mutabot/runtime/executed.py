@@ -69,20 +69,7 @@ class ExecutedUnits:
             if name is not None:
                 self._common.add((name, WHOLE))
         loading.add(self)
-        rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
-        if rewriting is not None:
-            rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
-
-            def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
-                original = ast.parse(source)
-                rewrite(tree, source, path, *rest)
-                if path is not None and self.wants(path):
-                    self._instrument(tree, original, path)
-
-            def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
-                return None if self.wants(str(source)) else read(source, *rest, **named)
-
-            rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
+        loading.hook_pytest(self.wants, self.change)
         sys.addaudithook(self._hear)
 
     def wants(self, path: str) -> bool:
@@ -91,7 +78,18 @@ class ExecutedUnits:
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Mark the functions of a file."""
-        self._instrument(tree, ast.parse(source), path)
+        name = self._name(path)
+        assert name is not None
+        self._loaded.add(name)
+        self._common.add((name, MODULE))
+        if _imports(ast.parse(source), "numba"):  # it compiles functions in a way of its own
+            self._common.add((name, WHOLE))
+            return
+        for _, node in functions_of(tree):
+            number = len(self._places)
+            self._places.append((name, node.lineno))
+            self._ran.append(0)
+            _mark(node, number)  # what is defined in it may be sent to processes that know no marks
 
     def give_up(self, path: str, error: Exception) -> None:
         """It is compiled without marks: all of it counts."""
@@ -139,20 +137,6 @@ class ExecutedUnits:
         if not real.startswith(self._root) or "/site-packages/" in real or "/.mutabot/" in real:
             return None
         return real[len(self._root) :]
-
-    def _instrument(self, tree: ast.Module, original: ast.Module, path: str) -> None:
-        name = self._name(path)
-        assert name is not None
-        self._loaded.add(name)
-        self._common.add((name, MODULE))
-        if _imports(original, "numba"):  # it compiles functions in a way of its own
-            self._common.add((name, WHOLE))
-            return
-        for _, node in functions_of(tree):
-            number = len(self._places)
-            self._places.append((name, node.lineno))
-            self._ran.append(0)
-            _mark(node, number)  # what is defined in it may be sent to processes that know no marks
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Something happens that may matter beside what is executed; see ``sys.addaudithook``."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from random import Random
@@ -30,7 +29,7 @@ from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.handing import Handing
 from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.program_text.session_text import SessionText
-from mutabot.runtime.program_text.standing import Candidate, Standing, StandIns, last_name
+from mutabot.runtime.program_text.standing import Standing, StandIns, last_name
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Interception
@@ -114,13 +113,9 @@ class Session:
         if self.returns is not None:
             self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
-        candidates: list[Candidate] = []
         for operation in vocabulary.operations:
-            handler = self._handler(operation)
-            self.interception.wrap(operation, handler)
-            if operation.kind in (None, "methods"):
-                candidates.append(Candidate(operation, handler, self._adapters[-1]))
-        self._see_calls(candidates)
+            self.interception.wrap(operation, self._handler(operation))
+        self._see_calls()
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.wait is not None:
             self.instances.watch([vocabulary.wait.owner])
@@ -134,13 +129,14 @@ class Session:
         if self.job.record or self.job.serving is not None:
             self._watch_imports()
 
-    def _see_calls(self, candidates: Sequence[Candidate]) -> None:
+    def _see_calls(self) -> None:
         """See calls where they are written, of whatever stands in the place of an operation."""
+        called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
         callables = self.interception.of()
         assert isinstance(callables, Callables)
-        self.standing = Standing(candidates, callables, self.locator, self._sees_itself)
+        self.standing = Standing(called, callables, self.locator, self._sees_itself)
         self._tell_standing()
-        names = {last_name(one.operation) for one in candidates}
+        names = {last_name(one.operation) for one in called}
         self.handing = Handing(self.standing, self.passing.given)
         self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
         self.call_sites.install()
@@ -186,9 +182,9 @@ class Session:
         told = partial(self.inspection.path_is_wrong, operation)
         adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), self._time)
         self._adapters.append(adapter)
-        handler = self.passing.handler(adapter)
-        self._sees_itself.add(handler)
-        return handler
+        adapter.handler = self.passing.handler(adapter)
+        self._sees_itself.add(adapter.handler)
+        return adapter.handler
 
     def _watch_imports(self) -> None:
         """What the program does while it is imported counts for every test that comes after."""
@@ -358,7 +354,7 @@ class Session:
         self.placed.end_test()
         if self.text is not None:
             if self.fork_parent is not None:
-                self.fork_parent.tell_undiverged(self.text.hits, self.text.early)
+                self.fork_parent.tell_undiverged(self.text.alternatives.hits)
             self.text.end_test()
 
     def take_probes(self) -> Reading:
@@ -374,9 +370,8 @@ class Session:
 
     def _read_probes(self, *, along: bool = False) -> Reading:
         meter, self.passing.meter = self.meter, None  # probes are no operations of the program's
-        returns = self.returns.pause() if self.returns is not None else nullcontext()
         try:
-            with returns:
+            with Aside(self.returns):
                 return take(self._probes(along=along), self.instances)
         finally:
             self.passing.meter = meter
@@ -388,7 +383,7 @@ class Session:
             return probes
         modules = {probe: sys.modules.get(probe.target.partition(":")[0]) for probe in probes}
         files = {probe: getattr(module, "__file__", None) or "" for probe, module in modules.items()}
-        return tuple(probe for probe in probes if not self.returns.is_program(files[probe]))
+        return tuple(probe for probe in probes if not self.returns.wants(files[probe]))
 
     def look_ahead(self) -> None:
         """The tests are about to begin: say what can be said about the targets that are there already."""

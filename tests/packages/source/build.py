@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
-from mutabot.runtime.program_text.import_hook import ImportHook
+from mutabot.runtime.program_text.session_text import SessionText
 from mutabot_source.nodes import same_program
 from mutabot_source.operator import TextExample
 from mutabot_source.refine import refine
@@ -55,9 +55,9 @@ def spliced(source: str, place: TextPlace, alternative: Alternative) -> str:
 @contextmanager
 def imported(
     folder: Path, text: ProgramText, *active: Choice, record: bool = False
-) -> Iterator[tuple[ModuleType, ImportHook]]:
+) -> Iterator[tuple[ModuleType, SessionText]]:
     """The module of a text, instrumented, and the hook."""
-    hook = ImportHook(str(folder), Instrumentation((text,), record, active))
+    hook = SessionText(str(folder), Instrumentation((text,), record, active))
     hook.install()
     try:
         yield load(folder / text.file), hook

@@ -17,9 +17,9 @@ import pytest
 
 from mutabot.model import Instrumentation
 from mutabot.model.codec import from_data, to_data
-from mutabot.runtime.program_text.import_hook import ImportHook
 from mutabot.runtime.program_text.instrument import instrumented
 from mutabot.runtime.program_text.loading import compile_tree
+from mutabot.runtime.program_text.session_text import SessionText
 from mutabot.runtime.program_text.switches import Alternatives, error_of
 from mutabot_source.refine import merge, refine
 from mutabot_source.texts import find_texts
@@ -175,7 +175,7 @@ def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) 
         module.f(1.0, 2.0, "z")
         module.f(1, 2.0, "z")
         seen = {sighting.place: sighting for sighting in hook.sightings.seen()}
-        reached = hook.sightings.reached()
+        reached = frozenset(hook.sightings.entered)
     by_text = {place.text: seen[place.number] for place in text.places if place.number in seen}
     assert by_text["x"].kinds == ("integer", "number")
     assert by_text["x"].variables == ()
@@ -195,7 +195,7 @@ def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) 
 def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     (tmp_path / text.file).write_text("x = 5\n")
-    hook = ImportHook(str(tmp_path), Instrumentation((text,)))
+    hook = SessionText(str(tmp_path), Instrumentation((text,)))
     hook.install()
     try:
         assert load(tmp_path / text.file).x == 5
@@ -280,7 +280,7 @@ def test_a_program_may_be_loaded_in_any_way(tmp_path: Path, monkeypatch: pytest.
 def test_a_program_imported_too_early_is_told(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     load(tmp_path / text.file)
-    hook = ImportHook(str(tmp_path), Instrumentation((text,)))
+    hook = SessionText(str(tmp_path), Instrumentation((text,)))
     hook.install()
     hook.remove()
     del sys.modules[Path(text.file).stem]

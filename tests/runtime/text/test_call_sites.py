@@ -87,7 +87,7 @@ def sites() -> Iterator[Callable[..., CallSites]]:
 
 def _function(text: str, sites: CallSites) -> Any:
     tree = ast.parse(text)
-    sites.instrument(tree, "mission.py")
+    sites.change(tree, b"", "mission.py")
     names: dict[str, Any] = {}
     exec(compile(tree, "mission.py", "exec"), names)
     return names["go"]
@@ -96,7 +96,7 @@ def _function(text: str, sites: CallSites) -> Any:
 def test_calls_and_lines_stand_where_they_are_written(sites: Callable[..., CallSites]) -> None:
     plain = compile(ast.parse(dedent(TEXT)), "mission.py", "exec")
     tree = ast.parse(dedent(TEXT))
-    sites(NAMES).instrument(tree, "mission.py")
+    sites(NAMES).change(tree, b"", "mission.py")
     asked = compile(tree, "mission.py", "exec")
     for ours, written in zip(_codes(asked), _codes(plain), strict=True):
         assert not _calls(written) - _calls(ours), written.co_name
@@ -134,7 +134,7 @@ def test_what_stands_there_is_told_with_what_it_was_read_from(sites: Callable[..
 def test_functions_that_are_translated_are_left_alone(sites: Callable[..., CallSites]) -> None:
     text = "@numba.njit\ndef go(arm):\n    arm.move(1)\n"
     tree = ast.parse(text)
-    sites({"move"}).instrument(tree, "mission.py")
+    sites({"move"}).change(tree, b"", "mission.py")
     assert ast.unparse(tree) == ast.unparse(ast.parse(text))
 
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.runtime.program_text.foresee import ForeseenForm, Forms, UnforeseenError, form_of, is_identical
+from mutabot.runtime.program_text.foresee import ForeseenForm, Forms, UnforeseenError, is_identical
 
 
 def foresee(text: str, **variables: Any) -> Any:
@@ -258,7 +258,7 @@ def test_values_are_identical_only_if_no_program_can_tell_them_apart(
 def test_only_alternatives_with_another_value_differ() -> None:
     texts = ("abs(x)", "-x", "x / 0", "robot.angle", "x", "robot[0:1]")
     trees = [ast.parse(text, mode="eval").body for text in texts]
-    forms, everything = Forms(form("x"), tuple(map(form_of, trees))), frozenset(range(6))
+    forms, everything = Forms(form("x"), tuple(map(ForeseenForm, trees))), frozenset(range(6))
     assert forms.differing(everything, frame_of(x=2, robot=Robot())) == {1, 2, 3, 5}
     assert forms.differing(frozenset({0, 1}), frame_of(robot=Robot())) == {0, 1}
-    assert Forms(None, forms.alternatives).differing(everything, frame_of(x=2)) == everything
+    assert Forms(form("robot.f()"), forms.alternatives).differing(everything, frame_of(x=2)) == everything

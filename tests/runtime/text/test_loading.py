@@ -14,7 +14,7 @@ import pytest
 
 from mutabot.model import Instrumentation
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text.import_hook import ImportHook
+from mutabot.runtime.program_text.session_text import SessionText
 
 
 class Doubling:
@@ -97,6 +97,6 @@ def test_what_only_claims_to_be_a_module_is_left_alone(monkeypatch: pytest.Monke
         __class__ = ModuleType  # type: ignore[assignment]
 
     monkeypatch.setitem(sys.modules, "_of_cffi", Library())  # type: ignore[arg-type]
-    hook = ImportHook("/", Instrumentation(()))
+    hook = SessionText("/", Instrumentation(()))
     hook.install()
     hook.remove()

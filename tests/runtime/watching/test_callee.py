@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 from unittest import mock
 
 import pytest
 
+from mutabot.model import Role
 from mutabot.model.watched import WatchedCallable
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.program_text.call_sites import CallSite
 from mutabot.runtime.watching.callee import Callee, meant_by
 from mutabot.runtime.watching.watch import Watch
 
@@ -73,10 +77,16 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return module  # type: ignore[no-any-return]
 
 
+def make(watch: Watch, value: Any, name: str, *args: Any) -> None:
+    """Call a method or a module's function as the program does."""
+    site = CallSite("mission.py", Role.PROGRAM, name, (1, 0, 1, 1))
+    watch.called(site, getattr(value, name), value, sys._getframe())(*args)
+
+
 def seen(value: Any, name: str, *args: Any) -> WatchedCallable:
     """What is seen of the program's call of a method or of a module's function."""
-    watch = Watch({"mission.py": "mission.py"}, {})
-    watch.method(value, name, watch._place("mission.py", 1))(*args)
+    watch = Watch(Locator(str(Path.cwd()), ("mission.py",), ()))
+    make(watch, value, name, *args)
     (call,) = watch.data().calls
     return call
 
@@ -116,13 +126,12 @@ def test_a_class_in_a_function_has_no_name_to_stand_for() -> None:
 
 
 def test_a_real_call_tells_more_than_the_mock_before_it(robot: Any) -> None:
-    watch = Watch({"mission.py": "mission.py"}, {})
-    place = watch._place("mission.py", 1)
+    watch = Watch(Locator(str(Path.cwd()), ("mission.py",), ()))
     with mock.patch.object(robot, "lift"):
-        watch.method(robot, "lift", place)(0.25)
+        make(watch, robot, "lift", 0.25)
     lift.__module__, before = robot.__name__, lift.__module__
     try:
-        watch.method(robot, "lift", place)(0.5)
+        make(watch, robot, "lift", 0.5)
     finally:
         lift.__module__ = before
     (call,) = watch.data().calls

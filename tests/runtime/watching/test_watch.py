@@ -14,23 +14,24 @@ from unittest.mock import MagicMock
 import pytest
 
 from mutabot.model.watched import Values
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.program_text import call_sites
+from mutabot.runtime.program_text.call_sites import CALLS
 from mutabot.runtime.watching.values import look
-from mutabot.runtime.watching.watch import METHOD, NAME, READ, Watch
-from mutabot.runtime.watching.watch import watch as watch_tree
+from mutabot.runtime.watching.watch import Watch
 
 ORDINARY = Path(__file__).parents[2] / "packages" / "source" / "ordinary.py"
 
 
 def run(source: str, name: str, monkeypatch: pytest.MonkeyPatch) -> tuple[ModuleType, Watch]:
     """A module whose calls are watched; its own file is part of the program."""
-    watch = Watch({name: name}, {})
-    for word, function in ((METHOD, watch.method), (NAME, watch.named), (READ, watch.read)):
-        monkeypatch.setattr(builtins, word, function, raising=False)
+    watch = Watch(Locator(str(Path.cwd()), (name,), ()))
+    monkeypatch.setattr(builtins, CALLS, call_sites._entries, raising=False)
     module = ModuleType(Path(name).stem)
     module.__dict__["__file__"] = name
     monkeypatch.setitem(sys.modules, module.__name__, module)
     tree = ast.parse(source, name)
-    watch_tree(tree, lambda line: watch._place(name, line))
+    watch.sites.change(tree, b"", name)
     exec(compile(tree, name, "exec"), vars(module))
     return module, watch
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import copy
 import inspect
 import sys
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from inspect import Parameter, Signature
@@ -29,7 +29,7 @@ from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
 from mutabot.runtime.observation.clock import ProgramTime
-from mutabot.runtime.targets.target import NOWHERE, Where, resolve
+from mutabot.runtime.targets.target import NOWHERE, Handler, Where, resolve
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
@@ -166,6 +166,7 @@ class Adapter:
         lately: values that last came by under the names of a middleware, by target; adapters share it.
         handles: classes that are part of the robot API: their objects are never copied.
         time: the program's time.
+        handler: what stands around the operation.
         commands: how often the robot was made to do this, if it does anything.
     """
 
@@ -175,6 +176,7 @@ class Adapter:
     lately: dict[str, Mapping[str, Value]]
     handles: Collection[str]
     time: ProgramTime
+    handler: Handler = field(init=False)
     commands: int = 0
     _message: Path | None = None
     _declared: Signature | None = None
@@ -270,10 +272,13 @@ class Adapter:
         return False
 
     def _values(self, quantities: tuple[Quantity, ...], invocation: Invocation) -> dict[str, Value]:
-        starts = ((one, invocation.get(one.path.root or "")) for one in quantities)
-        return self._read(((one, start) for one, start in starts if start is not None), "arguments")
+        starts = [(one, invocation.get(one.path.root or "")) for one in quantities]
+        return self._read([pair for pair in starts if pair[1] is not None], "arguments")
 
-    def _read(self, quantities: Iterator[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
+    def _read_result(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
+        return self._read([(one, result) for one in quantities], "result")
+
+    def _read(self, quantities: list[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
         """Read quantities, each from what its path begins at."""
         values: dict[str, Value] = {}
         for quantity, start in quantities:
@@ -287,9 +292,6 @@ class Adapter:
             if value is not None:
                 values[quantity.name] = value
         return values
-
-    def _read_result(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
-        return self._read(((one, result) for one in quantities), "result")
 
     def _tell_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
         """No mode fits: say which argument has a value that the vocabulary does not mention."""

@@ -16,7 +16,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import wrapt
 
@@ -37,14 +37,11 @@ from mutabot.runtime.targets.target import NOWHERE, Handler, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
+    from mutabot.runtime.program_text.returns import Returns
 
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
 is_under_way = _under_way.get
-
-
-class _Noting(Protocol):
-    is_on: bool
 
 
 class Aside:
@@ -58,7 +55,7 @@ class Aside:
 
     __slots__ = ("_returns", "_token", "_was")
 
-    def __init__(self, returns: _Noting | None) -> None:
+    def __init__(self, returns: Returns | None) -> None:
         self._returns = returns
 
     def __enter__(self) -> None:
@@ -305,10 +302,6 @@ async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: b
     return await wrapped(*args, **kwargs)
 
 
-#: code units of one entry of a table of places, and its kind: all of a span is told
-_MOST_UNITS, _LONG = 8, 14
-
-
 #: callers by code, instruction and whether they await; the code is kept, so that no other can get its address
 _callers: dict[tuple[int, int, bool], tuple[Caller, CodeType, dict[str, Any]]] = {}
 
@@ -330,36 +323,24 @@ def caller_of(frame: FrameType, is_async: bool) -> Caller:
 
 
 def _made(code: CodeType, instruction: int, names: dict[str, Any], is_async: bool) -> Caller:
-    line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
-    line = line or code.co_firstlineno
+    line = list(code.co_positions())[instruction // 2][0] or code.co_firstlineno
     own = (_async_call if is_async else _call).__code__
     own = own.replace(
         co_name=code.co_name,
         co_qualname=code.co_qualname,
         co_filename=code.co_filename,
         co_firstlineno=line,
-        co_linetable=_all_at(len(own.co_code) // 2, (end_line or line) - line, column or 0, end_column or 0),
+        co_linetable=_all_in_line(len(own.co_code) // 2),
     )
     return FunctionType(own, names, code.co_name, (True,))
 
 
-def _all_at(units: int, lines: int, column: int, end_column: int) -> bytes:
-    """A table that gives the span to all of a code: from its first line on, so many more lines.
+def _all_in_line(units: int) -> bytes:
+    """Return a table of places that gives the first line to all of a code, and no columns.
 
-    The format: CPython, Objects/locations.md (3.11 to 3.13). Compiling a tree with places takes ten times as
-    long, and every fork calls from places where nothing has called before.
+    An entry covers up to eight code units. The format: CPython, Objects/locations.md (3.11 to 3.13). To
+    compile a tree takes ten times as long, and every fork calls from places where nothing has called before.
     """
-    found = bytearray()
-    for first in range(0, units, _MOST_UNITS):
-        size = min(_MOST_UNITS, units - first)
-        found.append(1 << 7 | _LONG << 3 | size - 1)
-        for number in (0, lines, column + 1, end_column + 1):
-            found += _varint(number)
-    return bytes(found)
-
-
-def _varint(number: int) -> bytes:
-    """Six bits a byte, the lowest first; a seventh says that more follow."""
-    if number < 1 << 6:
-        return bytes([number])
-    return bytes([1 << 6 | number & 0x3F]) + _varint(number >> 6)
+    no_columns, same_line = 13, 0
+    sizes = (min(8, units - first) for first in range(0, units, 8))
+    return b"".join(bytes([1 << 7 | no_columns << 3 | size - 1, same_line]) for size in sizes)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from types import CodeType, FrameType
 from typing import Any
 
@@ -185,6 +186,10 @@ class Locator:
     Args:
         root: absolute path of the project.
         program, oracle: files and folders, relative to the root.
+
+    Attributes:
+        role: tells whose file it is; None for files of neither.
+        real: tells a path without symbolic links.
     """
 
     def __init__(self, root: str, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
@@ -193,13 +198,13 @@ class Locator:
         places = [(self._absolute(path), Role.PROGRAM) for path in program]
         places += [(self._absolute(path), Role.ORACLE) for path in oracle]
         self._places = sorted(places, key=lambda place: -len(place[0]))
-        self._roles: dict[str, Role | None] = {}
+        self.real: Callable[[str], str] = cache(os.path.realpath)
+        self.role: Callable[[str], Role | None] = cache(self._find_role)
         # By the identity of code: the code of equal functions in two files is equal, though they are two
         # places. It is kept beside its span, so that no other code can get its address.
         self._spans: dict[tuple[int, int], tuple[Span, CodeType]] = {}
         # every other frame is Python's: asking its front end for each would cost each call
         self._interpreted = [one for one in front_ends() if one is not PYTHON]
-        self._real: dict[str, str] = {}
 
     def locate(self, frame: FrameType | None) -> tuple[Span, Role] | None:
         """Span and role of the call that is running in ``frame`` or the nearest frame around it."""
@@ -222,30 +227,14 @@ class Locator:
             return None
         return self._span_at(code.co_filename, PYTHON.definition_of(code)), role
 
-    def role(self, filename: str) -> Role | None:
-        """Whose file it is; None for files of neither."""
-        try:
-            return self._roles[filename]
-        except KeyError:
-            role = self._roles[filename] = self._find_role(self.real(filename))
-            return role
-
     def relative(self, filename: str) -> str:
         """The path relative to the root, with forward slashes."""
         return os.path.relpath(self.real(filename), self._root).replace(os.sep, "/")
 
-    def real(self, filename: str) -> str:
-        """The path without symbolic links; looked up once."""
-        path = self._real.get(filename)
-        if path is None:
-            path = self._real[filename] = os.path.realpath(filename)
-        return path
-
-    def _find_role(self, path: str) -> Role | None:
-        for place, role in self._places:
-            if path == place or path.startswith(place + os.sep):
-                return role
-        return None
+    def _find_role(self, filename: str) -> Role | None:
+        path = self.real(filename)
+        within = (role for place, role in self._places if path == place or path.startswith(place + os.sep))
+        return next(within, None)
 
     def _absolute(self, path: str) -> str:
         return os.path.realpath(os.path.join(self._root, path))

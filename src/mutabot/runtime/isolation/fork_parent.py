@@ -180,19 +180,19 @@ class ForkParent:
             self._places = {place: indexes for place, indexes in found.items() if indexes}
         return self._places
 
-    def tell_undiverged(self, hits: Mapping[int, int], early: Mapping[int, int]) -> None:
+    def tell_undiverged(self, hits: Mapping[int, int]) -> None:
         """The test is over: tell which mutants of the program text were no different from the original.
 
-        ``hits``: evaluations of each place in this test. If the test has forked copies of this process they
-        are not all: a mutant may have differed in one, as in processes that were started before any test.
-        ``early``: those before any test.
+        ``hits``: evaluations of each place in this test, and before any. If the test has forked copies of
+        this process they are not all: a mutant may have differed in one, as in processes that were started
+        before any test.
         """
         if self._copied or self._is_overtaken():
             return
         same = {
-            mutant.id: hits.get(place, 0) + early.get(place, 0)
+            mutant.id: hits[place]
             for place, here in self._live_places()
-            if place in early or hits.get(place)
+            if hits.get(place)
             for mutant in here
             if self._index(mutant) >= 0
         }

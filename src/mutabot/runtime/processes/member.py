@@ -279,10 +279,10 @@ class Member:
         text = self.session.text
         if text is None:
             return
-        if text.hook.sightings is not None:
-            text.hook.sightings.tell_first(lambda place: self._reached((place,)))
+        if text.sightings is not None:
+            text.sightings.tell_first(lambda place: self._reached((place,)))
         else:
-            text.hook.alternatives.on_first = lambda place: self.poll()
+            text.alternatives.on_first = lambda place: self.poll()
 
     def _reached(self, places: tuple[int, ...]) -> None:
         self.turn()

@@ -18,16 +18,16 @@ import ast
 import builtins
 import copy
 import sys
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Container, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import FrameType, FunctionType, MethodType
-from typing import Any, Protocol
+from typing import Any
 
 import wrapt
 
 from mutabot.languages.python import extent_of
-from mutabot.model import Role
+from mutabot.model import Role, Span
 from mutabot.model.mutant import Extent
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.instrument import declare_global, is_ours
@@ -110,6 +110,7 @@ class CallSite:
         is_given: whether what is handed on is given to the call that stands there.
         left_alone: what is called as it is there, by the classes of its object and of itself, as long as some
             names mean what they did.
+        place: the same as a span, once it was looked up.
     """
 
     path: str
@@ -120,17 +121,12 @@ class CallSite:
     is_awaited: bool = False
     is_given: bool = False
     left_alone: dict[tuple[type, Any], Guards] = field(default_factory=dict)
+    place: tuple[Span, Role] | None = None
 
 
-class Stands(Protocol):
-    """Decides what is called at a site."""
-
-    def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        """What is called in place of ``found``, which may be itself.
-
-        ``receiver`` is the object that it was read from; ``NOTHING`` where it was read from a name.
-        """
-
+#: decides what is called at a site: told the site, what stands there, the object that it was read from
+#: (``NOTHING`` where it was read from a name) and the frame
+Decide = Callable[[CallSite, Any, Any, FrameType], Any]
 
 #: the receiver of what was read from a name
 NOTHING = object()
@@ -142,11 +138,12 @@ class CallSites:
     """Puts the questions into files, and answers them. See ``loading.Step``.
 
     Args:
-        names: last names of the operations.
+        names: last names that are asked about: those of the operations.
         role: whose file a path is.
         stands: decides what is called.
         sees_itself: handlers of what sees its calls itself: of that nothing is asked.
         hands: decides what is handed on; None to leave that as it is.
+        are_read: whether ``hands`` decides about each attribute that is read, handed on or not.
 
     Attributes:
         loaded: files that were given questions.
@@ -154,17 +151,20 @@ class CallSites:
 
     def __init__(
         self,
-        names: Collection[str],
+        names: Container[str],
         role: Callable[[str], Role | None],
-        stands: Stands,
+        stands: Decide,
         sees_itself: Collection[Any] = (),
-        hands: Stands | None = None,
+        hands: Decide | None = None,
+        *,
+        are_read: bool = False,
     ) -> None:
-        self._names = frozenset(names)
+        self._names = names
         self._role = role
         self._stands = stands
         self._sees_itself = sees_itself
         self._hands = hands
+        self._are_read = are_read
         self.loaded: list[str] = []
         self._is_on = True
         self._numbers: dict[tuple[str, Extent, str], int] = {}
@@ -184,43 +184,27 @@ class CallSites:
 
     def hook_pytest(self) -> None:
         """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
-        rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
-        if rewriting is None or not self._names:
-            return
-        rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
-
-        def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
-            rewrite(tree, source, path, *rest)
-            if path is not None:
-                self.instrument(tree, path)
-
-        def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
-            return None if self.wants(str(source)) else read(source, *rest, **named)
-
-        rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
+        if self._names:
+            loading.hook_pytest(self.wants, self.change)
 
     def wants(self, path: str) -> bool:
         """Whether a file may have sites."""
         return self._role(path) is not None
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Put questions into a file."""
-        self.instrument(tree, path)
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """It is compiled without: its calls are seen by what they call."""
-
-    def instrument(self, tree: ast.Module, path: str) -> None:
         """Put questions into the tree of a file, which pytest may have rewritten."""
         role = self._role(path)
-        if role is None:
-            return
-        are_handed = self._hands is not None and role is Role.PROGRAM
-        writer = _Writer(self._names, partial(self._number, path, role), are_handed=are_handed)
+        assert role is not None
+        are_handed = self._hands is not None and role is Role.PROGRAM and not self._are_read
+        number = partial(self._number, path, role)
+        writer = _Writer(self._names, number, are_handed=are_handed, are_read=self._are_read)
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
             self.loaded.append(path)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """It is compiled without: its calls are seen by what they call."""
 
     def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
         key = (path, extent_of(node), form)
@@ -283,20 +267,27 @@ class CallSites:
         return read
 
     def _handed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
-        sites = {name: replace(site, name=name) for name in self._names}
+        sites: dict[str, CallSite] = {}
 
         def read(function: Any) -> Any:
             is_ours = function is getattr and self._is_on
-            return partial(self._got, sites, sys._getframe(1)) if is_ours else function
+            return partial(self._got, site, sites, sys._getframe(1)) if is_ours else function
 
         return read
 
     def _got(
-        self, sites: dict[str, CallSite], frame: FrameType, /, receiver: Any, name: str, *default: Any
-    ) -> Any:
+        self, site: CallSite, sites: dict[str, CallSite], frame: FrameType, /, receiver: Any, name: str,
+        *default: Any,
+    ) -> Any:  # fmt: skip
         __tracebackhide__ = True
         found = getattr(receiver, name, *default)
-        return self._decide(sites[name], found, receiver, frame) if name in sites else found
+        if name not in self._names:
+            return found
+        return self._decide(sites.setdefault(name, replace(site, name=name)), found, receiver, frame)
+
+
+#: annotations may be read as text, and the names of a pattern are no values
+_NOT_RUN = ("annotation", "returns", "pattern", "type_params")
 
 
 class _Writer(ast.NodeTransformer):
@@ -307,9 +298,15 @@ class _Writer(ast.NodeTransformer):
     """
 
     def __init__(
-        self, names: Collection[str], number: Callable[[ast.expr, str, str], int], *, are_handed: bool
+        self,
+        names: Container[str],
+        number: Callable[[ast.expr, str, str], int],
+        *,
+        are_handed: bool,
+        are_read: bool,
     ) -> None:
         self._names = names
+        self._are_read = are_read
         self._number = number
         self._are_handed = are_handed
         self._read: dict[str, ast.expr] = {}
@@ -320,7 +317,11 @@ class _Writer(ast.NodeTransformer):
             return node
         if self._are_handed:
             note_parts(node)
-        return super().visit(node)
+        hidden = {name: vars(node).pop(name) for name in _NOT_RUN if name in vars(node)}
+        try:
+            return super().visit(node)
+        finally:
+            vars(node).update(hidden)
 
     def visit_Await(self, node: ast.Await) -> ast.AST:  # the name that ast looks for
         if isinstance(node.value, ast.Call):
@@ -355,7 +356,8 @@ class _Writer(ast.NodeTransformer):
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
         self.generic_visit(node)
-        if is_handed_on(node) and node.attr in self._names and not is_ours(node):
+        is_asked = is_handed_on(node) or (self._are_read and isinstance(node.ctx, ast.Load))
+        if is_asked and node.attr in self._names and not is_ours(node):
             number = self._number(node, node.attr, "handed_attribute")
             return self._question(number, node, [node.value])
         return node

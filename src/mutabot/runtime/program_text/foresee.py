@@ -12,8 +12,9 @@ import ast
 import inspect
 import math
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
-from types import FrameType, MemberDescriptorType, ModuleType, SimpleNamespace
+from types import CodeType, FrameType, MemberDescriptorType, ModuleType, SimpleNamespace
 from typing import Any, NamedTuple
 
 from mutabot.model.mutant import RUNTIME
@@ -61,22 +62,26 @@ _HELPER_NAMES = frozenset(f"{RUNTIME}[0].{name}" for name in vars(_HELPERS))
 class ForeseenForm:
     """An expression whose value is known as soon as those of its leaves are.
 
-    Raises UnforeseenError for one that does more than to calculate and to compare; the tree is changed.
+    The value of one that does more than to calculate and to compare is never known. The tree is changed.
     """
 
     def __init__(self, tree: ast.expr) -> None:
         leaves = _Leaves()
-        tree = leaves.visit(tree)
+        self._code: CodeType | None = None
+        with suppress(UnforeseenError):
+            tree = leaves.visit(tree)
+            self._kinds = _NUMBERS if leaves.calculates else _PLAIN
+            self._check(leaves.constants)
+            self._code = compile(ast.Expression(tree), "<foreseen>", "eval")
         self._leaves, self._functions = leaves.found, leaves.functions
-        self._kinds = _NUMBERS if leaves.calculates else _PLAIN
-        self._check(leaves.constants)
-        self._code = compile(ast.Expression(tree), "<foreseen>", "eval")
 
     def value(self, frame: FrameType) -> Any:
         """What it gives in a frame.
 
         Raises UnforeseenError if that cannot be known; and whatever the evaluation itself would raise.
         """
+        if self._code is None:
+            raise UnforeseenError
         values = {name: _read(leaf, frame) for name, leaf in self._leaves.items()}
         self._check(values.values())
         functions = {name: _read(leaf, frame) for name, leaf in self._functions.items()}
@@ -146,39 +151,24 @@ class _Leaves(ast.NodeTransformer):
 
 @dataclass(frozen=True, slots=True)
 class Forms:
-    """A place as an expression, and what it could read instead; None for what cannot be foreseen."""
+    """A place as an expression, and what it could read instead."""
 
-    original: ForeseenForm | None
-    alternatives: tuple[ForeseenForm | None, ...]
+    original: ForeseenForm
+    alternatives: tuple[ForeseenForm, ...]
 
     def differing(self, indexes: frozenset[int], frame: FrameType) -> frozenset[int]:
         """Of these alternatives, those that would not give what the original gives in a frame, or may not."""
         try:
-            given = value_of(self.original, frame)
+            given = self.original.value(frame)
         except Exception:  # whatever it is: a real evaluation will tell
             return indexes
         return frozenset(index for index in indexes if not self._gives(index, given, frame))
 
     def _gives(self, index: int, given: Any, frame: FrameType) -> bool:
         try:
-            return is_identical(given, value_of(self.alternatives[index], frame))
+            return is_identical(given, self.alternatives[index].value(frame))
         except Exception:  # as above; what raises differs from what did not
             return False
-
-
-def form_of(tree: ast.expr) -> ForeseenForm | None:
-    """The form of an expression; None if it cannot be foreseen. The tree is changed."""
-    try:
-        return ForeseenForm(tree)
-    except UnforeseenError:
-        return None
-
-
-def value_of(form: ForeseenForm | None, frame: FrameType) -> Any:
-    """What an expression gives in a frame; raises as ``Form.value`` does."""
-    if form is None:
-        raise UnforeseenError
-    return form.value(frame)
 
 
 def is_identical(one: Any, other: Any) -> bool:

@@ -27,7 +27,7 @@ from mutabot.model import Role, Span
 from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite
-from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing, mock_of, stands_for_property
+from mutabot.runtime.program_text.standing import WRAPPERS, Standing, mock_of, stands_for_property
 
 #: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
 #: which is None if nobody knows any more
@@ -89,9 +89,9 @@ class Handing:
                 return found
             self._standing.stood[place[0]] = own.operation.target
             if type(found) is wrapt.FunctionWrapper:  # all names of a function mean this very object
-                known = self._given.setdefault(own.adapter, place)
+                known = self._given.setdefault(own, place)
                 if known == place or not site.is_given:
-                    self._given[own.adapter] = place if known == place else None
+                    self._given[own] = place if known == place else None
                     return found
             return self._wrapped(own, place, receiver, found, found.__wrapped__)
         one = self._standing.candidate(site, found, receiver, frame)
@@ -108,7 +108,7 @@ class Handing:
         return self._wrapped(one, place, receiver, found, found)
 
     def _wrapped(
-        self, one: Candidate, place: tuple[Span, Role], receiver: Any, looks: Any, found: Any
+        self, one: Adapter, place: tuple[Span, Role], receiver: Any, looks: Any, found: Any
     ) -> Handed:
         """What looks like one callable and calls ``found``, which may be the same, as an operation."""
         calls = partial(self._call, one, place, receiver, found)
@@ -122,7 +122,7 @@ class Handing:
 
     def _call(
         self,
-        one: Candidate,
+        one: Adapter,
         place: tuple[Span, Role],
         receiver: Any,
         found: Any,
@@ -161,7 +161,7 @@ class Handing:
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
         is_written = bool(args) and stands_for_property(mock)
-        if is_under_way() or is_written or (mark is None and name not in self._standing.names):
+        if is_under_way() or is_written or (mark is None and name not in self._standing.by_name):
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if mark is not None:
@@ -169,7 +169,7 @@ class Handing:
         else:
             parent = own.get("_mock_new_parent")
             one, receiver, place = None, NOTHING if parent is None else parent, None
-            if caller is not None and self._standing.is_of_project(caller):
+            if caller is not None and self._standing.locator.role(caller.f_code.co_filename) is not None:
                 one = self._standing.named(name, mock, receiver, caller)
         if one is None:
             return original(mock, *args, **kwargs)

@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
 from mutabot.model.mutant import RUNTIME, Alternative, Extent, TextPlace, kept_name
-from mutabot.runtime.program_text.foresee import Forms, form_of
+from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
 
 _Key = tuple[str, Extent]
 _Node = TypeVar("_Node", bound=ast.AST)
@@ -51,14 +51,7 @@ def instrumented(
 def forms_of(place: TextPlace, original: ast.expr) -> Forms:
     """The original and the alternatives, for a look ahead; the tree of the original is changed."""
     others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
-    return Forms(form_of(original), tuple(map(form_of, others)))
-
-
-def is_place(node: ast.AST) -> bool:
-    """Whether a node can be a place: a statement, or an expression that is evaluated."""
-    if isinstance(node, ast.expr):
-        return isinstance(getattr(node, "ctx", None), ast.Load | None)
-    return isinstance(node, ast.stmt)
+    return Forms(ForeseenForm(original), tuple(map(ForeseenForm, others)))
 
 
 class _Instrumenter(ast.NodeTransformer):
@@ -86,8 +79,10 @@ class _Instrumenter(ast.NodeTransformer):
         return self._expression(node, place)
 
     def _place_of(self, node: ast.AST) -> TextPlace | None:
-        if not isinstance(node, ast.expr | ast.stmt) or not is_place(node):
-            return None
+        if not isinstance(node, ast.expr | ast.stmt) or not isinstance(
+            getattr(node, "ctx", None), ast.Load | None
+        ):
+            return None  # it is not evaluated
         key = (type(node).__name__, extent_of(node))
         place = self._places.get(key)
         if place is not None:

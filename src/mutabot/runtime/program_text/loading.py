@@ -16,6 +16,7 @@ import os
 import runpy
 import sys
 import warnings
+from collections.abc import Callable
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
 from types import CodeType, ModuleType
@@ -90,6 +91,24 @@ def _get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
     return _original(self, fullname)
 
 
+def hook_pytest(wants: Callable[[str], bool], change: Callable[[ast.Module, bytes, str], None]) -> None:
+    """Let ``change`` have the files that pytest rewrites and ``wants`` names, after pytest."""
+    rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
+    if rewriting is None:
+        return
+    rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
+
+    def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
+        rewrite(tree, source, path, *rest)
+        if path is not None and wants(path):
+            change(tree, source, path)
+
+    def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
+        return None if wants(str(source)) else read(source, *rest, **named)
+
+    rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
+
+
 def hook_runpy() -> None:
     """Let ``runpy`` compile files that it runs as files are compiled that are imported."""
     module: Any = runpy
@@ -117,20 +136,21 @@ def hook_script() -> None:
     if script in ("", "-c", "-m") or not is_wanted(os.path.abspath(script)):
         return
     path = os.path.abspath(script)
-    add(_AsScript(path))
+    own = _Script(path)
+    add(own)
 
-    def claim(entry: str) -> _Importer:
+    def claim(entry: str) -> _Script:
         if entry not in (script, path):  # as it was given, or as newer versions complete it
             raise ImportError(entry)
-        return _Importer(path)
+        return own
 
     sys.path_hooks.insert(0, claim)
     for entry in (script, path):
         sys.path_importer_cache.pop(entry, None)
 
 
-class _Importer:
-    """Finds one module: the script."""
+class _Script:
+    """Finds one module, the script, and lets it see itself as a script: not as a module that was found."""
 
     def __init__(self, path: str) -> None:
         self._path = path
@@ -143,24 +163,13 @@ class _Importer:
             sys.path[0] = os.path.dirname(os.path.realpath(self._path))
         return spec_from_file_location(name, self._path, loader=SourceFileLoader(name, self._path))
 
-
-class _AsScript:
-    """Lets a script see itself as one: not as a module that was found somewhere. See ``loading.Step``."""
-
-    def __init__(self, path: str) -> None:
-        self._path = path
-
     def wants(self, path: str) -> bool:
         """Only that script."""
         return path == self._path
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Forget its spec before its first statement."""
-        forget = ast.parse("__spec__ = __package__ = __cached__ = None").body
-        for node in ast.walk(forget[0]):
-            if isinstance(node, ast.expr | ast.stmt):
-                node.lineno = node.end_lineno = 1
-                node.col_offset = node.end_col_offset = 0
+        forget = ast.parse("__spec__ = __package__ = __cached__ = None").body  # in the first line
         size = head_size(tree.body)
         tree.body[size:size] = forget
 

@@ -16,7 +16,7 @@ import builtins
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from functools import cache
 from types import FrameType
 from typing import Any
 
@@ -53,7 +53,7 @@ class Returns:
         self.is_on = False
         self._locator = locator
         self._own: set[str] = set()
-        self._others: dict[str, bool] = {}
+        self._is_test = cache(self._is_of_tests)
 
     def install(self) -> None:
         """Compile program files with notes from now on."""
@@ -65,15 +65,11 @@ class Returns:
         """Compile program files without notes from now on."""
         loading.remove(self)
 
-    def is_program(self, path: str) -> bool:
-        """Whether a file is one of the program's."""
+    def wants(self, path: str) -> bool:
+        """Whether a file is one of the program's: these get notes."""
         if path.startswith(sys.base_prefix) or any(part in path for part in _LIBRARIES):
             return False
         return self._locator.role(path) is Role.PROGRAM
-
-    def wants(self, path: str) -> bool:
-        """Whether a file gets notes."""
-        return self.is_program(path)
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Put notes into the functions of a program file."""
@@ -95,15 +91,6 @@ class Returns:
     def begin_call(self) -> None:
         """Its fixtures are set up."""
         self.prepared = len(self.entries)
-
-    @contextmanager
-    def pause(self) -> Iterator[None]:
-        """Note nothing for the moment."""
-        was, self.is_on = self.is_on, False
-        try:
-            yield
-        finally:
-            self.is_on = was
 
     def stop(self) -> None:
         """What comes now is no more part of the test."""
@@ -139,18 +126,15 @@ class Returns:
             name = frame.f_code.co_filename
             if name in self._own:
                 return False
-            is_test = self._others.get(name)
-            if is_test is None:
-                is_test = self._others[name] = self._is_test(name)
-            if is_test:
+            if self._is_test(name):
                 return True
             frame = frame.f_back
         return False
 
-    def _is_test(self, name: str) -> bool:
+    def _is_of_tests(self, name: str) -> bool:
         if name.startswith("<") or any(part in name for part in _LIBRARIES):
             return False
-        return not self._locator.relative(name).startswith("..") and not self.is_program(name)
+        return not self._locator.relative(name).startswith("..") and not self.wants(name)
 
 
 def _functions(tree: ast.Module) -> Iterator[Function]:

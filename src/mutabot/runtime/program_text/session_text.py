@@ -2,112 +2,182 @@
 
 from __future__ import annotations
 
+import ast
+import hashlib
+import os
+import sys
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
+from mutabot.model.events import Event, NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.job import Job
+from mutabot.model.mutant import Instrumentation, ProgramText
 from mutabot.runtime.event_file import Sink
 from mutabot.runtime.evidence import Evidence
-from mutabot.runtime.program_text.import_hook import ImportHook
+from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.foresee import Forms
+from mutabot.runtime.program_text.instrument import MismatchError, forms_of, instrumented
+from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:  # not every process makes calls, or forks
     from mutabot.model import Call, Choice
 
-#: hits, and hits at which something changed, by place
-_Counts = dict[int, tuple[int, int]]
+
+class _ChangedError(MismatchError):
+    """A file is no longer what the plan was made for."""
 
 
 class SessionText:
-    """The program text of the job at hand.
+    """Compiles program files with their alternatives, or with witnesses that note which values occur.
 
     What happens while the program is imported, before any test, holds for every test after it: each test
-    counts it as its own.
+    counts it as its own. See ``loading.SourceStep``.
 
     Args:
-        hook: what instruments the program's files.
+        root: absolute path of the project.
+        instrumentation: what is to stand in the text.
         pipe: where reports go; a copy of a fork server gets its own.
         on_act: told when all active alternatives have changed something in a test.
+
+    Attributes:
+        alternatives: the switches of the instrumented text; idle where places are only looked at.
+        sightings: what is seen at each place, if places are only looked at; else None.
+        imported: files that were instrumented, relative to the root.
+        problems: files that were not, with the reason.
     """
 
-    def __init__(self, hook: ImportHook, pipe: Sink, on_act: Callable[[], None]) -> None:
-        self.hook = hook
+    def __init__(
+        self,
+        root: str,
+        instrumentation: Instrumentation,
+        pipe: Sink | None = None,
+        on_act: Callable[[], None] = lambda: None,
+    ) -> None:
+        texts = instrumentation.texts
+        self._places = {place.number: place for text in texts for place in text.places}
+        size = max(self._places, default=0)
+        self.alternatives = Alternatives(size)
+        self.alternatives.activate(*instrumentation.active)
+        self.alternatives.forms = cache(self._forms)
+        self.alternatives.on_act = self._acted
+        self.sightings: Sightings | None = None
+        if instrumentation.record:
+            variables = {number: place.text for number, place in self._places.items() if place.variable}
+            self.sightings = Sightings(size, variables)
         self.pipe = pipe
+        self.imported: list[str] = []
+        self.problems: dict[str, str] = {}
         self._on_act = on_act
-        self._test = ""
-        self._begun = False
-        self._early: _Counts = {}
-        self._early_example: tuple[Any, ...] | None = None
+        self._originals: dict[int, ast.expr] = {}
+        self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
+        self._real: Callable[[str], str] = cache(os.path.realpath)
+        self._test: str | None = None
         self._refusals: tuple[BaseException, ...] = ()
         self._unknown = False
-        hook.alternatives.on_act = self._acted
 
     @classmethod
     def of(cls, job: Job, pipe: Sink, on_act: Callable[[], None]) -> SessionText | None:
         """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None
-
-        def tell(file: str, why: str) -> None:
-            text.pipe.send(NotInstrumented(file, why))
-
-        text = cls(ImportHook(job.root, job.instrumentation, tell), pipe, on_act)
-        text.hook.install()
+        text = cls(job.root, job.instrumentation, pipe, on_act)
+        text.install()
         return text
+
+    def install(self) -> None:
+        """Instrument the program's files from now on; files imported before are told as problems."""
+        (self.sightings or self.alternatives).install()
+        for module in list(sys.modules.values()):
+            text = self._text_of(_file_of(module))
+            if text is not None:
+                self._refuse(text, "it was imported before mutabot could look at it")
+        loading.add(self)
+        loading.hook_runpy()
+
+    def remove(self) -> None:
+        """Import as ever from now on; text that is instrumented goes on as the original."""
+        loading.remove(self)
+        (self.sightings or self.alternatives).remove()
+
+    def wants(self, path: str) -> bool:
+        """Whether there are alternatives for a file."""
+        return self._text_of(path) is not None
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Put the alternatives of a file into its tree. Raises MismatchError if they do not belong there."""
+        text = self._text_of(path)
+        assert text is not None
+        if hashlib.sha256(source).hexdigest() != text.digest:
+            raise _ChangedError("it has changed since its mutants were made")
+        record = self.sightings is not None
+        instrumented(tree, text.places, record=record, originals=self._originals)
+        self.imported.append(text.file)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A file is compiled without its alternatives."""
+        text = self._text_of(path)
+        assert text is not None
+        if text.file in self.imported:
+            self.imported.remove(text.file)
+        is_known = isinstance(error, _ChangedError)
+        self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
+
+    def _text_of(self, path: str) -> ProgramText | None:
+        return self._texts.get(self._real(path))
+
+    def _forms(self, place: int) -> Forms | None:
+        original = self._originals.get(place)
+        return forms_of(self._places[place], original) if original is not None else None
+
+    def _refuse(self, text: ProgramText, reason: str) -> None:
+        self.problems[text.file] = reason
+        self._send(NotInstrumented(text.file, reason))
 
     @property
     def is_mutant(self) -> bool:
         """Whether an alternative is active."""
-        return bool(self.hook.alternatives.active)
+        return bool(self.alternatives.active)
 
     def start_test(self, test: str) -> None:
         """A test begins."""
-        if not self._begun:
-            self._note_early()
+        if self._test is None:  # what happened before any test
+            if self.sightings is not None:
+                self._tell_reached()
+            self.alternatives.keep()
         self._test, self._refusals, self._unknown = test, (), False
-        if self.hook.sightings is not None:
-            self.hook.sightings.start()
+        if self.sightings is not None:
+            self.sightings.start()
         else:
-            self.hook.alternatives.start()
+            self.alternatives.start()
 
     def watch(
         self, on_place: Callable[[int, frozenset[int]], None], live: Mapping[int, frozenset[int]]
     ) -> None:
         """In a fork parent: tell ``on_place`` which of the ``live`` alternatives of a place are to differ."""
-        self.hook.alternatives.on_place = on_place
-        self.hook.alternatives.watch(live)
+        self.alternatives.on_place = on_place
+        self.alternatives.watch(live)
 
     def end_test(self) -> None:
         """The test is over."""
-        if self.hook.sightings is not None:
+        if self.sightings is not None:
             self._tell_reached()
-        elif self.hook.alternatives.on_place is not None and not self.is_mutant:
-            self.hook.alternatives.watch({})  # what is reached between tests belongs to none
+        elif self.alternatives.on_place is not None and not self.is_mutant:
+            self.alternatives.watch({})  # what is reached between tests belongs to none
 
     def finish(self, others: Iterable[TextsSeen] = ()) -> None:
         """All tests are over; ``others`` is what was seen in processes below them."""
-        if self.hook.sightings is not None:
+        if self.sightings is not None:
             others = list(others)
-            imported = dict.fromkeys(
-                [*self.hook.imported, *(file for one in others for file in one.imported)]
-            )
-            seen = [*self.hook.sightings.seen(), *(seen for one in others for seen in one.sightings)]
-            self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
+            imported = dict.fromkeys([*self.imported, *(file for one in others for file in one.imported)])
+            seen = [*self.sightings.seen(), *(seen for one in others for seen in one.sightings)]
+            self._send(TextsSeen(tuple(imported), tuple(seen)))
 
     def become(self, choices: Iterable[Choice]) -> None:
         """In a process that was just forked: let these alternatives stand in the text, and watch none."""
-        self.hook.alternatives.on_place = None
-        self.hook.alternatives.activate(*choices)
-
-    @property
-    def hits(self) -> Mapping[int, int]:
-        """Evaluations in the running test of each place that was on."""
-        return self.hook.alternatives.hits
-
-    @property
-    def early(self) -> Mapping[int, int]:
-        """The same before any test."""
-        return {place: hits for place, (hits, _) in self._early.items()}
+        self.alternatives.on_place = None
+        self.alternatives.activate(*choices)
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
@@ -121,39 +191,40 @@ class SessionText:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test. One of several alternatives acts if all of them did."""
-        counts = [self._count(place) for place in self.hook.alternatives.active]
-        examples = self.hook.alternatives.examples
+        active, alternatives = self.alternatives.active, self.alternatives
         return Evidence(
-            hits=min((hits for hits, _ in counts), default=0),
-            acted=min((acted for _, acted in counts), default=0),
-            example=next(iter(examples.values()), self._early_example),
+            hits=min((alternatives.hits.get(place, 0) for place in active), default=0),
+            acted=min(map(alternatives.acted, active), default=0),
+            example=next(iter(alternatives.examples.values()), None),
             refusals=self._refusals,
             is_of_text=True,
             is_unknown=self._unknown,
         )
 
-    def _note_early(self) -> None:
-        self._begun = True
-        alternatives = self.hook.alternatives
-        if self.hook.sightings is not None:
-            self._tell_reached()
-        self._early = {place: self._count(place) for place in alternatives.hits}
-        self._early_example = next(iter(alternatives.examples.values()), None)
-
     def _tell_reached(self) -> None:
-        assert self.hook.sightings is not None
-        self.pipe.send(PlacesReached(self._test, tuple(sorted(self.hook.sightings.reached()))))
-
-    def _count(self, place: int) -> tuple[int, int]:
-        hits, acted = self._early.get(place, (0, 0))
-        alternatives = self.hook.alternatives
-        return hits + alternatives.hits.get(place, 0), acted + alternatives.acted(place)
+        assert self.sightings is not None
+        self._send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
 
     @property
     def has_acted(self) -> bool:
         """Whether all active alternatives have changed something in this test, or before any."""
-        return all(self._count(place)[1] for place in self.hook.alternatives.active)
+        return all(map(self.alternatives.acted, self.alternatives.active))
 
     def _acted(self, place: int) -> None:
         if self.has_acted:
             self._on_act()
+
+    def _send(self, event: Event) -> None:
+        if self.pipe is not None:
+            self.pipe.send(event)
+
+
+def _file_of(module: Any) -> str:
+    """A module's file; empty if it has none. Modules that are loaded when first used stay asleep."""
+    if not isinstance(module, ModuleType):
+        return ""
+    try:
+        file = object.__getattribute__(module, "__dict__").get("__file__")
+    except AttributeError:  # libraries of cffi claim to be modules
+        return ""
+    return file if isinstance(file, str) else ""

@@ -128,28 +128,11 @@ WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
 
 @dataclass(slots=True)
-class Candidate:
-    """An operation that a name may mean.
-
-    Attributes:
-        operation: the operation.
-        handler: what its calls go through.
-        adapter: reads its calls.
-        signature: what its arguments are, as the operation itself tells; None if it does not.
-    """
-
-    operation: Operation
-    handler: Handler
-    adapter: Adapter
-    signature: Signature | None = None
-
-
-@dataclass(slots=True)
 class Standing:
     """Decides what is called at the sites of one process.
 
     Args:
-        candidates: the operations that can be called.
+        adapters: of the operations that can be called.
         callables: where they were found.
         locator: whose file is whose.
         sees_itself: handlers of what sees its calls itself.
@@ -159,9 +142,10 @@ class Standing:
         noted: what is to be told of it; None if nobody asks.
         stood: operations that stood at sites which something was left alone at, or could be.
         alone: where something was left alone.
+        by_name: the operations by their last names.
     """
 
-    candidates: Iterable[Candidate]
+    adapters: Iterable[Adapter]
     callables: Callables
     locator: Locator
     sees_itself: Collection[Handler]
@@ -169,13 +153,13 @@ class Standing:
     noted: StandIns | None = None
     stood: dict[Span, str] = field(default_factory=dict)
     alone: set[Span] = field(default_factory=set)
-    _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
-    _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
+    by_name: dict[str, list[Adapter]] = field(default_factory=dict)
+    _signatures: dict[Adapter, Signature | None] = field(default_factory=dict)
     _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for one in self.candidates:
-            self._by_name.setdefault(last_name(one.operation), []).append(one)
+        for one in self.adapters:
+            self.by_name.setdefault(last_name(one.operation), []).append(one)
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is called at a site: ``found``, or what makes the same call as one of an operation."""
@@ -196,7 +180,7 @@ class Standing:
         """What must be as it is for the same to be left alone: all that names an operation, or its class."""
         here = frame.f_globals
         named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
-        for one in self._by_name[site.name]:
+        for one in self.by_name[site.name]:
             module, _, qualname = one.operation.target.partition(":")
             names, first = vars(sys.modules.get(module, sys)), qualname.partition(".")[0]
             named[id(names), first] = (names, first, names.get(first))
@@ -209,7 +193,7 @@ class Standing:
                 self._names_of(vars(module))
 
     def call(
-        self, one: Candidate, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
+        self, one: Adapter, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
         """Make a call of what was read from ``receiver`` as an operation's; ``where`` is of ``Where``."""
         __tracebackhide__ = True
@@ -225,62 +209,51 @@ class Standing:
 
     def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
         """Where a site stands."""
-        place = self._places.get(id(site))
-        if place is None:
+        if site.place is None:
             span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
-            place = self._places[id(site)] = (span, site.role)
-        return place
+            site.place = (span, site.role)
+        return site.place
 
-    @property
-    def names(self) -> Collection[str]:
-        """Last names of the operations."""
-        return self._by_name
-
-    def is_of_project(self, frame: FrameType) -> bool:
-        """Whether code of the program or of the oracle runs in a frame."""
-        return self.locator.role(frame.f_code.co_filename) is not None
-
-    def candidate_of(self, handler: Handler) -> Candidate | None:
+    def candidate_of(self, handler: Handler) -> Adapter | None:
         """The operation that this handler stands around."""
-        return next((one for ones in self._by_name.values() for one in ones if one.handler is handler), None)
+        return next((one for ones in self.by_name.values() for one in ones if one.handler is handler), None)
 
-    def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+    def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """The operation that stands at a site, if it does not see its calls itself."""
         if self._sees_itself(found):
             return None
         one = self.named(site.name, found, receiver, frame)
         if one is None and self.known:
             target = self.known.get(self.place(site, frame)[0])
-            one = next((one for one in self._by_name[site.name] if one.operation.target == target), None)
+            one = next((one for one in self.by_name[site.name] if one.operation.target == target), None)
         if one is None:
             self.alone.add(self.place(site, frame)[0])
         else:
             self.stood[self.place(site, frame)[0]] = one.operation.target
         return one
 
-    def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+    def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name in whose place something stands."""
         mock = mock_of(found)
         is_read = stands_for_property(mock)
-        ones = [one for one in self._by_name[name] if self._is_read(one) is is_read]
+        ones = [one for one in self.by_name[name] if self._is_read(one) is is_read]
         fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
         if fitting:
-            return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target][0].__mro__))
+            return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target].__mro__))
         fitting += [one for one in ones if self._means(one, found, receiver, frame)]
         if mock is not None:
             fitting += ones if len(ones) == 1 else [one for one in ones if self._is_mocked(one, mock)]
         fitting += [one for one in ones if one.operation.target.startswith(ANY)]
         return fitting[0] if fitting else None
 
-    def _is_read(self, one: Candidate) -> bool:
+    def _is_read(self, one: Adapter) -> bool:
         """Whether an operation is an attribute, which nobody calls."""
         return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
 
     def _sees_itself(self, found: Any) -> bool:
-        seen = self.sees_itself
-        return any(type(one) in WRAPPERS and one._self_wrapper in seen for one in _layers(found))
+        return any(handler in self.sees_itself for handler in _handlers(found))
 
-    def _is_of_class(self, one: Candidate, found: Any, receiver: Any, frame: FrameType) -> bool:
+    def _is_of_class(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Whether what is called is an attribute of an object of the operation's class."""
         if receiver is NOTHING and isinstance(found, MethodType):
             receiver = found.__self__
@@ -291,7 +264,7 @@ class Standing:
             return False
         return any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame))
 
-    def _kinds(self, one: Candidate, owner: type, frame: FrameType) -> Iterator[Any]:
+    def _kinds(self, one: Adapter, owner: type, frame: FrameType) -> Iterator[Any]:
         """The operation's class, and what was put in its place."""
         yield owner
         yield named_class(one.operation.target.rpartition(".")[0])
@@ -299,7 +272,7 @@ class Standing:
             if meant is owner:
                 yield frame.f_globals.get(name)
 
-    def _means(self, one: Candidate, found: Any, receiver: Any, frame: FrameType) -> bool:
+    def _means(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Whether what is called is what the operation's name means now, or a name that meant it first."""
         if self._owner(one) is None and named_class(one.operation.target) is found:
             return True
@@ -307,7 +280,7 @@ class Standing:
         names = frame.f_globals
         return any(value is one.handler and names.get(name) is found for name, value in meant)
 
-    def _is_mocked(self, one: Candidate, mock: Any) -> bool:
+    def _is_mocked(self, one: Adapter, mock: Any) -> bool:
         """Whether a mock tells by what it is made of that it stands for an operation."""
         wrapped = vars(mock).get("_mock_wraps")
         parent = vars(mock).get("_mock_parent") or vars(mock).get("_mock_new_parent")
@@ -315,9 +288,7 @@ class Standing:
         owner = self._owner(one)
         if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
             return True
-        return any(
-            type(layer) in WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
-        )
+        return any(handler is one.handler for handler in _handlers(wrapped))
 
     def _is_of_program(self, found: Any) -> bool:
         function = found.__func__ if isinstance(found, MethodType) else found
@@ -333,7 +304,7 @@ class Standing:
         """
         known = self._meant.get(id(names))
         if known is None:
-            owners = [owner for owner, _ in self.callables.owners.values()]
+            owners = self.callables.owners.values()
             found: dict[str, Any] = {}
             for name, value in list(names.items()):
                 if type(value) is wrapt.FunctionWrapper and value._self_wrapper in self.sees_itself:
@@ -343,22 +314,22 @@ class Standing:
             known = self._meant[id(names)] = (names, found)
         return known[1]
 
-    def _owner(self, one: Candidate) -> type | None:
-        owner = self.callables.owners.get(one.operation.target)
-        return owner[0] if owner is not None else None
+    def _owner(self, one: Adapter) -> type | None:
+        return self.callables.owners.get(one.operation.target)
 
-    def _signature_of(self, one: Candidate) -> Signature | None:
+    def _signature_of(self, one: Adapter) -> Signature | None:
+        """What the arguments are, as the operation itself tells; None if it does not, or is not found yet."""
         original = self.callables.found.get(one.operation.target)
-        if one.signature is None and original is not None:
+        if one not in self._signatures and original is not None:
             found = signature_of(getattr(original, "__func__", original))
             is_method = self._owner(one) is not None and not isinstance(original, staticmethod)
             if found is not None and is_method:
                 found = found.replace(parameters=list(found.parameters.values())[1:])
-            one.signature = found
-        return one.signature
+            self._signatures[one] = found
+        return self._signatures.get(one)
 
 
-def _is_of_objects(owner: type | None, one: Candidate) -> bool:
+def _is_of_objects(owner: type | None, one: Adapter) -> bool:
     """Whether an operation is a method of objects, rather than one of their class."""
     if owner is None:
         return False
@@ -366,11 +337,12 @@ def _is_of_objects(owner: type | None, one: Candidate) -> bool:
     return not isinstance(getattr(raw, "__wrapped__", raw), classmethod | staticmethod)
 
 
-def _layers(found: Any) -> Iterator[Any]:
-    """A callable, and what it is bound to or stands around."""
+def _handlers(found: Any) -> Iterator[Any]:
+    """What stands around a callable, or around what it is bound to or wraps."""
     for _ in range(9):
-        yield found
         kind = type(found)
+        if kind in WRAPPERS:
+            yield found._self_wrapper
         if kind is MethodType:
             found = found.__func__
         elif issubclass(kind, WRAPPERS) or (kind is FunctionType and "__wrapped__" in vars(found)):

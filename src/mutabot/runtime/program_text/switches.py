@@ -3,6 +3,10 @@
 The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
 else E``. ``__mutabot__`` is a plain list with False at places that are off, so these cost one look-up. It is
 a built-in name: modules keep the names they have.
+
+In a baseline the text becomes ``__mutabot__[0](p) or __mutabot__[p](E)``: the first call notes that the place
+is reached, whatever becomes of ``E``. A place is examined a few times per test; from then on the function
+there passes the value through, as cheaply as a call can.
 """
 
 from __future__ import annotations
@@ -12,14 +16,14 @@ import enum
 import numbers
 import sys
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from types import BuiltinFunctionType, CodeType, FrameType, FunctionType, MethodType, ModuleType
 from typing import Any, NoReturn
 
-from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice
+from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice, Sighting
 from mutabot.model.path import class_name
-from mutabot.runtime.program_text.foresee import Forms, locals_of, value_of
+from mutabot.runtime.program_text.foresee import Forms, locals_of
 
 
 @cache
@@ -86,7 +90,7 @@ class Alternatives:
 
     Attributes:
         active: index of the active alternative by place; more than one for mutants of higher order.
-        hits: evaluations of each place that was on.
+        hits: evaluations of each place that was on, in the running test and before any.
         idle: evaluations of each active place at which the alternative had the value of the original; of a
             watched place, those at which all alternatives that are still watched had it.
         examples: value of the original and of the alternative when they first differed, by place; of what
@@ -107,10 +111,10 @@ class Alternatives:
         self.hits: dict[int, int] = {}
         self.idle: dict[int, int] = {}
         self.examples: dict[int, tuple[Any, Any]] = {}
+        self._kept: tuple[dict[int, Any], ...] = ({}, {}, {})
         self._told: set[int] = set()
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
-        self._forms: dict[int, Forms | None] = {}
         self.on_act: Callable[[int], None] | None = None
         self.on_first: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
@@ -124,10 +128,14 @@ class Alternatives:
         self.active = {}
         self._set({})
 
+    def keep(self) -> None:
+        """Count what was counted so far in every test."""
+        self._kept = (self.hits, self.idle, self.examples)
+
     def start(self) -> None:
         """A new test begins: count anew."""
-        for counts in (self.hits, self.idle, self.examples, self._told):
-            counts.clear()
+        self.hits, self.idle, self.examples = map(dict, self._kept)
+        self._told.clear()
 
     def acted(self, place: int) -> int:
         """Evaluations at which the active alternative changed something, or raised."""
@@ -165,7 +173,7 @@ class Alternatives:
         """A place that is on is evaluated; whether an alternative stands for it."""
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
-        if hits == 1 and self.on_first is not None:
+        if self.on_first is not None and hits == 1 + self._kept[0].get(place, 0):
             self.on_first(place)
         if switch.watched:
             self._look_ahead(switch, frame)
@@ -188,20 +196,15 @@ class Alternatives:
 
     def foreseen(self, place: int, frame: FrameType) -> Any:
         """What the original gives, if that can be known without letting anything happen."""
-        forms = self._forms_of(place)
+        forms = self.forms(place)
         try:
-            return _UNKNOWN if forms is None else value_of(forms.original, frame)
+            return _UNKNOWN if forms is None else forms.original.value(frame)
         except Exception:  # it cannot be known; or only the original would have raised this
             return _UNKNOWN
 
-    def _forms_of(self, place: int) -> Forms | None:
-        if place not in self._forms:
-            self._forms[place] = self.forms(place)
-        return self._forms[place]
-
     def _differing(self, switch: Switch, frame: FrameType) -> frozenset[int]:
         """The watched alternatives that differ from the original, or may."""
-        forms = self._forms_of(switch.place)
+        forms = self.forms(switch.place)
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
         unforeseeable = frozenset(index for index in switch.watched if index < 0)
@@ -300,3 +303,118 @@ def kind_of(value: Any) -> str:
 def is_variable(value: Any) -> bool:
     """Whether a name with this value is a variable, not a module, function or class."""
     return not issubclass(type(value), _NO_VARIABLE)
+
+
+#: evaluations per test at which a place is looked at
+LOOKS = 20
+#: the same for the variables around a variable, which takes longer
+LOOKS_AROUND = 3
+
+
+def hand_through(value: Any) -> Any:
+    """What stands at places that have been looked at often enough."""
+    return value
+
+
+class Sightings:
+    """All places of the program, and what was seen there.
+
+    Attributes:
+        entered: places that were reached since the start of the test.
+        switches: what instrumented program text calls, by number of the place; item 0 notes what is reached.
+    """
+
+    def __init__(self, size: int, variables: Mapping[int, str]) -> None:
+        """``size``: the largest number of a place; ``variables``: names of the places that are variables."""
+        self._witnesses = [_Witness(self, place, variables.get(place)) for place in range(1, size + 1)]
+        self.entered: set[int] = set()
+        self._on_first: Callable[[int], None] | None = None
+        self.switches: list[Callable[[Any], Any]] = [self.entered.add, *self._witnesses]
+
+    def tell_first(self, on_first: Callable[[int], None]) -> None:
+        """Tell of each place when it is reached for the first time since the start of a test."""
+        self._on_first = on_first
+        self.switches[0] = self._enter
+
+    def _enter(self, place: int) -> None:
+        if place not in self.entered:
+            self.entered.add(place)
+            if self._on_first is not None:
+                self._on_first(place)
+
+    def install(self) -> None:
+        """Let instrumented program text find its switches."""
+        setattr(builtins, RUNTIME, self.switches)
+
+    def remove(self) -> None:
+        """Look no more."""
+        self.switches[1:] = [hand_through] * len(self._witnesses)
+
+    def start(self) -> None:
+        """A new test begins: look at every place anew."""
+        self.entered.clear()
+        for witness in self._witnesses:
+            witness.looks = witness.looks_around = 0
+        self.switches[1:] = self._witnesses
+
+    def seen(self) -> tuple[Sighting, ...]:
+        """What was seen so far, over all tests, by place."""
+        return tuple(witness.sighting() for witness in self._witnesses if witness.hits)
+
+
+class _Witness:
+    """Looks at one place.
+
+    Attributes:
+        place: its number.
+        looks, looks_around: since the start of the test.
+        hits: evaluations that were looked at, over all tests.
+    """
+
+    def __init__(self, owner: Sightings, place: int, variable: str | None) -> None:
+        self._owner, self.place, self._variable = owner, place, variable
+        self.hits = self.looks = self.looks_around = 0
+        self._types: set[type] = set()
+        self._kinds: set[str] = set()
+        self._variables: set[str] | None = None
+
+    def __call__(self, value: Any) -> Any:
+        self.hits += 1
+        self.looks += 1
+        if self.looks >= LOOKS:
+            self._owner.switches[self.place] = hand_through
+        kind = type(value)
+        if kind not in self._types:
+            self._types.add(kind)
+            self._kinds.add(kind_of(value))
+            self.looks_around = 0
+        if self._variable is not None and self.looks_around < LOOKS_AROUND:
+            self.looks_around += 1
+            self._look_around(value, sys._getframe(1))
+        return value
+
+    def sighting(self) -> Sighting:
+        """What was seen."""
+        kinds, variables = sorted(self._kinds), sorted(self._variables or ())
+        return Sighting(self.place, self.hits, tuple(kinds), tuple(variables))
+
+    def _look_around(self, value: Any, frame: FrameType) -> None:
+        names = set(_alike(value, frame)) - {self._variable} if is_variable(value) else set()
+        self._variables = names if self._variables is None else self._variables & names
+
+
+def _alike(value: Any, frame: FrameType) -> Iterator[str]:
+    """Names around a frame's instruction with a value of exactly this type.
+
+    Of the function's own names and the module's: to mention a name of a function further out would make
+    it a part of this one. So inside another function only such names of the module count as this one uses,
+    since any other could be one of the function around it.
+    """
+    code = frame.f_code
+    own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
+    allowed = code.co_names if "<locals>" in code.co_qualname else frame.f_globals
+    others = [one for one in list(frame.f_globals.items()) if one[0] in allowed and one[0] not in own]
+    for name, other in [*list(frame.f_locals.items()), *others]:
+        # comprehensions have names of their own, which are no identifiers
+        if type(other) is type(value) and name.isidentifier() and not name.startswith("__"):
+            yield name

@@ -84,7 +84,7 @@ class Callables(Targets):
         super().__init__(tell)
         self.pending: set[str] = set()
         self.found: dict[str, Any] = {}
-        self.owners: dict[str, tuple[type, str]] = {}
+        self.owners: dict[str, type] = {}
         self._undo: list[Undo] = []
         self._wrappers: list[tuple[Any, Any]] = []
         self._removed = False
@@ -155,18 +155,15 @@ class Callables(Targets):
         except (AttributeError, TypeError) as error:
             if not isinstance(owner, type):
                 raise NotCallableError(f"{target} cannot be intercepted: {error}") from error
-            self.found[target], self.owners[target] = original, (owner, name)
+            self.found[target], self.owners[target] = original, owner
             text = f"{target} cannot be wrapped ({error}): only calls that are written as such are seen"
             self._tell(target, Finding("call", text, is_remark=True))
             return
-        self._undo.append(
-            functools.partial(setattr, owner, name, original)
-            if own
-            else functools.partial(delattr, owner, name)
-        )
+        undo = functools.partial(setattr, owner, name, original) if own else None
+        self._undo.append(undo or functools.partial(delattr, owner, name))
         self.found[target] = original
         if isinstance(owner, type):
-            self.owners[target] = (owner, name)
+            self.owners[target] = owner
         self._wrappers.append((original, wrapper))
         if late:
             self._undo.extend(_rebind(list(sys.modules.values()), original, wrapper))
@@ -179,7 +176,9 @@ def not_imported(module: str, error: Exception, key: str = "call") -> Finding:
 
 def _wrapper(owner: Any, name: str, original: Any, handler: Handler) -> Any:
     if isinstance(original, property):
-        return _wrapped_property(original, handler)
+        if original.fget is None:
+            raise NotCallableError("it is a property that cannot be read")
+        return original.getter(wrapt.FunctionWrapper(original.fget, _as_getter(handler)))
     if isinstance(original, functools.cached_property):
         cached = functools.cached_property(wrapt.FunctionWrapper(original.func, _as_getter(handler)))
         cached.__set_name__(owner, name)
@@ -189,13 +188,6 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler) -> Any:
     if not callable(original) and not isinstance(original, classmethod | staticmethod):
         raise NotCallableError(f"{name!r} is {type(original).__name__}, which cannot be called")
     return wrapt.FunctionWrapper(original, handler)
-
-
-def _wrapped_property(original: property, handler: Handler) -> property:
-    if original.fget is None:
-        raise NotCallableError("it is a property that cannot be read")
-    getter = wrapt.FunctionWrapper(original.fget, _as_getter(handler))
-    return property(getter, original.fset, original.fdel, original.__doc__)
 
 
 def _as_getter(handler: Handler) -> Handler:

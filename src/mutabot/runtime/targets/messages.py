@@ -39,25 +39,16 @@ from mutabot.runtime.targets.target import (
     Where,
 )
 
-#: what did not happen under a name, for the forms that vocabularies speak of
-_NOTHING = {
-    Form.PUBLISH: "no test published {}",
-    Form.RECEIVE: "no test received anything on {}",
-    Form.CALL: "no test called the service {}",
-    Form.GOAL: "no test sent a goal to {}",
-    Form.PARAMETER: "no test read the parameter {}",
-    Form.TICK: "no test was called back by a timer as {}",
-    Form.SLEEP: "no test slept by a rate in {}",
-    Form.TRANSFORM: "no test looked up the transform {}",
-}
-#: what is set up for a form: it tells of a name as well
-_SET_UP = {
-    Form.PUBLISH: Form.ADVERTISE,
-    Form.RECEIVE: Form.SUBSCRIBE,
-    Form.CALL: Form.CLIENT,
-    Form.GOAL: Form.CLIENT,
-    Form.TICK: Form.TIMER,
-    Form.SLEEP: Form.RATE,
+#: of the forms that vocabularies speak of: what did not happen under a name, and what is set up for it
+_FORMS: dict[Form, tuple[str, Form | None]] = {
+    Form.PUBLISH: ("no test published {}", Form.ADVERTISE),
+    Form.RECEIVE: ("no test received anything on {}", Form.SUBSCRIBE),
+    Form.CALL: ("no test called the service {}", Form.CLIENT),
+    Form.GOAL: ("no test sent a goal to {}", Form.CLIENT),
+    Form.PARAMETER: ("no test read the parameter {}", None),
+    Form.TICK: ("no test was called back by a timer as {}", Form.TIMER),
+    Form.SLEEP: ("no test slept by a rate in {}", Form.RATE),
+    Form.TRANSFORM: ("no test looked up the transform {}", None),
 }
 #: forms by which a process hears what is said under a name
 _LISTENING = (Form.RECEIVE, Form.SUBSCRIBE, Form.GOAL, Form.CLIENT, Form.RESULT)
@@ -106,10 +97,6 @@ class Messages(Targets):
         """A message passed under a resolved name, as it is in truth; see ``target.Names``."""
         if self.on_heard is not None:
             self.on_heard(name, message)
-
-    def tell(self, target: str, finding: Finding) -> None:
-        """Say what is wrong with a target that was found."""
-        self._tell(target, finding)
 
     def remove(self) -> None:
         """Take all hooks away."""
@@ -165,11 +152,10 @@ class Messages(Targets):
 def unused(wanted: Collection[Named], used: Collection[Named]) -> Iterator[tuple[str, Finding]]:
     """Tell of each operation of the vocabulary that was never used, with what was used instead."""
     for named in wanted:
-        text = _NOTHING.get(named.form)
-        if text is None or any(named.fits(one.form, one.name, one.node) for one in used):
+        if named.form not in _FORMS or any(named.fits(one.form, one.name, one.node) for one in used):
             continue
         where = f" in a node {named.node}" if named.node is not None else ""
-        sentence = f"{text.format(named.name)}{where}; {_instead(named, used)}"
+        sentence = f"{_FORMS[named.form][0].format(named.name)}{where}; {_instead(named, used)}"
         yield named.target, Finding(named.form.value, sentence, is_remark=True)
 
 
@@ -186,7 +172,7 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
 
 def _instead(named: Named, used: Collection[Named]) -> str:
     """Say what was used or set up for the same, nearest first."""
-    wanted = (_SET_UP.get(named.form), named.form)  # of one name, what was done is told, not what was set up
+    wanted = (_FORMS[named.form][1], named.form)  # of one name, what was done is told, not what was set up
     told = sorted((wanted.index(one.form), one.target, one.name) for one in used if one.form in wanted)
     alike = {name: target for _, target, name in told}
     if not alike:

@@ -10,13 +10,14 @@ import re
 import sys
 import textwrap
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.model import ANY
 from mutabot.model.path import class_name
-from mutabot.model.signature import parse_signature, takes_anything
+from mutabot.model.signature import parse_signature, signature_of, takes_anything
 from mutabot.model.watched import WatchedCallable
 from mutabot.runtime.targets.target import NotFoundError, resolve
 
@@ -55,9 +56,8 @@ class Callee:
 
     @functools.cached_property
     def _told(self) -> tuple[inspect.Signature | None, bool]:
-        try:
-            signature = inspect.signature(_function(self.raw))
-        except (TypeError, ValueError):
+        signature = signature_of(_function(self.raw))
+        if signature is None:
             documented = self._documented()
             return documented, documented is not None
         parameters = list(signature.parameters.values())
@@ -66,17 +66,19 @@ class Callee:
         return signature.replace(parameters=parameters), False
 
     def _documented(self) -> inspect.Signature | None:
-        """The signature in a docstring; of several overloads, that with most arguments."""
+        """Return the signature in a docstring; of several overloads, that with most arguments."""
         text = _OBJECT.sub("...", getattr(_function(self.raw), "__doc__", None) or "")
         name = self.target.rpartition(":")[2].rpartition(".")[2]
         found = []
         for part in _OVERLOAD.split(text):
-            names = dict(enumerate(_NAMES.findall(part)))
-            named = _UNNAMED.sub(lambda match, names=names: names.get(int(match[1]), match[0]), part)
-            signature = described_in(named, name)
-            if signature is not None and not takes_anything(signature):
-                found.append(signature)
-        return max(found, key=lambda one: len(one.parameters), default=None)
+            first = part.strip().partition("\n")[0].strip()
+            if first.startswith(f"{name}("):
+                names = dict(enumerate(_NAMES.findall(part)))
+                named = _UNNAMED.sub(lambda match, names=names: names.get(int(match[1]), match[0]), first)
+                with suppress(ValueError):
+                    found.append(parse_signature(named.removeprefix(name).rstrip(":.")))
+        telling = (one for one in found if not takes_anything(one))
+        return max(telling, key=lambda one: len(one.parameters), default=None)
 
 
 def meant_by(kind: type, name: str) -> Callee | None:
@@ -147,7 +149,6 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
         is_documented=callee.is_documented,
         annotations={one.name: _written(one.annotation) for one in parameters if one.name != "self"},
         returns=_written(signature.return_annotation) if signature is not None else "",
-        problem=_problem(callee),
         raised=list(dict.fromkeys(_raised_by(function))),
         stands_in=callee.stands_in,
     )
@@ -189,19 +190,6 @@ def _written(annotation: Any) -> str:
     return annotation.__name__ if isinstance(annotation, type) else str(annotation).replace("typing.", "")
 
 
-def _problem(callee: Callee) -> str:
-    """Why its calls cannot be intercepted; empty if they can."""
-    if callee.target.startswith(ANY) or callee.stands_in:
-        return ""
-    module, _, qualname = callee.target.partition(":")
-    owner, name, raw = resolve(sys.modules[module], qualname)
-    try:
-        setattr(owner, name, raw)  # what it is already: nothing changes
-    except (AttributeError, TypeError):
-        return "a method of a type written in C cannot be replaced: wrap it in a function of your own"
-    return ""
-
-
 def _raised_by(function: Any) -> Iterator[str]:
     """Exceptions that its text raises."""
     try:
@@ -226,17 +214,6 @@ def spell_signature(signature: inspect.Signature) -> str:
         if parameter.name not in ("self", "cls")
     ]
     return str(inspect.Signature(parameters))
-
-
-def described_in(documentation: str | None, name: str) -> inspect.Signature | None:
-    """The signature that the first line of a native callable's documentation gives, or None."""
-    first = (documentation or "").strip().partition("\n")[0].strip()
-    if not first.startswith(f"{name}("):
-        return None
-    try:
-        return parse_signature(first.removeprefix(name).rstrip(":."))
-    except ValueError:
-        return None
 
 
 class _Unknown:

@@ -37,8 +37,7 @@ def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
     """
     folder = os.path.join(os.path.dirname(path), FOLDER)
     os.mkdir(folder)
-    with open(os.path.join(folder, _ORDER), "w", encoding="utf-8", errors="surrogateescape") as file:
-        json.dump(order, file)
+    write(os.path.join(folder, _ORDER), order)
     names = {name.rpartition("/")[2].removesuffix(".py") for name in order["program"].values()}
     folders = {part for name in order["program"].values() for part in name.split("/")[:-1]}
     write_wake(folder, __name__, names | folders, order["program"])
@@ -48,8 +47,7 @@ def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
 
 def join(folder: str) -> None:
     """Watch this process, which turned out to be of interest."""
-    with open(os.path.join(folder, _ORDER), encoding="utf-8", errors="surrogateescape") as file:
-        order = json.load(file)
+    order = read(os.path.join(folder, _ORDER))
     extensions.use(order["extensions"])
     written = [time.monotonic()]
     writing = threading.Lock()
@@ -59,43 +57,46 @@ def join(folder: str) -> None:
             try:
                 written[0] = time.monotonic()
                 with suppress(RuntimeError):  # another thread sees something new in the midst of it
-                    write()
+                    write_all()
             finally:
                 writing.release()
 
-    watch = Watch(order["program"], order["tests"], order["libraries"], pulse)
+    watch = Watch.of(order, pulse)
     watch.install()
     hook_script()
     leave = os._exit
 
-    def write() -> None:
-        write_seen(os.path.join(folder, f"{os.getpid()}{_SEEN}"), to_data(watch.data()))
+    def write_all() -> None:
+        write(os.path.join(folder, f"{os.getpid()}{_SEEN}"), to_data(watch.data()))
 
     def leave_at_once(status: int) -> None:
-        write()
+        write_all()
         leave(status)
 
     def end(number: int, frame: FrameType | None) -> None:
         sys.exit(128 + number)
 
-    atexit.register(write)
+    atexit.register(write_all)
     os._exit = leave_at_once  # type: ignore[assignment]
     if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
         signal.signal(signal.SIGTERM, end)  # else nothing would be written
 
 
-def write_seen(path: str, data: dict[str, Any]) -> None:
-    """Write what was seen, all of it or nothing."""
+def write(path: str, data: Mapping[str, Any]) -> None:
+    """Write data as JSON, all of it or nothing."""
     with open(f"{path}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
         json.dump(data, file, default=str)
     os.replace(f"{path}.new", path)
 
 
+def read(path: str) -> dict[str, Any]:
+    """Read data that ``write`` has written."""
+    with open(path, encoding="utf-8", errors="surrogateescape") as file:
+        data: dict[str, Any] = json.load(file)
+    return data
+
+
 def seen_elsewhere(folder: str) -> list[dict[str, Any]]:
-    """What processes saw, each as the data of a ``Seen``."""
-    found: list[dict[str, Any]] = []
-    for name in sorted(os.listdir(folder)):
-        if name.endswith(_SEEN):
-            with open(os.path.join(folder, name), encoding="utf-8", errors="surrogateescape") as file:
-                found.append(json.load(file))
-    return found
+    """Return what processes saw, each as the data of a ``WatchedCalls``."""
+    names = sorted(name for name in os.listdir(folder) if name.endswith(_SEEN))
+    return [read(os.path.join(folder, name)) for name in names]

@@ -6,7 +6,6 @@ What it found is written to a file as JSON, together with what processes below t
 
 from __future__ import annotations
 
-import json
 import os
 import time
 from typing import Any
@@ -18,7 +17,7 @@ from mutabot.errors import MutabotError
 from mutabot.model.codec import to_data
 from mutabot.model.watched import WATCH_VARIABLE
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.watching.elsewhere import seen_elsewhere, watch_elsewhere, write_seen
+from mutabot.runtime.watching.elsewhere import read, seen_elsewhere, watch_elsewhere, write
 from mutabot.runtime.watching.watch import Watch
 
 #: least seconds between two writings of what was found so far
@@ -61,7 +60,7 @@ class _Plugin:
         for other in seen_elsewhere(self._folder):
             for key in ("calls", "uses", "reached"):
                 found[key] += other[key]
-        write_seen(self._output, found)
+        write(self._output, found)
         self._written = time.monotonic()
 
 
@@ -78,10 +77,9 @@ def pytest_load_initial_conftests(early_config: Any) -> None:
     path = os.environ.pop(WATCH_VARIABLE, None)
     if path is None:
         return
-    with open(path, encoding="utf-8", errors="surrogateescape") as file:
-        order = json.load(file)
+    order = read(path)
     extensions.use(order["extensions"])
-    watch = Watch(order["program"], order["tests"], order["libraries"])
+    watch = Watch.of(order)
     watch.install()
     folder = watch_elsewhere(path, order)
     problems = []

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from mutabot.model.quantity import seconds_of
 from mutabot.model.watched import Values, WatchedPart
 
 #: different values that are kept of each part, elements of a sequence, parts of a value
@@ -18,8 +19,6 @@ _LONGEST = 80
 _LARGEST = 4096
 #: parts of an object that is no declared record but may be one
 _MOST_FIELDS = 12
-#: how the two generations of ROS call whole seconds and the rest
-_MOMENTS = (("secs", "nsecs"), ("sec", "nanosec"))
 #: messages that mean something only as a whole
 _WHOLE = frozenset({"geometry_msgs/Quaternion"})
 #: what is worth a look in objects of a package written in C
@@ -68,7 +67,10 @@ def type_of(value: Any) -> str:
 def _parts(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
     value = plain(value)
     declared, part.type = part.type, part.type or type_of(value)
-    seconds = _seconds(value)
+    is_stamp = hasattr(type(value), "sec") or hasattr(
+        type(value), "secs"
+    )  # the type's: a mock has any attribute
+    seconds = seconds_of(value) if is_stamp else None
     if value is None:
         return
     if seconds is not None or isinstance(value, bool | int | float | str):
@@ -161,15 +163,6 @@ def _message_fields(value: Any) -> Mapping[str, str] | None:
         return dict(zip(kind.__slots__, kind._slot_types, strict=True))
     if hasattr(kind, "get_fields_and_field_types"):
         return dict(kind.get_fields_and_field_types())
-    return None
-
-
-def _seconds(value: Any) -> float | None:
-    """A moment or a span of time of ROS, in seconds; None for anything else."""
-    kind = type(value)
-    for whole, rest in _MOMENTS:
-        if hasattr(kind, whole) and hasattr(kind, rest):
-            return float(getattr(value, whole) + getattr(value, rest) * 1e-9)
     return None
 
 

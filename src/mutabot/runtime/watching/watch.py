@@ -1,120 +1,38 @@
-"""What one process sees of the calls in some files: which callables, with which values.
+"""What one process sees of the calls in some files: which callables and names of a middleware, which values.
 
-Every call and every attribute that is read asks the watch first: ``arm.move(1)`` becomes
-``__mutabot_method__(arm, 'move', 7)(1)``, where 7 is the place; a function's name likewise. Nothing is
-written: the text is changed while it is imported, and nothing changes that the program can see.
+Every call, and every attribute that is read, asks the watch first: see ``program_text.call_sites``. Nothing
+changes that the program can see. What is done under the names of a middleware passes the hooks of a campaign
+(``runtime.targets.messages``).
 """
 
 from __future__ import annotations
 
-import ast
-import builtins
-import functools
 import inspect
-import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
+from functools import cache, cached_property
 from types import FrameType, ModuleType
 from typing import Any
 
+from mutabot.model import Role, Span
+from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.path import class_name
-from mutabot.model.watched import Command, Values, WatchedCallable, WatchedCalls
+from mutabot.model.watched import Command, Use, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
+from mutabot.runtime.interception.dispatcher import Aside, is_under_way
+from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text import loading as scripts
-from mutabot.runtime.targets.target import Where
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import NOWHERE, Handler, Where
 from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
-from mutabot.runtime.watching.names import NamesSeen
 from mutabot.runtime.watching.values import look, plain
-
-METHOD, NAME, READ = "__mutabot_method__", "__mutabot_name__", "__mutabot_read__"
-#: these look at the frame that calls them
-_BOUND_TO_FRAME = frozenset({"super", "locals", "globals", "vars", "dir", "eval", "exec", "breakpoint"})
-
-
-class _Watched:
-    """Puts the watch into files while they are compiled. See ``loading.Step``."""
-
-    def __init__(self, files: Mapping[str, str], new_place: Callable[[str, int], int]) -> None:
-        self._files, self._new_place = files, new_place
-
-    def wants(self, path: str) -> bool:
-        """Whether the file is to be watched."""
-        return os.path.realpath(path) in self._files
-
-    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Let every call and every attribute that is read ask the watch first."""
-        name = self._files[os.path.realpath(path)]
-        watch(tree, lambda line: self._new_place(name, line))
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """What cannot be compiled says so itself."""
-
-
-def watch(tree: ast.Module, place: Callable[[int], int]) -> None:
-    """Put the watch into a tree."""
-    ast.fix_missing_locations(_Watcher(place).visit(tree))
-
-
-class _Watcher(ast.NodeTransformer):
-    """Puts the watch into a tree."""
-
-    def __init__(self, place: Callable[[int], int]) -> None:
-        self._place = place
-
-    def visit_Call(self, node: ast.Call) -> ast.expr:
-        node.args = [self.visit(one) for one in node.args]
-        for keyword in node.keywords:
-            keyword.value = self.visit(keyword.value)
-        match node.func:
-            case ast.Attribute(value=inner, attr=name) if not name.startswith("_"):
-                node.func = self._asked(METHOD, node.func, self.visit(inner), ast.Constant(name))
-            case ast.Name(id=name) if name not in _BOUND_TO_FRAME:
-                node.func = self._asked(NAME, node.func, node.func)
-            case _:
-                node.func = self.visit(node.func)
-        return node
-
-    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
-        node.value = self.visit(node.value)
-        if not isinstance(node.ctx, ast.Load) or node.attr.startswith("_"):
-            return node
-        return self._asked(READ, node, node.value, ast.Constant(node.attr))
-
-    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AnnAssign:
-        node.value = self.visit(node.value) if node.value is not None else None
-        return node
-
-    def visit_arg(self, node: ast.arg) -> ast.arg:
-        return node  # an annotation may be read as text
-
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
-        return self._function(node)
-
-    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AST:
-        return self._function(node)
-
-    def visit_match_case(self, node: ast.match_case) -> ast.match_case:
-        node.guard = self.visit(node.guard) if node.guard is not None else None
-        node.body = [self.visit(one) for one in node.body]
-        return node
-
-    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:
-        node.decorator_list = [self.visit(one) for one in node.decorator_list]
-        self.visit(node.args)
-        node.body = [self.visit(one) for one in node.body]
-        return node
-
-    def _asked(self, function: str, at: ast.expr, *arguments: ast.expr) -> ast.Call:
-        place = ast.Constant(self._place(at.end_lineno or at.lineno))
-        asked = ast.Call(ast.Name(function, ast.Load()), [*arguments, place], [])
-        return ast.copy_location(asked, at)
-
 
 #: calls of one callable whose values are looked at; more are only counted
 MOST_CALLS = 300
@@ -144,10 +62,6 @@ class _Seen:
 
     callee: Callee
     call: WatchedCallable
-    is_coroutine: bool
-    returns_coroutine: bool = False
-    looked_at: int = 0
-    raised: dict[str, None] = field(default_factory=dict)
     has_no_commands: bool = False
 
 
@@ -155,11 +69,103 @@ class _Seen:
 _under_way: ContextVar[tuple[_Seen, ...]] = ContextVar("mutabot_watched_calls", default=())
 
 
+#: uses of one name whose messages are looked at; more are only counted
+_MOST_USES = 300
+_LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
+
+
+class NamesSeen(Messages):
+    """All that the program and the tests do under names.
+
+    Args:
+        locator: tells whose file is whose.
+        passed: told of each use: calls that are under way lead to it.
+        pulse: called now and then, while nothing is held.
+    """
+
+    def __init__(
+        self,
+        locator: Locator,
+        passed: Callable[[], None],
+        pulse: Callable[[], None],
+    ) -> None:
+        self._locator, self._passed, self._pulse = locator, passed, pulse
+        self.uses: dict[tuple[Form, str, bool, bool], Use] = {}
+        self._lock = threading.RLock()
+        super().__init__(lambda target, finding: None)
+
+    def find(self, form: Form, name: str, node: str | None) -> Handler | None:
+        """What looks at a use; None where something is set up, which is noted at once."""
+        self._passed()
+        if form in SETTING_UP and not is_under_way():
+            self._use(form, name, self._locator.locate(sys._getframe(1)), False)
+        if form not in _LOOKED_AT:
+            return None
+
+        def handle(
+            wrapped: Callable[..., Any],
+            instance: Any,
+            args: tuple[Any, ...],
+            kwargs: dict[str, Any],
+            where: Where = NOWHERE,
+        ) -> Any:
+            if is_under_way():
+                return wrapped(*args, **kwargs)
+            code, locator = where.code, self._locator
+            place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
+            use = self._use(form, name, place, code is not None)
+            if use is not None and args:
+                self._look(use.written, args[0])
+            if inspect.iscoroutinefunction(wrapped):
+                return self._awaited(use, wrapped(*args, **kwargs))
+            with Aside(None):  # only the outermost counts, as in a campaign
+                result = wrapped(*args, **kwargs)
+            self._answer(use, result)
+            return result
+
+        return handle
+
+    def _use(
+        self, form: Form, name: str, place: tuple[Span, Role] | None, is_called_back: bool
+    ) -> Use | None:
+        """The use that a place is one of, if its message is to be looked at."""
+        if place is None:
+            return None
+        self._pulse()
+        span, role = place
+        with self._lock:
+            key = (form, name, role is Role.ORACLE, is_called_back)
+            use = self.uses.setdefault(key, Use(*key))
+            where = f"{span.file}:{span.line}"
+            use.sites[where] = use.sites.get(where, 0) + 1
+            return use if sum(use.sites.values()) <= _MOST_USES else None
+
+    async def _awaited(self, use: Use | None, waiting: Any) -> Any:
+        result = await waiting
+        self._answer(use, result)
+        return result
+
+    def _answer(self, use: Use | None, result: Any) -> None:
+        if use is not None and (use.form not in WRITTEN or use.form is Form.CALL):
+            self._look(use.read, result)
+
+    def _look(self, values: Values, value: Any) -> None:
+        with self._lock, suppress(Exception):  # looking at values must not disturb the program
+            look(values, value, message=True)
+
+
+class _Public:
+    """All names that are not private."""
+
+    def __contains__(self, name: object) -> bool:
+        return not str(name).startswith("_")
+
+
 class Watch:
     """What is seen of the calls in some files.
 
     Args:
-        program, tests: real paths to names for people.
+        locator: tells whose file is whose.
         libraries: client libraries of middlewares, with ``*`` for any text: what is done through them has a
             name of its own.
         pulse: called whenever something is seen, while nothing is held.
@@ -167,151 +173,107 @@ class Watch:
 
     def __init__(
         self,
-        program: dict[str, str],
-        tests: dict[str, str],
+        locator: Locator,
         libraries: Iterable[str] = (),
         pulse: Callable[[], None] = lambda: None,
     ) -> None:
-        self._program, self._tests, self._libraries, self._pulse = program, tests, tuple(libraries), pulse
-        self._places: list[tuple[str, int]] = []
-        self._numbers: dict[tuple[str, int], int] = {}
+        self._locator, self._libraries, self._pulse = locator, tuple(libraries), pulse
         self._seen: dict[tuple[str, bool], _Seen] = {}
-        self._known: dict[tuple[Any, str], Callee | None] = {}
-        self._patches: dict[tuple[str, str], type | None] = {}
-        self._reached: dict[tuple[int, str], None] = {}
+        self._method_of = cache(method_of)
+        self._only_class = cache(_only_class)
+        self._reached: dict[tuple[str, int, str], None] = {}
         self._names: NamesSeen | None = None
-        self._files: dict[str, tuple[str, bool] | None] = {}
+        self.sites = CallSites(_Public(), locator.role, self.called, hands=self.read, are_read=True)
+
+    @classmethod
+    def of(cls, order: Mapping[str, Any], pulse: Callable[[], None] = lambda: None) -> Watch:
+        """Return the watch of a process; ``order`` is what ``mutabot init`` asks for."""
+        program, tests = (tuple(order[kind].values()) for kind in ("program", "tests"))
+        return cls(Locator(order["root"], program, tests), order["libraries"], pulse)
 
     def install(self) -> None:
         """Watch what is imported from now on."""
-        self._names = NamesSeen(self._place_of, self._leads, self._pulse)
-        setattr(builtins, METHOD, self.method)
-        setattr(builtins, NAME, self.named)
-        setattr(builtins, READ, self.read)
-        loading.add(_Watched({**self._program, **self._tests}, self._place))
-        scripts.hook_runpy()
+        self._names = NamesSeen(self._locator, self._leads, self._pulse)
+        self.sites.install()
+        loading.hook_runpy()
 
-    def method(self, value: Any, name: str, place: int) -> Any:
-        """``value.name`` is about to be called."""
-        found = getattr(value, name)
-        self._reached[place, name] = None
+    def called(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """Return what is called in the place of ``found``, which was read from ``receiver``."""
+        is_plain = receiver is NOTHING
+        self._reached[*self._place(site), "" if is_plain else site.name] = None
         if isinstance(found, type):
             return found
-        callee = self._method(value, name)
-        if not self._is_of_tests(place):
-            callee = self._stood_for(value, name, callee, found)
-        return self._wrapped(found, self._of(callee, place), place)
+        callee = function_of(found) if is_plain else self._method(receiver, site.name)
+        if not is_plain and site.role is Role.PROGRAM:
+            callee = self._stood_for(receiver, site.name, callee, found)
+        return self._wrapped(found, self._of(callee, site), site)
 
-    def named(self, function: Any, place: int) -> Any:
-        """A function is about to be called by its name."""
-        self._reached[place, ""] = None
-        if isinstance(function, type):
-            return function
-        return self._wrapped(function, self._of(function_of(function), place), place)
-
-    def read(self, value: Any, name: str, place: int) -> Any:
-        """``value.name`` is read."""
-        found = getattr(value, name)
-        raw = inspect.getattr_static(type(value), name, None)
-        if isinstance(raw, property | functools.cached_property):
-            seen = self._of(method_of(value, name), place)
-            if seen is not None and self._counts(seen, place):
+    def read(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """Note that an attribute was read from ``receiver``."""
+        raw = inspect.getattr_static(type(receiver), site.name, None)
+        if isinstance(raw, property | cached_property):
+            seen = self._of(method_of(receiver, site.name), site)
+            if seen is not None and self._counts(seen, site):
                 self._answer(seen, found)
         return found
 
     def data(self) -> WatchedCalls:
         """What was seen: callables, what was done under names, and all places that were come by."""
         uses = list(self._names.uses.values()) if self._names is not None else []
-        reached = [(*self._places[place], name) for place, name in list(self._reached)]
-        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses, reached)
-
-    def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
-        """File, line and side of a frame or the nearest one around it, or of what is called back."""
-        if where is not None and where.code is not None:
-            found = self._side(where.code.co_filename)
-            return (found[0], where.code.co_firstlineno, found[1]) if found is not None else None
-        while frame is not None:
-            found = self._side(frame.f_code.co_filename)
-            if found is not None:
-                return found[0], frame.f_lineno, found[1]
-            frame = frame.f_back
-        return None
-
-    def _side(self, file: str) -> tuple[str, bool] | None:
-        """A file's name for people, and whether it is on the tests' side; None if it is on none."""
-        if file not in self._files:
-            real = os.path.realpath(file)
-            name = self._program.get(real, self._tests.get(real))
-            self._files[file] = (name, real not in self._program) if name is not None else None
-        return self._files[file]
+        return WatchedCalls(
+            [self._call(seen) for seen in list(self._seen.values())], uses, list(self._reached)
+        )
 
     def _leads(self) -> None:
         """Something is done under a name: the calls that are under way lead to it."""
         for seen in _under_way.get():
             seen.call.leads_to_names = True
 
-    def _place(self, file: str, line: int) -> int:
-        if (file, line) not in self._numbers:
-            self._numbers[file, line] = len(self._places)
-            self._places.append((file, line))
-        return self._numbers[file, line]
+    def _place(self, site: CallSite) -> tuple[str, int]:
+        return self._locator.relative(site.path), site.extent[0]
+
+    def _is_of_tests(self, callee: Callee) -> bool:
+        return self._locator.role(callee.file) is Role.ORACLE
 
     def _method(self, value: Any, name: str) -> Callee | None:
         """A method by its name; looked up once for each class."""
         if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
             return method_of(value, name)
-        key = (value if isinstance(value, type) else type(value), name)
-        if key not in self._known:
-            self._known[key] = method_of(value, name)
-        return self._known[key]
+        return self._method_of(value if isinstance(value, type) else type(value), name)
 
     def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
         """What a mock or a class of the tests stands for: the robot's callable, or any of its name."""
         if is_mock(value):
-            kind = vars(value).get("_spec_class") or self._patched(value._extract_mock_name(), name)
+            spelt = re.split(r"\W", value._extract_mock_name())[0]
+            kind = vars(value).get("_spec_class") or self._only_class(spelt, name)
             return (meant_by(kind, name) if kind is not None else None) or any_method(name)
         if is_mock(found) and isinstance(value, type | ModuleType):
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
             is_class = name[:1].isupper()
             return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
-        if callee is None or callee.owner is None or callee.file not in self._tests:
+        if callee is None or callee.owner is None or not self._is_of_tests(callee):
             return callee
         meant = (meant_by(kind, name) for kind in callee.owner.__mro__[1:-1])
-        robots = next((one for one in meant if one is not None and one.file not in self._tests), None)
+        robots = next((one for one in meant if one is not None and not self._is_of_tests(one)), None)
         return robots or any_method(name, callee)
 
-    def _patched(self, spelt: str, name: str) -> type | None:
-        """The class that a mock of this name stands for: the only one of that name with such a method."""
-        root = re.split(r"\W", spelt)[0]
-        if (root, name) in self._patches:
-            return self._patches[root, name]
-        kinds = {
-            id(kind): kind
-            for module in list(sys.modules.values())
-            for kind in [getattr(module, "__dict__", {}).get(root)]
-            if isinstance(kind, type) and kind.__name__ == root and callable(getattr(kind, name, None))
-        }
-        self._patches[root, name] = next(iter(kinds.values())) if len(kinds) == 1 else None
-        return self._patches[root, name]
-
-    def _of(self, callee: Callee | None, place: int) -> _Seen | None:
+    def _of(self, callee: Callee | None, site: CallSite) -> _Seen | None:
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
         if callee is None:
             return None
-        key = (callee.target, self._is_of_tests(place))
+        key = (callee.target, site.role is Role.ORACLE)
         known = self._seen.get(key)
         if known is None or (known.callee.raw is None and callee.raw is not None):
             top = callee.target.partition(":")[0].partition(".")[0]
             if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
                 return None
-            call = described(callee, of_tests=key[1], own=callee.file in self._program)
+            call = described(callee, of_tests=key[1], own=self._locator.role(callee.file) is Role.PROGRAM)
             call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
-            is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
-            known = self._seen[key] = _Seen(callee, call, is_coroutine)
+            known = self._seen[key] = _Seen(callee, call)
         return known
 
-    def _wrapped(self, function: Any, seen: _Seen | None, place: int) -> Any:
-        if seen is None or not self._counts(seen, place):
+    def _wrapped(self, function: Any, seen: _Seen | None, site: CallSite) -> Any:
+        if seen is None or not self._counts(seen, site):
             return function
 
         instance = getattr(function, "__self__", None)
@@ -321,16 +283,10 @@ class Watch:
             with suppress(Exception):  # looking at values must not disturb the program
                 values = self._arguments(seen, args, kwargs, instance)
                 command = _command(seen, instance, values)
-            token = _under_way.set((*_under_way.get(), seen))
-            try:
+            with _making(seen):
                 result = function(*args, **kwargs)
-            except Exception as error:
-                seen.raised[class_name(type(error))] = None
-                raise
-            finally:
-                _under_way.reset(token)
             if inspect.iscoroutine(result):
-                seen.returns_coroutine = not seen.is_coroutine
+                self._check_coroutine(seen)
                 return self._awaited(seen, command, result)
             self._answer(seen, result, command)
             return result
@@ -338,31 +294,26 @@ class Watch:
         return watched
 
     async def _awaited(self, seen: _Seen, command: Command | None, waiting: Any) -> Any:
-        token = _under_way.set((*_under_way.get(), seen))
-        try:
+        with _making(seen):
             result = await waiting
-        except Exception as error:
-            seen.raised[class_name(type(error))] = None
-            raise
-        finally:
-            with suppress(ValueError):  # a coroutine that is closed from elsewhere
-                _under_way.reset(token)
         self._answer(seen, result, command)
         return result
 
-    def _counts(self, seen: _Seen, place: int) -> bool:
+    def _check_coroutine(self, seen: _Seen) -> None:
+        raw = seen.callee.raw
+        if not seen.call.stands_in and not inspect.iscoroutinefunction(getattr(raw, "__func__", raw)):
+            text = "it returns a coroutine but is no coroutine function: name the one behind it"
+            seen.call.problem = text
+
+    def _counts(self, seen: _Seen, site: CallSite) -> bool:
         """Count a call; whether its values are to be looked at."""
-        if seen.call.of_tests and (seen.call.own or seen.callee.file in self._tests):
+        if seen.call.of_tests and (seen.call.own or self._is_of_tests(seen.callee)):
             return False
         self._pulse()
-        file, line = self._places[place]
+        file, line = self._place(site)
         where = f"{file}:{line}"
         seen.call.sites[where] = seen.call.sites.get(where, 0) + 1
-        seen.looked_at += 1
-        return seen.looked_at <= MOST_CALLS
-
-    def _is_of_tests(self, place: int) -> bool:
-        return self._places[place][0] in self._tests.values()
+        return seen.call.count <= MOST_CALLS
 
     def _arguments(
         self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any], instance: Any
@@ -398,14 +349,39 @@ class Watch:
                 look(command.result, result)
 
     def _call(self, seen: _Seen) -> WatchedCallable:
+        """Return a callable with what it raised on either side: tests make robots refuse."""
         sides = (self._seen.get((seen.call.target, of_tests)) for of_tests in (False, True))
-        raised = [
-            name for side in sides if side is not None for name in side.raised
-        ]  # tests make robots refuse
-        call = replace(seen.call, raised=list(dict.fromkeys([*seen.call.raised, *raised])))
-        if seen.returns_coroutine and not call.stands_in:
-            call.problem = "it returns a coroutine but is no coroutine function: name the one behind it"
-        return call
+        raised = dict.fromkeys(
+            name for side in (seen, *sides) if side is not None for name in side.call.raised
+        )
+        return replace(seen.call, raised=list(raised))
+
+
+@contextmanager
+def _making(seen: _Seen) -> Iterator[None]:
+    """Note that a call is under way, and what it raises."""
+    token = _under_way.set((*_under_way.get(), seen))
+    try:
+        yield
+    except Exception as error:
+        name = class_name(type(error))
+        if name not in seen.call.raised:
+            seen.call.raised.append(name)
+        raise
+    finally:
+        with suppress(ValueError):  # a coroutine that is closed from elsewhere
+            _under_way.reset(token)
+
+
+def _only_class(name: str, method: str) -> type | None:
+    """Return the class that a mock of this name stands for: the only one of the name with such a method."""
+    kinds = {
+        id(kind): kind
+        for module in list(sys.modules.values())
+        for kind in [getattr(module, "__dict__", {}).get(name)]
+        if isinstance(kind, type) and kind.__name__ == name and callable(getattr(kind, method, None))
+    }
+    return next(iter(kinds.values())) if len(kinds) == 1 else None
 
 
 def _limits(value: Any, instance: Any) -> list[list[float]] | None:
