@@ -51,14 +51,14 @@ GRADED_HEAD = """\
 `--family graded` plants the same fault at rising magnitudes, to find from which on the tests notice it: see
 [thresholds](thresholds.md), which also says where their ladders come from.
 """
-#: what the groups of the catalogue are called; by the tens of their operators' ranks
+#: what the groups of the catalogue are called, by the first operator of each
 GROUPS = {
-    30: "Units",
-    31: "Frames, axes, joints and tools",
-    32: "Orientations as a whole",
-    33: "Order and time",
-    34: "Readings",
-    35: "Actuation",
+    "cm-for-m": "Units",
+    "axis-swap": "Frames, axes, joints and tools",
+    "euler-order": "Orientations as a whole",
+    "swap-next": "Order and time",
+    "dropout": "Readings",
+    "speed-override": "Actuation",
 }
 
 TAIL = """\
@@ -115,10 +115,11 @@ def page() -> str:
     operators = _operators(of_middleware=False)
     graded = [each for each in operators if each.family == GRADED]
     first = [each for each in operators if each.family not in (CATALOGUE, GRADED)]
-    groups = {
-        title: [each for each in operators if each.family == CATALOGUE and each.rank // 10 == group]
-        for group, title in GROUPS.items()
-    }
+    groups: dict[str, list[Operator]] = {}
+    title = ""
+    for each in (each for each in operators if each.family == CATALOGUE):
+        title = GROUPS.get(each.name, title)
+        groups.setdefault(title, []).append(each)
     lines = [HEAD, *_overview(first), *_published(operators)]
     for each in first:
         lines += _section(each)

@@ -21,7 +21,7 @@ from mutabot.frozen import frozen
 from mutabot.journal.records import Drawing, Reaching, Stratum
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Place
-from mutabot.operators.operator import Rule, in_order
+from mutabot.operators.operator import Rule
 
 
 @frozen
@@ -166,7 +166,8 @@ def listed_rules(families: Collection[str] = ()) -> list[ListedRule]:
     return [
         ListedRule(rule.name, rule.family, rule.summary, rule.where, _source(rule))
         for family in wanted
-        for rule in in_order(rule for rule in rules if rule.family == family)
+        for rule in rules
+        if rule.family == family
     ]
 
 

@@ -28,7 +28,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from random import Random
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from typing import Any, ClassVar, NamedTuple
 
 from mutabot.families import ROBOT
 from mutabot.model import Call, Middleware, Operation, Pattern, Quantity
@@ -60,8 +60,6 @@ class Rule(ABC):
         family: the family of its mutants (``mutabot.families``), or one of its own for a plug-in.
         summary: one sentence for the documentation: what the docstring says first, unless it is given.
         examples: worked examples; they are tests and documentation at once.
-        rank: its place in the documentation and in the numbering of mutants: smaller first, then by name.
-            Without one it comes after those that have one.
         published: rows of the table of published operators that it makes; empty for all others.
         stands_for: the bug class that it stands for and the evidence of it, in one sentence; may be empty for
             those that are published.
@@ -74,7 +72,6 @@ class Rule(ABC):
     family: ClassVar[str]
     summary: ClassVar[str] = ""
     examples: ClassVar[tuple[Any, ...]] = ()
-    rank: ClassVar[int] = 1000
     published: ClassVar[tuple[Published, ...]] = ()
     stands_for: ClassVar[str] = ""
     where: ClassVar[str] = ""
@@ -88,14 +85,6 @@ class Rule(ABC):
         for other in others:
             if other.startswith(_WHERE) and "where" not in vars(cls):
                 cls.where = other.removeprefix(_WHERE).rstrip(".")
-
-
-R = TypeVar("R", bound=Rule)
-
-
-def in_order(rules: Iterable[R]) -> list[R]:
-    """The operators in the order of the documentation."""
-    return sorted(rules, key=lambda rule: (rule.rank, rule.name))
 
 
 class Need(Enum):

@@ -78,7 +78,6 @@ class CentimetreForMetre(_OtherUnit):
     """
 
     name = "cm-for-m"
-    rank = 300
     units = _both_ways({"m": "cm", "m/s": "cm/s"})
     examples = (
         changed(_MOVE_TO, 0.5, 0.005, "taken-cm"),
@@ -96,7 +95,6 @@ class MillimetreForMetre(_OtherUnit):
     """
 
     name = "mm-for-m"
-    rank = 301
     units = _both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
     examples = (
         changed(_MOVE_BY, 0.5, 0.0005, "taken-mm"),
@@ -113,7 +111,6 @@ class InchForMillimetre(_OtherUnit):
     """
 
     name = "inch-for-mm"
-    rank = 302
     units = _both_ways({"mm": "inch"})
     examples = (
         changed(_MOVE_IN_MM, 10, 254, "taken-inch"),
@@ -132,7 +129,6 @@ class DegreeForRadian(_OtherUnit):
     """
 
     name = "deg-for-rad"
-    rank = 303
     units = _both_ways({"rad": "deg", "rad/s": "deg/s", "rad/s^2": "deg/s^2"})
     examples = (
         changed(_TURN, 3.0, 171.88733853924697, "taken-rad"),
@@ -150,7 +146,6 @@ class MillisecondForSecond(_OtherUnit):
     """
 
     name = "ms-for-s"
-    rank = 304
     units: ClassVar[Mapping[str, str]] = {"s": "ms"}
     ways = (_TAKEN,)
     of_read = False
@@ -193,7 +188,6 @@ class SpeedOverride(_Factor):
     """
 
     name = "speed-override"
-    rank = 350
     kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
     examples = (
         changed(_SPEED, 0.5, 0.25, "x0.5"),
@@ -209,7 +203,6 @@ class ForceOverride(_Factor):
     """
 
     name = "force-override"
-    rank = 351
     kinds = frozenset({Kind.FORCE, Kind.TORQUE})
     examples = (
         changed(_PRESS, 40.0, 20.0, "x0.5"),
@@ -225,7 +218,6 @@ class WeakGrip(_Factor):
     """
 
     name = "weak-grip"
-    rank = 352
     variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
     examples = (
         changed(_GRIP, 160, 48, "x0.3"),
@@ -247,7 +239,6 @@ class WrongPayload(_Factor):
     """
 
     name = "wrong-payload"
-    rank = 353
     kinds = frozenset({Kind.MASS})
     variants: ClassVar[Mapping[str, float]] = {"none": 0.0, "double": 2.0}
     is_limited = False
@@ -268,7 +259,6 @@ class PartialOpening(ValueOperator):
 
     name = "partial-opening"
     family = CATALOGUE
-    rank = 354
     stands_for = f"Commands that are not carried out in full, as by a gripper that jams: {COMMANDS}."
     of_read = False
     examples = (
@@ -298,7 +288,6 @@ class SilentLimit(ValueOperator):
 
     name = "silent-limit"
     family = CATALOGUE
-    rank = 355
     stands_for = f"A wrong parameter: {PARAMETERS}."
     of_read = False
     examples = (

@@ -42,7 +42,6 @@ class Skip(CommandOperator):
     name = "skip"
     needs = frozenset({Need.IDLE})
     does_nothing = True
-    rank = 30
     published = (Published(7, "do command x", "do nothing"),)
     fault = "do nothing"
     examples = (
@@ -61,7 +60,6 @@ class Repeat(CommandOperator):
     """
 
     name = "repeat"
-    rank = 40
     published = (Published(8, "do command x", "do command x twice"),)
     fault = "do it twice"
     examples = (
@@ -85,7 +83,6 @@ class Opposite(CommandOperator):
     """
 
     name = "opposite"
-    rank = 50
     published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
     examples = (
         changed(GRIP, 1, 0, note="grasp: release"),
@@ -165,7 +162,6 @@ class SwapNext(_Timing):
     """
 
     name = "swap-next"
-    rank = 330
     needs = frozenset({Need.IDLE, Need.PROGRAM})
     fault = "only after the next command"
     examples = (Example(Subject(MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),)
@@ -183,7 +179,6 @@ class PreviousTarget(_Timing):
     """
 
     name = "previous-target"
-    rank = 331
     fault = "the motion of the call before it again"
     examples = (
         Example(
@@ -218,7 +213,6 @@ class HalfWait(ValueOperator):
 
     name = "half-wait"
     family = CATALOGUE
-    rank = 332
     stands_for = _Timing.stands_for
     kinds = frozenset({Kind.DURATION})
     of_read = False
@@ -235,7 +229,6 @@ class NoWait(HalfWait):
     """A wait is left out: the next command comes at once."""
 
     name = "no-wait"
-    rank = 333
     examples = (
         changed(_WAIT, 0.8, 0.0),
         unchanged(_WAIT, 0.0, "there is nothing to shorten"),
@@ -249,7 +242,6 @@ class LateGrip(_Timing):
     """A gripper command is carried out 0.5 s late, and the program waits for it."""
 
     name = "late-grip"
-    rank = 336
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     where = f"{_GRIPPING}; the vocabulary says how time passes: wait"
     fault = f"{_LATE:g} s late"
@@ -269,7 +261,6 @@ class EarlyRelease(_Timing):
     """
 
     name = "early-release"
-    rank = 337
     where = _GRIPPING
     fault = "and back after the next command"
     examples = (
@@ -322,7 +313,6 @@ class LostCommand(_Chance):
     """
 
     name = "lost-command"
-    rank = 334
     needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
     fault = "do nothing, with a probability of {variant}"
     examples = (
@@ -347,7 +337,6 @@ class DoubleCommand(_Chance):
     """
 
     name = "double-command"
-    rank = 335
     fault = "do it twice, with a probability of {variant}"
     examples = (
         Example(Subject(MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
@@ -375,7 +364,6 @@ class UnreportedRefusal(CommandOperator):
 
     name = "unreported-refusal"
     family = CATALOGUE
-    rank = 338
     needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
     stands_for = f"Errors that are swallowed on their way: {COMMANDS}."
     fault = "a refusal is not reported"

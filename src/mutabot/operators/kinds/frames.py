@@ -60,7 +60,6 @@ class AxisSwap(Exchange):
     """
 
     name = "axis-swap"
-    rank = 310
     stands_for = f"A wrong axis: {FRAMES}."
     examples = (
         changed(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
@@ -82,7 +81,6 @@ class JointOrder(Exchange):
     """
 
     name = "joint-order"
-    rank = 311
     stands_for = f"Joints in another order, as in joint states that are sorted by name: {FRAMES}."
     examples = (
         changed(
@@ -119,7 +117,6 @@ class LeftHanded(ValuesOperator):
 
     name = "left-handed"
     family = CATALOGUE
-    rank = 312
     stands_for = f"Frames of the other handedness, as of game engines: {FRAMES}."
     examples = (
         changed(_POSE, {"y": 0.2, "yaw": 30.0}, {"y": -0.2, "yaw": -30.0}),
@@ -183,7 +180,6 @@ class BaseForTool(ValuesOperator):
     name = "base-for-tool"
     family = CATALOGUE
     needs = frozenset({Need.PLACE})
-    rank = 313
     stands_for = f"A wrong or missing transform: {FRAMES}."
     examples = (
         changed(
@@ -278,7 +274,6 @@ class TcpMissing(_WrongTcp):
     """The offset of the tool centre point is missing: the flange goes where the tool's tip should."""
 
     name = "tcp-missing"
-    rank = 314
     sign = 1.0
     examples = (
         changed(_MOVE_TIP, 0.3, 0.18, note="12 cm of gripper that looks down"),
@@ -290,7 +285,6 @@ class TcpDoubled(_WrongTcp):
     """The offset of the tool centre point is counted twice: the tip stays back by as much."""
 
     name = "tcp-doubled"
-    rank = 315
     sign = -1.0
     examples = (
         changed(_MOVE_TIP, 0.3, 0.42, note="12 cm of gripper that looks down"),
@@ -306,7 +300,6 @@ class JointTurn(ValueOperator):
 
     name = "joint-turn"
     family = CATALOGUE
-    rank = 316
     stands_for = f"Angles that wrap around at ±180° or 360°: {FRAMES}."
     of_read = False
     variants: ClassVar[Mapping[str, float]] = {"+": 1.0, "-": -1.0}
@@ -358,7 +351,6 @@ class EulerOrder(_OtherNumbers):
     """
 
     name = "euler-order"
-    rank = 320
     stands_for = f"Two conventions of Euler angles: {FRAMES}."
     kinds = frozenset({Kind.EULER})
     examples = (
@@ -379,7 +371,6 @@ class QuaternionOrder(_OtherNumbers):
     """
 
     name = "quaternion-order"
-    rank = 321
     stands_for = f"Libraries that order quaternions in two ways: {FRAMES}."
     kinds = frozenset({Kind.QUATERNION})
     examples = (
@@ -400,7 +391,6 @@ class QuaternionSign(_OtherNumbers):
     """
 
     name = "quaternion-sign"
-    rank = 322
     stands_for = f"A wrong sign: {SIGNS}."
     kinds = frozenset({Kind.QUATERNION})
     variants: ClassVar[dict[str, str]] = {part: part for part in "xyz"}

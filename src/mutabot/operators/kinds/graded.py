@@ -155,7 +155,6 @@ class Offset(NumberOperator):
 
     name = "offset"
     stands_for = f"A tool, a fixture or a camera that stands off, or a wrong constant: {PARAMETERS}."
-    rank = 200
     examples = (
         changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm"), note="the box is put down 20 mm too far"),
         changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm"), note="the camera was bumped into"),
@@ -184,7 +183,6 @@ class Scale(NumberOperator):
 
     name = "scale"
     stands_for = f"A wrong gain or calibration factor: {PARAMETERS}."
-    rank = 210
     examples = (
         changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
         changed(
@@ -219,7 +217,6 @@ class SensorNoise(NumberOperator):
 
     name = "sensor-noise"
     stands_for = f"A worse sensor than the program was written for: {SENSORS}."
-    rank = 220
     draws = True
     directions = ("",)
     of_written = False
@@ -251,7 +248,6 @@ class Drift(NumberOperator):
 
     name = "drift"
     stands_for = f"A sensor that warms up, or odometry that is summed: {SENSORS}."
-    rank = 230
     needs = frozenset({Need.CLOCK})
     of_written = False
     examples = (
@@ -285,7 +281,6 @@ class Quantise(NumberOperator):
 
     name = "quantise"
     stands_for = f"A coarse encoder or converter: {SENSORS}."
-    rank = 240
     directions = ("",)
     fault = "in steps of {}"
     examples = (
@@ -310,7 +305,6 @@ class Deadband(NumberOperator):
 
     name = "deadband"
     stands_for = f"Backlash of a worn gear, or a filter against chatter: {SENSORS}."
-    rank = 250
     needs = frozenset({Need.MEMORY, Need.COPIES})
     directions = ("",)
     fault = "with a dead band of {}"
@@ -342,7 +336,6 @@ class Early(NumberOperator):
 
     name = "early"
     stands_for = f"A wait that was measured on a faster machine: {TIMING}."
-    rank = 270
     directions = ("-",)
     of_read = False
     examples = (
@@ -369,7 +362,6 @@ class Lag(CommandOperator):
     family = GRADED
     has_sizes = True
     stands_for = f"A busy network or controller: {TIMING}."
-    rank = 260
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     examples = (
         Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({},), waited=0.2),

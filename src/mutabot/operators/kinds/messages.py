@@ -45,7 +45,6 @@ class Drop(MessageOperator):
     """
 
     name = "drop"
-    rank = 110
     needs = _EARLIER
     forms = _SENT | COMING | {Form.RESULT}
     variants: ClassVar[Mapping[str, str]] = {
@@ -95,7 +94,6 @@ class Duplicate(MessageOperator):
     """A message, request or goal arrives twice, a callback is called twice."""
 
     name = "duplicate"
-    rank = 120
     forms = _SENT | COMING
     fault = "each {what} arrives twice"
     examples = (
@@ -121,7 +119,6 @@ class Stale(MessageOperator):
     """
 
     name = "stale"
-    rank = 130
     needs = _EARLIER
     forms = _SENT | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
     variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
@@ -175,7 +172,6 @@ class Delay(MessageOperator):
     """
 
     name = "delay"
-    rank = 140
     forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
     fault = "each {what} comes {variant} s late"
     examples = (
@@ -210,7 +206,6 @@ class Reorder(MessageOperator):
     """Messages change places, two by two: the second comes before the first. A last one alone is lost."""
 
     name = "reorder"
-    rank = 150
     needs = _EARLIER
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
     fault = "every other {what} comes after the next one"
@@ -278,7 +273,6 @@ class KillNode(_Mishap):
     """
 
     name = "kill-node"
-    rank = 410
     is_raced = True
     mishap = Mishap.KILLED
     forms = frozenset({*WRITTEN, *COMING})
@@ -295,7 +289,6 @@ class RestartNode(_Mishap):
     """
 
     name = "restart-node"
-    rank = 420
     is_raced = True
     mishap = Mishap.RESTARTED
     forms = frozenset({*WRITTEN, *COMING})
@@ -310,7 +303,6 @@ class CancelGoal(_Mishap):
     """Somebody cancels the action as soon as its goal is sent."""
 
     name = "cancel-goal"
-    rank = 430
     mishap = Mishap.CANCELLED
     forms = frozenset({Form.GOAL})
     fault = "each {what} is cancelled as soon as it is sent"
@@ -321,7 +313,6 @@ class JumpClock(_Mishap):
     """The node's clock jumps 10 s ahead, or 10 s back, before a tick of its timer or a turn of its rate."""
 
     name = "jump-clock"
-    rank = 450
     needs = frozenset({Need.MEMORY, Need.COPIES, Need.PROGRAM})
     mishap = Mishap.JUMPED
     forms = frozenset({Form.TICK, Form.SLEEP})
@@ -344,7 +335,6 @@ class LoseAnswer(MessageOperator):
     """
 
     name = "lose-answer"
-    rank = 440
     forms = frozenset({Form.CALL, Form.GOAL})
     fault = "the answer to each {what} is lost"
     examples = (Example(Subject(CALL), performed=({},), lost=True),)

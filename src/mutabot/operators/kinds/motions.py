@@ -59,7 +59,6 @@ class Reverse(ValueOperator):
     """
 
     name = "reverse"
-    rank = 10
     published = (
         Published(1, "rotate left by θ", "rotate right by θ"),
         Published(2, "rotate right by θ", "rotate left by θ"),
@@ -145,7 +144,6 @@ class ByTo(ValuesOperator):
 
     name = "by-to"
     needs = frozenset({Need.PLACE})
-    rank = 20
     published = (
         Published(5, "translate forward by δ", "translate forward *to* δ"),
         Published(6, "translate backwards by δ", "translate backwards *to* δ"),

@@ -61,7 +61,6 @@ class Dropout(CommandOperator):
 
     name = "dropout"
     family = CATALOGUE
-    rank = 340
     stands_for = _STANDS_FOR
     examples = (
         changed(_OR_NAN, 0.2, math.nan),
@@ -121,7 +120,6 @@ class OldReading(_Reading):
     """
 
     name = "old-reading"
-    rank = 341
     kinds = frozenset(Kind)
     variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
     examples = (
@@ -151,7 +149,6 @@ class StuckReading(_Reading):
     """
 
     name = "stuck-reading"
-    rank = 342
     kinds = frozenset(Kind)
     examples = (
         changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
@@ -184,7 +181,6 @@ class Spike(_Reading):
     """
 
     name = "spike"
-    rank = 343
     kinds = MEASURED - WHOLE
     variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
     examples = (
@@ -217,7 +213,6 @@ class SaturatedReading(_Reading):
     """
 
     name = "saturated-reading"
-    rank = 344
     kinds = MEASURED - WHOLE
     examples = (
         changed(_NEAR, 1.9, 1.8),
@@ -246,7 +241,6 @@ class SwappedChannels(Exchange):
     """
 
     name = "swapped-channels"
-    rank = 345
     stands_for = _STANDS_FOR
     examples = (
         changed(_LOCATE, {".x": 0.4, ".y": 0.1}, {".x": 0.1, ".y": 0.4}, "y"),
@@ -270,7 +264,6 @@ class WrongObject(ValueOperator):
 
     name = "wrong-object"
     family = CATALOGUE
-    rank = 346
     stands_for = _STANDS_FOR
     of_read = False
     examples = (
@@ -292,7 +285,6 @@ class ConfusedLabel(_Reading):
     """
 
     name = "confused-label"
-    rank = 347
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
     examples = (
         changed(_SEE, "red", "blue", "30%"),
@@ -321,7 +313,6 @@ class LateReading(CommandOperator):
 
     name = "late-reading"
     family = CATALOGUE
-    rank = 348
     stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     needs = frozenset({Need.WAIT})
     fault = f"read {_LATE:g} s before the program gets it"
@@ -371,7 +362,6 @@ class Negate(ValueOperator):
     """
 
     name = "negate"
-    rank = 60
     kinds = MEASURED - PLAIN
     published = (Published(9, "distance value is x", "distance value is −x"),)
     of_written = False
@@ -403,7 +393,6 @@ class Noise(ValueOperator):
     """
 
     name = "noise"
-    rank = 70
     kinds = frozenset(DEFAULT_DEVIATION)
     draws = True
     published = (
@@ -449,7 +438,6 @@ class Misread(ValueOperator):
     """
 
     name = "misread"
-    rank = 80
     published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
     of_written = False
     examples = (
