@@ -58,31 +58,9 @@ def test_it_suggests_demands_for_the_file_that_the_project_has(
     assert tomllib.loads(out)
 
 
-def test_it_compares_with_another_campaign(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    journals.write(project / "old" / ".mutabot" / "journal.sqlite", Rungs(["SSSSSCC"] * 5))
-    assert call(project, "thresholds", "--compare", str(project / "old")) == 0
-    assert "1 improved" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["--suggest-demands", "--json"], "prints TOML alone"),
-        (["--compare", "nowhere"], "nowhere"),
-    ],
-)
-def test_what_cannot_be_is_told(
-    project: Path, words: list[str], told: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call(project, "thresholds", *words) == ExitCode.USAGE
-    assert told in capsys.readouterr().err
-
-
-def test_the_campaign_itself_is_nothing_to_compare_with(
-    project: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call(project, "thresholds", "--compare", str(project)) == ExitCode.USAGE
-    assert "is the campaign itself" in capsys.readouterr().err
+def test_suggested_demands_are_toml_alone(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(project, "thresholds", "--suggest-demands", "--json") == ExitCode.USAGE
+    assert "prints TOML alone" in capsys.readouterr().err
 
 
 def test_without_ladders_it_says_what_plants_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

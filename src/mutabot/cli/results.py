@@ -20,12 +20,11 @@ from mutabot.report.html.folder import Contents, check_folder, write_folder
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
-from mutabot.report.thresholds import print_compared, print_thresholds, suggested_toml
+from mutabot.report.thresholds import print_thresholds, suggested_toml
 from mutabot.results.results import Results, find_mutant, results_at
 from mutabot.results.stored import Changes, StoredEvidence, journal_at
 from mutabot.results.stored import changes as changes_between
 from mutabot.results.suggested import kept_suggestions
-from mutabot.results.thresholds import compare as compared
 from mutabot.results.thresholds import thresholds_of
 
 #: stands for standard output
@@ -88,45 +87,25 @@ def show(
 
 def thresholds(
     context: typer.Context,
-    compare: options.Compared = None,
     suggest_demands: _Demands = False,
     json: options.Json = False,
 ) -> None:
     """Show how large a fault must be before the tests notice it."""
-    if suggest_demands and (json or compare is not None):
+    if suggest_demands and json:
         raise UsageError("--suggest-demands prints TOML alone")
     journal = find_journal(context.obj)
-    results = _graded(journal)
-    if compare is not None:
-        other = journal_at(compare)
-        _check_other(
-            other, journal, f"{compare} is the campaign itself; keep a copy of its journal to compare"
+    results = results_at(journal)
+    if not results.ladders:
+        raise JournalError(
+            f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them",
+            path=str(journal),
         )
-        comparison = compared(_graded(other), results)
-        print_json(comparison) if json else print_compared(make_console(), comparison)
-        return
     found = thresholds_of(results)
     if suggest_demands:
         table = "demand" if (context.obj / "mutabot.toml").is_file() else "tool.mutabot.demand"
         echo(suggested_toml(found.ladders, table=table))
     else:
         print_json(found) if json else print_thresholds(make_console(), found)
-
-
-def _graded(journal: Path) -> Results:
-    """Read a journal. Raises JournalError if it holds no graded mutants."""
-    found = results_at(journal)
-    if not found.ladders:
-        raise JournalError(
-            f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them",
-            path=str(journal),
-        )
-    return found
-
-
-def _check_other(other: Path, journal: Path, problem: str) -> None:
-    if other.exists() and journal.exists() and other.samefile(journal):
-        raise UsageError(problem)
 
 
 def report(
@@ -192,10 +171,10 @@ def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Forma
 
 
 def _changes(campaign: Results, journal: Path, old: Path) -> Changes:
-
     other = journal_at(old)
-    before = f"the last complete one before it, if there was any, is in {previous_of(journal).name} beside it"
-    _check_other(other, journal, f"{old} is the campaign itself; {before}")
+    if other.exists() and journal.exists() and other.samefile(journal):
+        before = f"the last complete one before it, if there was any, is in {previous_of(journal).name}"
+        raise UsageError(f"{old} is the campaign itself; {before} beside it")
     return changes_between(portable(results_at(other)), campaign)
 
 

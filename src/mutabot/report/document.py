@@ -181,15 +181,6 @@ def _floor(one: thresholds.Floor) -> dict[str, Any]:
     }
 
 
-def _comparison(found: thresholds.Comparison) -> dict[str, Any]:
-    data = data_of.facts(found, "why_no_words? mean improved=has_improved ladders gone added")
-    if found.mean is not None:
-        data["mean"] = data_of.facts(found.mean, "steps=mean low high level")
-    if found.why_no_words:
-        data["ladders"] = [{**one, "change": None} for one in data["ladders"]]
-    return {"format": FORMAT, **data}
-
-
 def _suggestions(found: Suggestions) -> dict[str, Any]:
     def mutant(name: str) -> dict[str, Any]:
         told = found.descriptions.get(name, "")
@@ -249,8 +240,6 @@ data_of = Encoder(
         ladders.Violation: "round=round+1 noticed missed",
         ladders.Better: "round=round+1 magnitude text",
         thresholds.Floor: _floor,
-        thresholds.Comparison: _comparison,
-        thresholds.LadderChange: "id=new.id change steps old new",
         Suggestions: _suggestions,
     }
 )

@@ -15,8 +15,6 @@ from mutabot.report.terminal.console import print_section
 from mutabot.results.demands import suggested
 from mutabot.results.ladders import Ladder
 from mutabot.results.thresholds import (
-    Change,
-    Comparison,
     Thresholds,
     amount,
     line_of,
@@ -114,42 +112,6 @@ def _confidence(thresholds: Thresholds) -> str:
             failed = f"{alarms or 'none'} of {plural(thresholds.controls, 'run')} without a fault failed"
             parts.append(f"{failed[0].upper()}{failed[1:]}.")
     return " ".join(parts)
-
-
-def print_compared(console: Console, comparison: Comparison) -> None:
-    """Print what changed from the old campaign to the new one."""
-    console.print(Text(f"{plural(len(comparison.ladders), 'ladder')} in both campaigns", style="bold"))
-    counts = Counter(one.change for one in comparison.ladders)
-    told = ", ".join(f"{counts[change]} {change}" for change in Change if counts[change])
-    why = comparison.why_no_words
-    console.print(
-        f"No ladder is called improved or worse: {why}." if why else f"In these rounds: {told or 'none'}."
-    )
-    rows = [
-        (
-            f"{one.new.place} {one.new.name}",
-            bar(one.old),
-            bar(one.new),
-            "" if why and one.change is not Change.UNKNOWN else str(one.change),
-        )
-        for one in comparison.ladders
-        if one.change is not Change.SAME
-    ]
-    columns = ("*fault", "before", "now", "*change")
-    print_section(console, Section(_mean_text(comparison), columns, rows, [_LEGEND]))
-    for name, ids in (("the old", comparison.gone), ("the new", comparison.added)):
-        if ids:
-            print_section(console, Section(f"Ladders only in {name} campaign: {len(ids)}", lines=ids))
-
-
-def _mean_text(comparison: Comparison) -> str:
-    mean = comparison.mean
-    if mean is None:
-        return "Too few ladders or rounds for a mean over the suite."
-    half, sign = (mean.high - mean.low) / 2.0, "sooner" if mean.mean >= 0 else "later"
-    words = {True: "the suite has improved", False: "the suite has become worse", None: "that may be chance"}
-    by = f"{abs(mean.mean):.2f} ± {half:.2f} steps {sign}"
-    return f"Over all ladders and rounds, faults are noticed {by} (95 %): {words[comparison.has_improved]}."
 
 
 def suggested_toml(ladders: Sequence[Ladder], *, table: str) -> str:

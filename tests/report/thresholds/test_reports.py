@@ -15,8 +15,8 @@ from mutabot.model import Operation, Role, Vocabulary
 from mutabot.model.outcome import Figure
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds import bar, print_compared, print_thresholds, suggested_toml
-from mutabot.results.thresholds import SORTS, Thresholds, compare, thresholds_of
+from mutabot.report.thresholds import bar, print_thresholds, suggested_toml
+from mutabot.results.thresholds import SORTS, Thresholds, thresholds_of
 from results import samples
 from results.thresholds import journals
 from results.thresholds.journals import Rungs
@@ -127,12 +127,10 @@ def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
     assert data["floors"][-1]["below_noise"] is True
 
 
-def test_the_document_tells_of_every_key(thresholds: Thresholds, tmp_path: Path) -> None:
+def test_the_document_tells_of_every_key(thresholds: Thresholds) -> None:
     document = (Path(__file__).parents[3] / "docs" / "thresholds.md").read_text(encoding="utf-8")
-    results = journals.results(tmp_path / "again", *LADDERS, vocabulary=NOISY)
-    for data in (data_of(thresholds), data_of(compare(results, results))):
-        missing = [key for key in keys_of(json.loads(dumps(data))) if f"`{key}`" not in document]
-        assert missing == []
+    missing = [key for key in keys_of(json.loads(dumps(data_of(thresholds)))) if f"`{key}`" not in document]
+    assert missing == []
 
 
 def keys_of(data: object) -> set[str]:
@@ -156,13 +154,3 @@ def test_where_no_demand_is_met_a_comment_says_so(tmp_path: Path) -> None:
     text = suggested_toml(found.ladders, table="demand")
     assert "# no demand" in text
     assert tomllib.loads(text) == {}
-
-
-def test_a_comparison_tells_before_and_now(tmp_path: Path) -> None:
-    old = journals.results(tmp_path / "old", Rungs(["SSSSCCC"] * 2), Rungs(["SSSSCCC"] * 2, direction="-"))
-    new = journals.results(tmp_path / "new", Rungs(["SSSCCCC"] * 2), Rungs(["SSSSCCC"] * 2, direction="-"))
-    out = io.StringIO()
-    print_compared(make_console(out, width=80), compare(old, new))
-    assert "1 improved, 1 unchanged" in out.getvalue()
-    assert re.search(r"····███ +···████ +improved", out.getvalue())
-    assert "0.50 ± " in out.getvalue()
