@@ -165,7 +165,7 @@ def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
 
 
 def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
-    line = "state rounds ladders=all runs exhaustive controls false_alarms"
+    line = "state rounds ladders=all runs exhaustive"
     return {"format": FORMAT, **data_of.facts(found, line)}
 
 

@@ -93,11 +93,7 @@ def _confidence(thresholds: Thresholds) -> str:
             share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"
             parts.append(f"Where all rounds notice, {share}.")
     if thresholds.exhaustive:
-        alarms = thresholds.false_alarms
         parts.append(f"{thresholds.runs} of {plural(thresholds.exhaustive, 'possible run')} were needed.")
-        if thresholds.controls:
-            failed = f"{alarms or 'none'} of {plural(thresholds.controls, 'run')} without a fault failed"
-            parts.append(f"{failed[0].upper()}{failed[1:]}.")
     return " ".join(parts)
 
 

@@ -113,10 +113,9 @@ def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Seque
 
 
 def _at(ladder: Ladder, demanded: float) -> Iterator[Outcome]:
-    """The outcomes at the demanded magnitude, in rounds that do not fail without a fault."""
+    """The outcomes at the demanded magnitude."""
     for one in ladder.rounds:
-        if not one.fails_without_fault:
-            yield from (outcome for size, outcome in one.outcomes.items() if is_same(size, demanded))
+        yield from (outcome for size, outcome in one.outcomes.items() if is_same(size, demanded))
 
 
 def _survivors(ladder: Ladder, demanded: float) -> Iterator[tuple[LadderRound, float, Outcome]]:
@@ -145,9 +144,6 @@ def _problem(ladder: Ladder, demanded: float) -> str:
     size = amount(demanded, ladder.unit)
     if ladder.number_of(demanded) is None:
         return f"{size} is not on its ladder; `mutabot run` again plants it"
-    unclean = [one.number + 1 for one in ladder.rounds if one.fails_without_fault]
-    if unclean:
-        return f"the tests fail without a fault in {in_rounds(unclean)}"
     for verdict, words in _UNSOUND.items():
         rounds = [one.number + 1 for one in ladder.rounds if _verdict(one, demanded) is verdict]
         if rounds:

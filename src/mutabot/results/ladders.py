@@ -16,7 +16,7 @@ from itertools import pairwise
 
 from mutabot.frozen import frozen
 from mutabot.model import By, Mutant, Outcome, Quantity, Verdict
-from mutabot.model.graded import OFFSET, Bracket, MagnitudeResult, bracket_of, is_same, seen
+from mutabot.model.graded import OFFSET, Bracket, bracket_of, is_same, seen
 from mutabot.model.units import UNITS
 from mutabot.results.results import MutantResult, Results
 from mutabot.results.statistics import LEVEL
@@ -98,31 +98,22 @@ class LadderRound:
     Attributes:
         number: 0-based round.
         outcomes: by magnitude, rising, those that were run.
-        zero: the outcome of magnitude 0; None if it was not run.
         bracket: where the threshold lies.
         above: what is above the largest magnitude that was missed.
     """
 
     number: int
     outcomes: Mapping[float, Outcome]
-    zero: Outcome | None
     bracket: Bracket
     above: Above
 
     @classmethod
-    def of(
-        cls, number: int, sizes: Sequence[float], outcomes: Mapping[float, Outcome], zero: Outcome | None
-    ) -> LadderRound:
-        """From the planned magnitudes above 0, rising, and the outcomes of those that were run."""
+    def of(cls, number: int, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> LadderRound:
+        """From the planned magnitudes, rising, and the outcomes of those that were run."""
         bracket = bracket_of({size: seen(one) for size, one in outcomes.items()})
         if any(one.verdict is Verdict.NOT_COVERED for one in outcomes.values()):
             bracket = Bracket(low=sizes[-1])  # what no test reaches, none reaches at any magnitude
-        return cls(number, outcomes, zero, bracket, _above(bracket, sizes, outcomes))
-
-    @property
-    def fails_without_fault(self) -> bool:
-        """Whether the tests fail at magnitude 0, so that nothing they notice is due to the fault."""
-        return self.zero is not None and seen(self.zero) is MagnitudeResult.NOTICED
+        return cls(number, outcomes, bracket, _above(bracket, sizes, outcomes))
 
     @property
     def is_reached(self) -> bool:
@@ -132,8 +123,6 @@ class LadderRound:
     @property
     def why_out(self) -> str:
         """Why the round does not count; empty if it does."""
-        if self.fails_without_fault:
-            return "fails without a fault"
         if not self.outcomes:
             return "was not run"
         if not self.bracket.is_known:
@@ -213,14 +202,12 @@ class Ladder:
 
     Attributes:
         id: what its mutants share.
-        results: its mutants above magnitude 0, rising.
-        zero: its mutant of magnitude 0; None if there is none.
+        results: its mutants, rising.
         rounds: what became of it, round by round.
     """
 
     id: str
     results: tuple[MutantResult, ...]
-    zero: MutantResult | None
     rounds: tuple[LadderRound, ...]
 
     @property
@@ -240,7 +227,7 @@ class Ladder:
 
     @property
     def sizes(self) -> tuple[float, ...]:
-        """Its magnitudes above 0, rising."""
+        """Its magnitudes, rising."""
         return tuple(one.mutant.magnitude or 0.0 for one in self.results)
 
     @property
@@ -309,10 +296,10 @@ class Ladder:
     @property
     def violations(self) -> tuple[Violation, ...]:
         """Per round the smallest magnitude that was noticed below a larger one that was missed, if any."""
-        rounds = (one for one in self.rounds if one.bracket.is_violated and not one.fails_without_fault)
         return tuple(
             Violation(one.number, one.bracket.out_of_order[0][0], one.bracket.out_of_order[-1][1])
-            for one in rounds
+            for one in self.rounds
+            if one.bracket.is_violated
         )
 
     @property
@@ -323,7 +310,7 @@ class Ladder:
 
     @property
     def runs(self) -> int:
-        """How many (magnitude, round) were run, without magnitude 0."""
+        """How many (magnitude, round) were run."""
         return sum(len(one.outcomes) for one in self.rounds)
 
     @property
@@ -373,24 +360,16 @@ def ladders_of(results: Results) -> tuple[Ladder, ...]:
     found: dict[str, list[MutantResult]] = {}
     for one in results.graded:
         found.setdefault(one.mutant.ladder, []).append(one)
-    return tuple(_ladder(name, those, results.rounds) for name, those in found.items() if any(_sized(those)))
+    return tuple(_ladder(name, those, results.rounds) for name, those in found.items())
 
 
-def _sized(results: Iterable[MutantResult]) -> Iterator[MutantResult]:
-    return (one for one in results if one.mutant.magnitude)
-
-
-def _ladder(name: str, results: Sequence[MutantResult], rounds: int) -> Ladder:
-    rising = tuple(sorted(_sized(results), key=lambda one: one.mutant.magnitude or 0.0))
-    zero = next((one for one in results if one.mutant.magnitude == 0.0), None)
-    sizes = [one.mutant.magnitude or 0.0 for one in rising]
-
-    def at(number: int) -> LadderRound:
-        pairs = ((size, one.rounds[number]) for size, one in zip(sizes, rising, strict=True))
-        outcomes: dict[float, Outcome] = {size: outcome for size, outcome in pairs if outcome is not None}
-        return LadderRound.of(number, sizes, outcomes, zero.rounds[number] if zero is not None else None)
-
-    return Ladder(name, rising, zero, tuple(at(number) for number in range(rounds)))
+def _ladder(name: str, results: Iterable[MutantResult], rounds: int) -> Ladder:
+    rising = sorted(((one.mutant.magnitude or 0.0, one) for one in results), key=lambda pair: pair[0])
+    found = []
+    for number in range(rounds):
+        outcomes = {size: outcome for size, one in rising if (outcome := one.rounds[number])}
+        found.append(LadderRound.of(number, [size for size, _ in rising], outcomes))
+    return Ladder(name, tuple(one for _, one in rising), tuple(found))
 
 
 def _order(one: LadderRound) -> tuple[float, float, int]:

@@ -192,7 +192,7 @@ class Results:
     @property
     def ladders(self) -> int:
         """Number of ladders of graded mutants; ``results`` says what became of them."""
-        return len({one.mutant.ladder for one in self.graded if one.mutant.magnitude})
+        return len({one.mutant.ladder for one in self.graded})
 
     @property
     def earlier(self) -> list[MutantResult]:

@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from mutabot.model.graded import seen
 from mutabot.results.ladders import Above, Ladder, LadderRound, ladders_of, looseness
 from mutabot.results.results import Results
 
@@ -144,28 +143,13 @@ class Thresholds:
 
     @property
     def runs(self) -> int:
-        """How many (magnitude, round) were run, without magnitude 0."""
+        """How many (magnitude, round) were run."""
         return sum(one.runs for one in self.all)
 
     @property
     def exhaustive(self) -> int:
         """How many there are."""
         return sum(one.exhaustive for one in self.all)
-
-    @property
-    def controls(self) -> int:
-        """How many runs of magnitude 0 there were."""
-        return sum(1 for one in self._zeros)
-
-    @property
-    def false_alarms(self) -> int:
-        """How many of these were noticed."""
-        return sum(1 for one in self._zeros if one.fails_without_fault)
-
-    @property
-    def _zeros(self) -> list[LadderRound]:
-        known = (one for ladder in self.all for one in ladder.rounds if one.zero is not None)
-        return [one for one in known if one.zero is not None and seen(one.zero).is_valid]
 
 
 def thresholds_of(results: Results) -> Thresholds:

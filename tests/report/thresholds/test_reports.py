@@ -21,7 +21,7 @@ from results.thresholds.journals import Rungs
 FIVE = 5
 READING = {"site": samples.READ, "quantity": ".x", "operation": "tracker:box_position"}
 LADDERS = (
-    Rungs(["SSSSCCC"] * 3 + ["SSSCCXX"] * 2, zero="S" * FIVE),
+    Rungs(["SSSSCCC"] * 3 + ["SSSCCXX"] * 2),
     Rungs(["SSSSSRR"] * FIVE, direction="-"),
     Rungs(["SSCSCCC"] * FIVE, site=samples.BACK, unit="deg"),
     Rungs(["RRRRRRR"] * FIVE, site=samples.BACK, unit="deg", direction="-"),
@@ -48,10 +48,11 @@ def test_a_ladder_is_one_row_with_a_bar(thresholds: Thresholds) -> None:
 
 
 def test_a_round_that_does_not_count_is_named_with_the_reason(tmp_path: Path) -> None:
-    found = thresholds_of(journals.results(tmp_path, Rungs(["SSSSCCC"] * FIVE, zero="SCSSS")))
+    rounds = ["SSSSCCC", "UUUUUUU", *["SSSSCCC"] * 3]
+    found = thresholds_of(journals.results(tmp_path, Rungs(rounds)))
     text = text_of(found)
     assert "Rounds that do not count" in text
-    assert "round 2 fails without a fault" in text
+    assert "round 2 is unstable" in text
 
 
 def test_a_bar_has_one_sign_per_magnitude(thresholds: Thresholds) -> None:
@@ -79,7 +80,7 @@ def test_all_that_is_to_be_said_is_said(thresholds: Thresholds) -> None:
     assert "noticed at 5 mm" not in text
     assert "noticed at 5 deg, survives 10 deg, rounds 1, 2, 3, 4 and 5" in text
     assert "the robot refuses every magnitude that was tried" in text
-    assert "210 of 210 possible runs were needed. None of 5 runs without a fault failed." in text
+    assert "210 of 210 possible runs were needed." in text
 
 
 def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:

@@ -37,11 +37,9 @@ class Rungs:
 
     Attributes:
         rounds: per round a letter for each magnitude, rising.
-        zero: a letter per round for magnitude 0; empty if it was not run.
     """
 
     rounds: Sequence[str]
-    zero: str = ""
     direction: str = "+"
     site: Site = samples.MOVE
     quantity: str = "dx"
@@ -65,11 +63,11 @@ def write(path: File, *ladders: Rungs, vocabulary: Vocabulary = samples.VOCABULA
     mutants: list[Mutant] = list(samples.MUTANTS) if others else []
     outcomes: list[Outcome] = list(samples.OUTCOMES) if others else []
     for one in ladders:
-        for column, size in enumerate((0.0, *one.sizes) if one.zero else one.sizes):
+        for column, size in enumerate(one.sizes):
             mutant = one.mutant(len(mutants) + 1, size)
             mutants.append(mutant)
             for number, letters in enumerate(one.rounds):
-                letter = one.zero[number] if size == 0.0 else letters[column - bool(one.zero)]
+                letter = letters[column]
                 if letter in LETTERS:
                     verdict, by = LETTERS[letter]
                     outcomes.append(Outcome(mutant.id, number, verdict, by, tests=1, test=samples.TEST))

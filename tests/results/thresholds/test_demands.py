@@ -39,12 +39,6 @@ def test_all_rounds_must_notice_it(tmp_path: Path, rounds: list[str], is_met: bo
     assert words in found.text
 
 
-def test_rounds_that_fail_without_a_fault_show_nothing(tmp_path: Path) -> None:
-    (found,) = rulings([TEN], [journals.ladder(tmp_path, "SSSCCCC", "CCCCCCC", zero="SC")])
-    assert not found.is_met
-    assert "fail without a fault in round 2" in found.why
-
-
 def test_a_magnitude_that_is_not_on_the_ladder_is_not_taken_as_noticed(tmp_path: Path) -> None:
     (found,) = rulings([Demand(15.0, "mm")], [journals.ladder(tmp_path, "SSSCCCC")])
     assert not found.is_met
