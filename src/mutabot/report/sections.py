@@ -52,8 +52,7 @@ def sections(results: Results, place: Place) -> Iterator[Section]:
         yield from _scores(results)
     yield from _narrowed(results)
     yield from _survivors(results, place)
-    found = [one.text for one in unlooked(results.mutants)]
-    if found:
+    if found := unlooked(results.mutants):
         yield Section("Readings that no test checks", lines=found)
     yield from _outside(results, place)
     if results.left_out:
