@@ -14,7 +14,6 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
-from mutabot.model.outcome import Figure
 from mutabot.report.texts import status_of
 from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
@@ -148,7 +147,7 @@ def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
             data["median"] = data_of.facts(ladder.median, "above=low? at_most=high level")
     return data | {
         "rounds_counted": len(ladder.counted),
-        **data_of.facts(ladder, "rounds steps violations better runs"),
+        **data_of.facts(ladder, "rounds violations runs"),
     }
 
 
@@ -166,19 +165,8 @@ def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
 
 
 def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
-    line = "state rounds ladders=all floors runs exhaustive controls false_alarms most_violated"
+    line = "state rounds ladders=all runs exhaustive"
     return {"format": FORMAT, **data_of.facts(found, line)}
-
-
-def _floor(one: thresholds.Floor) -> dict[str, Any]:
-    return {
-        **data_of.facts(one, "up=up.id down=down.id unit=up.unit blind half_width"),
-        "bias": [
-            {"round": pair.round + 1, "above": pair.bias[0], "at_most": pair.bias[1]} for pair in one.pairs
-        ],
-        **data_of.facts(one, "noise below_noise=is_below_noise false_alarms"),
-        "text": one.text if one.is_below_noise else None,
-    }
 
 
 def _suggestions(found: Suggestions) -> dict[str, Any]:
@@ -212,8 +200,7 @@ data_of = Encoder(
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
         "cpu simulated indistinguishable distance divergence way gaps compared commands engine stuck repeats "
-        "beside confirmed kills complete figures looked diverged",
-        Figure: "* is_better",
+        "beside confirmed kills complete looked diverged",
         Diverged: "* worst",
         Score: "score check_score killed valid by_check timeouts counts=of_each",
         RoundScores: "*total score=mean check_score=mean_check interval check_interval sample_interval "
@@ -236,10 +223,7 @@ data_of = Encoder(
         thresholds.Thresholds: _thresholds,
         ladders.Ladder: _ladder,
         ladders.LadderRound: _ladder_round,
-        ladders.MagnitudeStep: "magnitude number noticed valid interval by refused unknown",
         ladders.Violation: "round=round+1 noticed missed",
-        ladders.Better: "round=round+1 magnitude text",
-        thresholds.Floor: _floor,
         Suggestions: _suggestions,
     }
 )

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.text import Text
 
 from mutabot.model.graded import OFFSET
-from mutabot.report.sections import Section, percent, plural
+from mutabot.report.sections import Section, plural
 from mutabot.report.terminal.console import print_section
 from mutabot.results.demands import suggested
 from mutabot.results.ladders import Ladder
@@ -68,27 +68,14 @@ def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
     """What needs a look, by its heading."""
     found: dict[str, list[str]] = {
         "Out of order: a larger fault was missed": [],
-        "Better than the original": [],
         "Rounds that do not count": [],
     }
-    floors: list[str] = []
     for one in thresholds.ladders:
         name = f"{one.place} {one.name}"
         found["Out of order: a larger fault was missed"] += (f"{name}: {x}" for x in violations_in_words(one))
         found["Rounds that do not count"] += (f"{name}: {x}" for x in rounds_left_out(one))
-        for best in one.better[:1]:
-            where = f"{amount(best.magnitude, one.unit)}, round {best.round + 1}"
-            found["Better than the original"].append(f"{name}: {best.text} ({where})")
-    for floor in thresholds.floors:
-        if floor.is_below_noise:
-            alarms = floor.false_alarms
-            share = (
-                f"; about {percent(alarms)} of readings fail without a fault" if alarms is not None else ""
-            )
-            name = f"{floor.up.place} {floor.up.pair_name}"
-            floors.append(f"{name}: {floor.text}{share}; {floor.blind_text}")
     unjudged = [f"{one.place} {one.name}: {one.why_unjudged}" for one in thresholds.unjudged]
-    return found | {"Below the sensors' noise": floors, "Not judged": unjudged}
+    return found | {"Not judged": unjudged}
 
 
 def _confidence(thresholds: Thresholds) -> str:
@@ -106,11 +93,7 @@ def _confidence(thresholds: Thresholds) -> str:
             share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"
             parts.append(f"Where all rounds notice, {share}.")
     if thresholds.exhaustive:
-        alarms = thresholds.false_alarms
         parts.append(f"{thresholds.runs} of {plural(thresholds.exhaustive, 'possible run')} were needed.")
-        if thresholds.controls:
-            failed = f"{alarms or 'none'} of {plural(thresholds.controls, 'run')} without a fault failed"
-            parts.append(f"{failed[0].upper()}{failed[1:]}.")
     return " ".join(parts)
 
 

@@ -11,7 +11,7 @@ from mutabot.frozen import frozen
 from mutabot.journal.records import ShardOf
 from mutabot.model import Verdict
 from mutabot.model.graded import Demand
-from mutabot.results.demands import DemandResult, rulings
+from mutabot.results.demands import rulings
 from mutabot.results.ladders import ladders_of
 from mutabot.results.results import Results
 
@@ -175,7 +175,7 @@ def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
         return
     families = [*(results.meta.get("families") or ()), *([GRADED] if results.graded else [])]
     for one in rulings(demands, ladders_of(results), families):
-        if one.held is not DemandResult.PASSED:
+        if not one.is_met:
             yield one.text
 
 

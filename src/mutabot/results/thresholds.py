@@ -1,26 +1,15 @@
-"""The thresholds of a campaign: its ladders, what they cost, how wide the checks are; also of two of them.
+"""The thresholds of a campaign: its ladders, what they cost, and what the rounds showed, in words.
 
-A check |reading| ≤ T on a reading that is off by ε in a round notices faults above T − ε in one direction and
-above T + ε in the other. So the half of the sum of both thresholds is T, however the rounds fell, and half of
-their difference is the bias of the round.
-
-Thresholds in words: what the rounds showed, as brackets and never as a number between them.
+Words give brackets, and never a number between them.
 """
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
-from statistics import NormalDist
-from typing import Any
 
-from mutabot.frozen import frozen
-from mutabot.model import Quantity
-from mutabot.model.graded import OFFSET, seen
-from mutabot.model.units import UNITS, convert_difference
 from mutabot.results.ladders import Above, Ladder, LadderRound, ladders_of, looseness
 from mutabot.results.results import Results
 
@@ -131,149 +120,12 @@ def in_rounds(numbers: Iterable[int]) -> str:
     return f"rounds {', '.join(rest)} and {last}" if rest else f"round {last}"
 
 
-#: a check that is not wider than so many standard deviations fails now and then without a fault
-_DEVIATIONS = 3.0
-
-
-@frozen
-class Pair:
-    """Both directions of an offset in one round.
-
-    Attributes:
-        round: 0-based.
-        half_width: between which values T lies; the upper end is infinite where one side is never noticed.
-        bias: between which values the bias lies; infinite likewise.
-    """
-
-    round: int
-    half_width: tuple[float, float]
-    bias: tuple[float, float]
-
-
-@frozen
-class Floor:
-    """Both directions of an offset.
-
-    Attributes:
-        up, down: the ladders.
-        pairs: one per round in which both count.
-        noise: standard deviation of the reading, in the ladders' unit; None if the vocabulary does not say.
-    """
-
-    up: Ladder
-    down: Ladder
-    pairs: tuple[Pair, ...]
-    noise: float | None
-
-    @property
-    def blind(self) -> tuple[float, float]:
-        """From the largest fault down to the largest up that some round may miss."""
-        return -self.down.all_from, self.up.all_from
-
-    @property
-    def half_width(self) -> tuple[float, float]:
-        """Between which values T lies, which is the same in all rounds."""
-        low = max(one.half_width[0] for one in self.pairs)
-        high = min(one.half_width[1] for one in self.pairs)
-        return (low, high) if low < high else (min(one.half_width[0] for one in self.pairs), high)
-
-    @property
-    def is_below_noise(self) -> bool:
-        """Whether the check is so narrow that its sensor's noise alone makes it fail now and then."""
-        return self.noise is not None and self.half_width[1] < _DEVIATIONS * self.noise
-
-    @property
-    def false_alarms(self) -> float | None:
-        """Share of readings that fail without a fault, at least; None if the noise is not known."""
-        high = self.half_width[1]
-        if self.noise is None or not math.isfinite(high):
-            return None
-        return 2.0 * (1.0 - NormalDist().cdf(high / self.noise))
-
-    @property
-    def blind_text(self) -> str:
-        """``blind between −10 mm and +20 mm``."""
-        low, high = self.blind
-        return f"blind between {_end(low, self.up.unit, self.down)} and {_end(high, self.up.unit, self.up)}"
-
-    @property
-    def text(self) -> str:
-        """``notices 1 mm, sensor noise 2 mm; passes only by its seed``."""
-        notices = amount(min(self.up.highs[0], self.down.highs[0]), self.up.unit)
-        noise = amount(self.noise or 0.0, self.up.unit)
-        return f"notices {notices}, sensor noise {noise}; passes only by its seed"
-
-
-def floors_of(ladders: Iterable[Ladder]) -> Iterator[Floor]:
-    """The offsets that are known in both directions, in the order of the first of them."""
-    found: dict[str, dict[str, Ladder]] = {}
-    for one in ladders:
-        if one.mutant.operator == OFFSET and one.mutant.direction and one.counted:
-            found.setdefault(_both(one), {})[one.mutant.direction[-1]] = one
-    for both in found.values():
-        if both.keys() == {"+", "-"}:
-            up, down = both["+"], both["-"]
-            pairs = tuple(_pairs(up, down))
-            if pairs:
-                yield Floor(up, down, pairs, noise_of(up.quantity, up.unit))
-
-
-def noise_of(quantity: Quantity | None, unit: str | None) -> float | None:
-    """The standard deviation of a reading, in this unit; None if nothing says."""
-    if quantity is None or quantity.repeatability is None or quantity.path.root is not None:
-        return None
-    if unit == quantity.unit or unit not in UNITS or quantity.unit not in UNITS:
-        return quantity.repeatability if unit == quantity.unit else None
-    try:
-        return float(f"{convert_difference(quantity.repeatability, quantity.unit, unit):.12g}")
-    except ValueError:  # a magnitude of another kind, such as a delay
-        return None
-
-
-def _both(ladder: Ladder) -> str:
-    mutant = ladder.mutant
-    moment = mutant.moment.text if mutant.moment is not None else ""
-    axis = mutant.direction[:-1]
-    names = (mutant.site.id, mutant.pattern, mutant.quantity, moment, mutant.unit, axis, mutant.operation)
-    return "|".join(name or "" for name in names)
-
-
-def _pairs(up: Ladder, down: Ladder) -> Iterator[Pair]:
-    for one, other in zip(up.rounds, down.rounds, strict=True):
-        if one.counts and other.counts:
-            (low, high), (low_down, high_down) = _ends(one), _ends(other)
-            width = (low + low_down) / 2.0, (high + high_down) / 2.0
-            yield Pair(one.number, width, ((low - high_down) / 2.0, (high - low_down) / 2.0))
-
-
-def _ends(one: LadderRound) -> tuple[float, float]:
-    high = one.bracket.high
-    return one.bracket.low or 0.0, math.inf if high is None else high
-
-
-def _end(value: float, unit: str | None, ladder: Ladder) -> str:
-    if math.isfinite(value):
-        sign = "−" if value < 0 else "+"
-        return f"{sign}{amount(abs(value), unit)}"
-    sign = "−" if value < 0 else "+"
-    return f"beyond {sign}{amount(max(ladder.lows), unit)}"
-
-
-_Key = Callable[[Ladder], Any]
-#: orders of the table; the first is the usual one
-SORTS: Mapping[str, _Key] = {
-    "loosest": lambda one: tuple(-end for end in looseness(one)[:3]),
-    "place": lambda one: (one.mutant.site.span.file, one.mutant.site.span.line, one.mutant.site.span.column),
-    "operator": lambda one: (one.mutant.operator, *(-end for end in looseness(one)[:3])),
-}
-
-
 @dataclass(frozen=True)
 class Thresholds:
     """The thresholds of a campaign.
 
     Attributes:
-        ladders: those of which something is known, in the order that was asked for.
+        ladders: those of which something is known, the loosest first.
         unjudged: the others.
         rounds: number of rounds.
         state: how the campaign ended, as in ``Results``.
@@ -291,7 +143,7 @@ class Thresholds:
 
     @property
     def runs(self) -> int:
-        """How many (magnitude, round) were run, without magnitude 0."""
+        """How many (magnitude, round) were run."""
         return sum(one.runs for one in self.all)
 
     @property
@@ -299,49 +151,14 @@ class Thresholds:
         """How many there are."""
         return sum(one.exhaustive for one in self.all)
 
-    @property
-    def controls(self) -> int:
-        """How many runs of magnitude 0 there were."""
-        return sum(1 for one in self._zeros)
 
-    @property
-    def false_alarms(self) -> int:
-        """How many of these were noticed."""
-        return sum(1 for one in self._zeros if one.fails_without_fault)
-
-    @cached_property
-    def floors(self) -> tuple[Floor, ...]:
-        """Offsets that are known in both directions."""
-        return tuple(floors_of(self.ladders))
-
-    @property
-    def most_violated(self) -> float | None:
-        """Largest share of such ladders that may be out of order (95 %), where none of them is.
-
-        None if one is, or if they are too few to say anything.
-        """
-        count = len(self.ladders)
-        if any(one.violations for one in self.ladders) or count <= 3:
-            return None
-        return 3.0 / count
-
-    @property
-    def _zeros(self) -> list[LadderRound]:
-        known = (one for ladder in self.all for one in ladder.rounds if one.zero is not None)
-        return [one for one in known if one.zero is not None and seen(one.zero).is_valid]
-
-
-def thresholds_of(results: Results, sort: str = "loosest") -> Thresholds:
-    """The thresholds of a campaign; ``sort`` is one of ``SORTS``."""
+def thresholds_of(results: Results) -> Thresholds:
+    """The thresholds of a campaign."""
     ladders = ladders_of(results)
-    judged = [one for one in ladders if not one.why_unjudged]
+    judged = (one for one in ladders if not one.why_unjudged)
     return Thresholds(
-        ladders=_sorted(judged, sort),
+        ladders=tuple(sorted(judged, key=lambda one: [-end for end in looseness(one)])),
         unjudged=tuple(one for one in ladders if one.why_unjudged),
         rounds=results.rounds,
         state=results.state,
     )
-
-
-def _sorted(ladders: Sequence[Ladder], sort: str) -> tuple[Ladder, ...]:
-    return tuple(sorted(ladders, key=SORTS[sort]))

@@ -70,7 +70,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         # thousands of rows do not repeat the names of their cells
         "columns": [*rows[0]] if rows else [],
         "mutants": [[*one.values()] for one in rows],
-        "unlooked": [one.text for one in unlooked(campaign.mutants)],
+        "unlooked": unlooked(campaign.mutants),
         "ladders": [
             {**data_of.facts(one, _LADDER), "text": line_of(one)}
             for one in thresholds_of(campaign).ladders[:_LADDERS]
