@@ -12,7 +12,6 @@ import importlib
 import pkgutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 from mutabot.errors import ExtensionError, UsageError, unknown_name_text
 from mutabot.extensions import ExtensionPart, brought
@@ -43,18 +42,6 @@ class Material:
     def place(self, span: Span, length: Callable[[str], int] = len) -> FilePlace:
         """Where a span is. ``length`` counts the characters of a part of a line."""
         return place_of(span, self.campaign.source(span.file), length)
-
-    def scores(self) -> list[dict[str, Any]]:
-        """The scores of each family and role."""
-        return [
-            {
-                "family": one.family,
-                "role": one.role,
-                "score": one.scores.mean,
-                "checkScore": one.scores.mean_check,
-            }
-            for one in self.campaign.groups
-        ]
 
 
 @frozen

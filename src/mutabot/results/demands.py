@@ -74,20 +74,6 @@ def _held(demand: Demand, ladder: Ladder) -> tuple[bool, str]:
     return False, f"{size} has no effect in any round, so nothing is known; demand it of other sites"
 
 
-def suggested(ladder: Ladder) -> float | None:
-    """What may be demanded of a ladder: its ``all_from`` if the rounds lie close together, or a step more.
-
-    A refusal is as good as being noticed. None if some round neither notices nor refuses it, or if there is
-    no larger magnitude.
-    """
-    ends = [one.bracket.high or one.bracket.refused for one in ladder.counted]
-    known = [end for end in ends if end is not None]
-    if not known or len(known) < len(ends):
-        return None
-    largest = max(known)
-    return largest if ladder.are_neighbours(ladder.none_up_to, largest) else ladder.above(largest)
-
-
 def _kind(ladder: Ladder) -> Kind | None:
     return ladder.quantity.kind if ladder.quantity is not None else None
 

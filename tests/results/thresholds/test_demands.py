@@ -10,7 +10,7 @@ import pytest
 from mutabot.errors import ExitCode
 from mutabot.model import Kind
 from mutabot.model.graded import Demand, parse_amount, wanted_magnitudes
-from mutabot.results.demands import rulings, suggested
+from mutabot.results.demands import rulings
 from mutabot.results.gate import decide
 from results.thresholds import journals
 from results.thresholds.journals import Rungs
@@ -101,24 +101,6 @@ def test_a_campaign_without_graded_mutants_says_how_to_get_them(tmp_path: Path) 
     found = journals.results(tmp_path, with_others=True, families=["robot"])
     decision = decide(found, demands=[TEN])
     assert "--family graded" in decision.lines[0]
-
-
-@pytest.mark.parametrize(
-    ("rounds", "magnitude"),
-    [
-        (["SSSCCCC"] * 5, 10.0),
-        (["CCCCCCC"] * 5, 1.0),
-        (["SSSCCCC"] * 4 + ["SSSSCCC"], 50.0),
-        (["SSSCCCC"] * 4 + ["SSSSSSC"], None),
-        (["SSSSSSS"] * 5, None),
-        (["SSSSSRR"] * 5, 50.0),
-        (["SSSSCRR"] * 4 + ["SSSSSRR"], 100.0),
-    ],
-)
-def test_what_is_suggested_is_met_with_a_step_to_spare(
-    tmp_path: Path, rounds: list[str], magnitude: float | None
-) -> None:
-    assert suggested(journals.ladder(tmp_path, *rounds)) == magnitude
 
 
 @pytest.mark.parametrize(

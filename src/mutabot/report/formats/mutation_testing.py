@@ -60,7 +60,6 @@ def _config(material: Material) -> dict[str, Any]:
         **{key: campaign.meta.get(key) for key in ("families", "rounds", "seed", "engine", "order")},
         "state": campaign.state,
         "outcomes": {"known": campaign.done, "planned": campaign.planned},
-        "scores": material.scores(),
         "leftOut": dict(Counter(item.reason for item in campaign.left_out)),
     }
 

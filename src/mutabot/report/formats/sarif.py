@@ -39,7 +39,6 @@ def make(material: Material) -> str:
                     "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
                     "invocations": [_invocation(material)],
                     "results": [_result(one, material, rules) for one in survivors],
-                    "properties": {"state": material.campaign.state, "scores": material.scores()},
                 }
             ],
         }

@@ -50,7 +50,7 @@
   function draw(holder, one, page, stops) {
     holder.replaceChildren(
       h("div", { class: "columns first" }, excerpt(one, page), facts(one, page)),
-      media(page), robot(one, page, stops), looked(one, page), suggestion(page), rounds(one, page));
+      robot(one, page, stops), looked(one, page), suggestion(page), rounds(one, page));
   }
 
   /** How many characters stand before a column, which counts bytes of UTF-8 from 1. */
@@ -85,15 +85,6 @@
       ["reached by", one.reach.length ? h("ul", { class: "plain" }, one.reach.slice(0, 6).map((test) => h("li", null, h("code", null, mutabot.breakable(mutabot.campaign.tests[test])))), one.reach.length > 6 ? h("li", null, `and ${one.reach.length - 6} more tests`) : null) : "no test"],
       one.earlier || one.outdated ? ["note", "some of these results are from an earlier campaign"] : null];
     return h("section", { "aria-labelledby": "facts" }, h("h2", { id: "facts" }, "What it is"), h("dl", { class: "facts" }, rows.filter(Boolean).map(([name, value]) => [h("dt", null, name), h("dd", null, value)])));
-  }
-
-  function media(page) {
-    if (!page.media.length) return "";
-    return h("section", { "aria-labelledby": "clips" }, h("h2", { id: "clips" }, "Clips and pictures"), h("div", { class: "media" }, page.media.map((file) => {
-      const name = file.replace(/^.*\//, "");
-      const path = file.split("/").map(encodeURIComponent).join("/");
-      return h("figure", null, /\.(mp4|webm)$/i.test(file) ? h("video", { src: path, controls: true, preload: "metadata", "aria-label": `Clip ${name}` }) : h("img", { src: path, alt: `Picture ${name}`, loading: "lazy" }), h("figcaption", null, name));
-    })));
   }
 
   // What the robot did
