@@ -7,6 +7,7 @@ out of date.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -158,9 +159,11 @@ def _overview(operators: list[Operator]) -> Iterator[str]:
 def _published(operators: list[Operator]) -> Iterator[str]:
     yield "The published operators, and what makes them here:\n"
     yield from _table("original", "mutant", "operator")
-    rows = {row.row: (row, each.name) for each in operators for row in each.published}
-    for row, name in (rows[number] for number in sorted(rows)):
-        yield _row(row.original, row.mutant, f"[{name}](#{name})")
+    rows = {}
+    for each in operators:
+        for number, original, mutant in re.findall(r"(\d+)\. (.*?) → (.*?)(?:; |$)", each.published):
+            rows[int(number)] = (original, mutant, f"[{each.name}](#{each.name})")
+    yield from (_row(*rows[number]) for number in sorted(rows))
     yield ""
 
 

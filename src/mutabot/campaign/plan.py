@@ -150,7 +150,6 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     found = []
     for rule in (one for family in wanted for one in rules if one.family == family):
         told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
-        rows = "; ".join(f"{row.original} → {row.mutant}" for row in rule.published)
-        published = f"Published operators: {rows}." if rows else ""
+        published = f"Published operators: {rule.published}." if rule.published else ""
         found.append({**told, "source": rule.stands_for or published})
     return found

@@ -1,4 +1,4 @@
-"""What operators say of themselves: worked examples in few words, and the studies that they stand for."""
+"""Worked examples of operators in few words."""
 
 from __future__ import annotations
 
@@ -11,15 +11,6 @@ from mutabot.model.quantity import Value
 from .magnitudes import Magnitudes, sized
 from .operator import Example, Subject, quantity_of
 
-#: how often each class of bugs was counted in public studies
-_STUDIES = "of the bugs on commands and readings in studies of ROS and PX4/ArduPilot software"
-TIMING = f"timing and order are 28 {_STUDIES}"
-SENSORS = f"sensor dropouts and misreadings are 20 {_STUDIES}"
-PARAMETERS = f"parameters are 14 {_STUDIES}"
-COMMANDS = f"missing and duplicated commands are 13 {_STUDIES}"
-FRAMES = f"frames are 9 {_STUDIES}"
-SIGNS = f"signs are 4 {_STUDIES}"
-UNITS = f"units are 2 {_STUDIES}"
 X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", "world")
 LOCATE = Operation("camera:locate", result=(X,), command=False)
 GRIP = Operation(

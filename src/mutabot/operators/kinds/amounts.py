@@ -9,7 +9,7 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.quantity import Value
 from mutabot.model.units import convert
-from mutabot.operators.examples import COMMANDS, PARAMETERS, UNITS, changed, reading, unchanged, writing
+from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.operator import Context, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, like, map_numbers, middle_of, within
 
@@ -40,10 +40,11 @@ class _OtherUnit(ValueOperator):
     Class attributes:
         units: the other unit, by a quantity's own.
         ways: which of the two mistakes.
+
+    Stands for: A number in another unit: {units}.
     """
 
     family = CATALOGUE
-    stands_for = f"A number in another unit: {UNITS}."
     units: ClassVar[Mapping[str, str]]
     ways: ClassVar[tuple[str, ...]] = (_TAKEN, _GIVEN)
 
@@ -168,10 +169,11 @@ class _Factor(ValueOperator):
 
     Class attributes:
         is_limited: whether it does.
+
+    Stands for: A wrong parameter: {parameters}.
     """
 
     family = CATALOGUE
-    stands_for = f"A wrong parameter: {PARAMETERS}."
     of_read = False
     variants: ClassVar[Mapping[str, float]] = {"x0.5": 0.5, "x2": 2.0}
     is_limited: ClassVar[bool] = True
@@ -255,11 +257,12 @@ class PartialOpening(ValueOperator):
     closed.
 
     Where: openings with a range or clip; those of two values take no other.
+
+    Stands for: Commands that are not carried out in full, as by a gripper that jams: {commands}.
     """
 
     name = "partial-opening"
     family = CATALOGUE
-    stands_for = f"Commands that are not carried out in full, as by a gripper that jams: {COMMANDS}."
     of_read = False
     examples = (
         changed(_OPEN, 80.0, 40.0),
@@ -284,11 +287,12 @@ class SilentLimit(ValueOperator):
     """A commanded value is limited to the middle 80 % of its range, without notice.
 
     Where: written numbers with a range or clip.
+
+    Stands for: A wrong parameter: {parameters}.
     """
 
     name = "silent-limit"
     family = CATALOGUE
-    stands_for = f"A wrong parameter: {PARAMETERS}."
     of_read = False
     examples = (
         changed(_LIMITED, 100, 90),

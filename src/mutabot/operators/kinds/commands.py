@@ -11,18 +11,8 @@ from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Rep
 from mutabot.model.notation import Notation
 from mutabot.model.quantity import WHOLE, Value, are_same
 from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.examples import (
-    CLOSE,
-    COMMANDS,
-    GRIP,
-    MOVE_BY,
-    MOVE_TO,
-    TIMING,
-    changed,
-    unchanged,
-    writing,
-)
-from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged
+from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import ValueOperator, given, like, map_numbers
 
 _HOME = Operation("robot:Arm.home")
@@ -37,12 +27,13 @@ class Skip(CommandOperator):
     """A command is not carried out; the program goes on as if it had been.
 
     Where: commands whose answer to doing nothing is known.
+
+    Published: 7. do command x → do nothing
     """
 
     name = "skip"
     needs = frozenset({Need.IDLE})
     does_nothing = True
-    published = (Published(7, "do command x", "do nothing"),)
     fault = "do nothing"
     examples = (
         Example(Subject(GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
@@ -57,10 +48,11 @@ class Repeat(CommandOperator):
     """A command is carried out twice; the program sees the second answer.
 
     Where: any command.
+
+    Published: 8. do command x → do command x twice
     """
 
     name = "repeat"
-    published = (Published(8, "do command x", "do command x twice"),)
     fault = "do it twice"
     examples = (
         Example(
@@ -80,10 +72,11 @@ class Opposite(CommandOperator):
     """A two-state command does the opposite: open for close, off for on, release for grasp.
 
     Where: written openings and outputs with two ends, and commands with an opposite.
+
+    Published: 11. do command x → do the opposite, such as release for grasp
     """
 
     name = "opposite"
-    published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
     examples = (
         changed(GRIP, 1, 0, note="grasp: release"),
         changed(_LAMP, False, True),
@@ -149,9 +142,13 @@ _WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 60.
 
 
 class _Timing(CommandOperator):
+    """Does something at another time, or in another order.
+
+    Stands for: Something too early, too late or in the wrong order: {timing}.
+    """
+
     family = CATALOGUE
     needs = frozenset({Need.PROGRAM})
-    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
 
 
 class SwapNext(_Timing):
@@ -209,11 +206,12 @@ class HalfWait(ValueOperator):
     """A wait is half as long: the next command comes before what was waited for is over.
 
     Where: written quantities of kind duration.
+
+    Stands for: Something too early, too late or in the wrong order: {timing}.
     """
 
     name = "half-wait"
     family = CATALOGUE
-    stands_for = _Timing.stands_for
     kinds = frozenset({Kind.DURATION})
     of_read = False
     examples = (
@@ -295,10 +293,12 @@ def _undone(subject: Subject, call: Call) -> Call:
 
 
 class _Chance(CommandOperator):
-    """Acts on a command by chance; the variant says how likely that is."""
+    """Acts on a command by chance; the variant says how likely that is.
+
+    Stands for: A command that is lost, or comes twice: {commands}.
+    """
 
     family = CATALOGUE
-    stands_for = f"A command that is lost, or comes twice: {COMMANDS}."
     needs = frozenset({Need.MEMORY, Need.PROGRAM})
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
 
@@ -360,12 +360,13 @@ class UnreportedRefusal(CommandOperator):
 
     Where: commands whose answer to doing nothing is known, where the tests make the robot raise one of its
     refusals.
+
+    Stands for: Errors that are swallowed on their way: {commands}.
     """
 
     name = "unreported-refusal"
     family = CATALOGUE
     needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
-    stands_for = f"Errors that are swallowed on their way: {COMMANDS}."
     fault = "a refusal is not reported"
     examples = (
         Example(Subject(_REFUSED), {"dx": 9.0}, refused=True, performed=({"dx": 9.0},), received={}),
