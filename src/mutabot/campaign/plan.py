@@ -149,11 +149,10 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     wanted = [family for family in known_families() if not families or family in families]
     rules = rules_of(wanted)
     found = []
-    for rule in (
-        rule for family in wanted for rule in in_order(one for one in rules if one.family == family)
-    ):
-        told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
-        rows = "; ".join(f"{row.original} → {row.mutant}" for row in rule.published)
-        published = f"Published operators: {rows}." if rows else ""
-        found.append({**told, "source": rule.stands_for or published})
+    for family in wanted:
+        for rule in in_order(one for one in rules if one.family == family):
+            told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
+            rows = "; ".join(f"{row.original} → {row.mutant}" for row in rule.published)
+            published = f"Published operators: {rows}." if rows else ""
+            found.append({**told, "source": rule.stands_for or published})
     return found
