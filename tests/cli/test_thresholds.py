@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -43,23 +42,6 @@ def test_it_prints_one_row_per_ladder(
 def test_it_prints_json(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(project, "thresholds", "--json") == 0
     assert len(json.loads(capsys.readouterr().out)["ladders"]) == 2
-
-
-@pytest.mark.parametrize(("own", "table"), [(True, "[[demand]]"), (False, "[[tool.mutabot.demand]]")])
-def test_it_suggests_demands_for_the_file_that_the_project_has(
-    project: Path, own: bool, table: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    if own:
-        (project / "mutabot.toml").write_text("")
-    assert call(project, "thresholds", "--suggest-demands") == 0
-    out = capsys.readouterr().out
-    assert table in out
-    assert tomllib.loads(out)
-
-
-def test_suggested_demands_are_toml_alone(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert call(project, "thresholds", "--suggest-demands", "--json") == ExitCode.USAGE
-    assert "prints TOML alone" in capsys.readouterr().err
 
 
 def test_without_ladders_it_says_what_plants_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

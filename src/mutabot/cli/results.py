@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from mutabot.cli import options
-from mutabot.cli.output import echo, print_bytes, print_json, show_results, tell
+from mutabot.cli.output import print_bytes, print_json, show_results, tell
 from mutabot.errors import JournalError, UsageError
 from mutabot.journal.files import find_journal, previous_of
 from mutabot.report.changes import print_changes
@@ -20,7 +20,7 @@ from mutabot.report.html.folder import Contents, check_folder, write_folder
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
-from mutabot.report.thresholds import print_thresholds, suggested_toml
+from mutabot.report.thresholds import print_thresholds
 from mutabot.results.results import Results, find_mutant, results_at
 from mutabot.results.stored import Changes, StoredEvidence, journal_at
 from mutabot.results.stored import changes as changes_between
@@ -30,9 +30,6 @@ from mutabot.results.thresholds import thresholds_of
 #: stands for standard output
 _STANDARD = Path("-")
 
-_Demands = Annotated[
-    bool, typer.Option("--suggest-demands", help="Print demands that this campaign meets, as TOML.")
-]
 _Formats = Annotated[
     list[str] | None,
     typer.Option(
@@ -85,14 +82,8 @@ def show(
             print_mutant(make_console(), result, source, evidence, suggestions, everything=all)
 
 
-def thresholds(
-    context: typer.Context,
-    suggest_demands: _Demands = False,
-    json: options.Json = False,
-) -> None:
+def thresholds(context: typer.Context, json: options.Json = False) -> None:
     """Show how large a fault must be before the tests notice it."""
-    if suggest_demands and json:
-        raise UsageError("--suggest-demands prints TOML alone")
     journal = find_journal(context.obj)
     results = results_at(journal)
     if not results.ladders:
@@ -101,11 +92,7 @@ def thresholds(
             path=str(journal),
         )
     found = thresholds_of(results)
-    if suggest_demands:
-        table = "demand" if (context.obj / "mutabot.toml").is_file() else "tool.mutabot.demand"
-        echo(suggested_toml(found.ladders, table=table))
-    else:
-        print_json(found) if json else print_thresholds(make_console(), found)
+    print_json(found) if json else print_thresholds(make_console(), found)
 
 
 def report(

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from collections.abc import Iterator, Sequence
 
 from rich.console import Console
 from rich.text import Text
 
-from mutabot.model.graded import OFFSET
 from mutabot.report.sections import Section, plural
 from mutabot.report.terminal.console import print_section
-from mutabot.results.demands import suggested
 from mutabot.results.ladders import Ladder
 from mutabot.results.thresholds import (
     Thresholds,
@@ -95,32 +91,3 @@ def _confidence(thresholds: Thresholds) -> str:
     if thresholds.exhaustive:
         parts.append(f"{thresholds.runs} of {plural(thresholds.exhaustive, 'possible run')} were needed.")
     return " ".join(parts)
-
-
-def suggested_toml(ladders: Sequence[Ladder], *, table: str) -> str:
-    """Return a demand for each quantity and site of which both directions are met, as TOML.
-
-    ``table`` is the name of the tables: ``tool.mutabot.demand``, or ``demand`` in a file of mutabot's own.
-    Where none can be suggested, a comment says why.
-    """
-    found: dict[str, list[Ladder]] = {}
-    for one in ladders:
-        found.setdefault(f"{one.mutant.site.id} {one.pair_name} {one.unit}", []).append(one)
-    return "\n\n".join("\n".join(_block(both, table)) for both in found.values())
-
-
-def _block(both: Sequence[Ladder], table: str) -> Iterator[str]:
-    yield from (f"# {one.place} {one.name}: {line_of(one)}" for one in both)
-    known = [size for one in both if (size := suggested(one)) is not None]
-    if len(known) < len(both):
-        yield "# no demand: some round neither notices nor refuses it, or the ladder ends too soon"
-        return
-    mutant = both[0].mutant
-    values = {
-        "site": mutant.site.id,
-        "quantity": mutant.quantity,
-        "operator": mutant.operator if mutant.operator != OFFSET else None,
-        "notice": f"{max(known):.12g} {both[0].unit or ''}".strip(),
-    }
-    yield f"[[{table}]]"
-    yield from (f"{key} = {json.dumps(text, ensure_ascii=False)}" for key, text in values.items() if text)

@@ -12,7 +12,6 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
-from itertools import pairwise
 
 from mutabot.frozen import frozen
 from mutabot.model import By, Mutant, Outcome, Quantity, Verdict
@@ -333,14 +332,6 @@ class Ladder:
         """The number of the mutant of this magnitude; None if the ladder has none."""
         found = (one.mutant for one in self.results if is_same(one.mutant.magnitude or 0.0, magnitude))
         return next((one.number for one in found), None)
-
-    def above(self, magnitude: float) -> float | None:
-        """The next larger magnitude; None if there is none."""
-        return next((size for size in self.sizes if size > magnitude), None)
-
-    def are_neighbours(self, low: float, high: float) -> bool:
-        """Whether no magnitude lies between these two of its own; 0 stands below the smallest."""
-        return any(is_same(one, low) and is_same(two, high) for one, two in pairwise((0.0, *self.sizes)))
 
 
 def looseness(ladder: Ladder) -> tuple[float, float, float]:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import io
 import json
 import re
-import tomllib
 from pathlib import Path
 
 import pytest
 
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds import bar, print_thresholds, suggested_toml
+from mutabot.report.thresholds import bar, print_thresholds
 from mutabot.results.thresholds import Thresholds, thresholds_of
 from results import samples
 from results.thresholds import journals
@@ -105,20 +104,3 @@ def keys_of(data: object) -> set[str]:
     if isinstance(data, dict):
         return {*data, *(key for value in data.values() for key in keys_of(value))}
     return {key for value in data for key in keys_of(value)} if isinstance(data, list) else set()
-
-
-def test_suggested_demands_are_toml_that_the_campaign_meets(thresholds: Thresholds) -> None:
-    text = suggested_toml(thresholds.ladders, table="tool.mutabot.demand")
-    found = tomllib.loads(text)["tool"]["mutabot"]["demand"]
-    assert [(one["site"], one["quantity"], one["notice"]) for one in found] == [
-        (samples.MOVE.id, "dx", "50 mm"),
-        (samples.BACK.id, "dx", "20 deg"),
-        (samples.READ.id, ".x", "1 mm"),
-    ]
-
-
-def test_where_no_demand_is_met_a_comment_says_so(tmp_path: Path) -> None:
-    found = thresholds_of(journals.results(tmp_path, Rungs(["SSSSSSS"])))
-    text = suggested_toml(found.ladders, table="demand")
-    assert "# no demand" in text
-    assert tomllib.loads(text) == {}

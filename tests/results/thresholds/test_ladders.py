@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds import print_thresholds, suggested_toml
+from mutabot.report.thresholds import print_thresholds
 from mutabot.results.ladders import Ladder, ladders_of
 from mutabot.results.thresholds import line_of, thresholds_of
 from results.thresholds import journals
@@ -32,7 +32,6 @@ def test_whatever_was_seen_can_be_told(tmp_path_factory: pytest.TempPathFactory,
         assert_sound(one)
     print_thresholds(make_console(io.StringIO(), width=80), found)
     dumps(data_of(found))
-    suggested_toml(found.ladders, table="demand")
 
 
 def assert_sound(one: Ladder) -> None:
