@@ -148,8 +148,9 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     wanted = [family for family in known_families() if not families or family in families]
     rules = rules_of(wanted)
     found = []
-    for rule in (one for family in wanted for one in rules if one.family == family):
-        told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
-        published = f"Published operators: {rule.published}." if rule.published else ""
-        found.append({**told, "source": rule.stands_for or published})
+    for family in wanted:
+        for rule in (one for one in rules if one.family == family):
+            told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
+            published = f"Published operators: {rule.published}." if rule.published else ""
+            found.append({**told, "source": rule.stands_for or published})
     return found

@@ -9,7 +9,6 @@ from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.model import Kind, Outcome, Verdict
 from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
-from mutabot.model.mutant import is_like
 from mutabot.results.ladders import Ladder, LadderRound
 from mutabot.results.thresholds import amount, in_rounds
 
@@ -83,19 +82,12 @@ def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Seque
         return 'the campaign has no graded mutants; add "graded" to families, or run with --family graded'
     if not ladders:
         return "the campaign has no ladders"
-    about = [one for one in ladders if one.mutant.operator == demand.operator]
-    if not about:
-        return unknown_name_text("operator", demand.operator, {one.mutant.operator for one in ladders})
-    here = [one for one in about if demand.is_at(one.mutant)]
+    here = [one for one in ladders if demand.is_at(one.mutant)]
     if not here:
-        places = {name for one in about for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
+        places = {name for one in ladders for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
         return unknown_name_text("site", demand.site or "", places)
-    names = {one.mutant.quantity or "" for one in here}
-    if demand.quantity is not None and not any(is_like(demand.quantity, name) for name in names):
-        return unknown_name_text("quantity", demand.quantity, names)
-    units = ", ".join(sorted({one.unit or "no unit" for one in here}))
-    kinds = ", ".join(sorted({kind.value for kind in map(_kind, here) if kind is not None}))
-    return f"fits none of {len(here)} ladders, which are of {kinds or 'unknown kinds'}, in {units}"
+    known = ", ".join(sorted({f"{one.name} in {one.unit or 'no unit'}" for one in here}))
+    return f"fits none of {len(here)} ladders: {known}"
 
 
 def _at(ladder: Ladder, demanded: float) -> Iterator[Outcome]:

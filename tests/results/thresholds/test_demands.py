@@ -84,11 +84,11 @@ def test_the_gate_names_each_site_direction_and_round(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("demand", "words"),
     [
-        (Demand(10.0, "deg"), "fits none of 1 ladders, which are of translation, in mm"),
-        (Demand(10.0, "mm", kind=Kind.SPEED), "fits none of 1 ladders, which are of translation, in mm"),
+        (Demand(10.0, "deg"), "fits none of 1 ladders: arm.move_by dx + in mm"),
+        (Demand(10.0, "mm", kind=Kind.SPEED), "fits none of 1 ladders: arm.move_by dx + in mm"),
         (Demand(10.0, "mm", site="mision.py:3"), "unknown site 'mision.py:3'; did you mean 'mission.py:3'?"),
-        (Demand(10.0, "mm", quantity="xd"), "unknown quantity 'xd'"),
-        (Demand(10.0, "ms", operator="delay"), "unknown operator 'delay'"),
+        (Demand(10.0, "mm", quantity="xd"), "fits none of 1 ladders: arm.move_by dx + in mm"),
+        (Demand(10.0, "ms", operator="delay"), "fits none of 1 ladders: arm.move_by dx + in mm"),
     ],
 )
 def test_a_demand_that_fits_no_ladder_is_no_pass(tmp_path: Path, demand: Demand, words: str) -> None:

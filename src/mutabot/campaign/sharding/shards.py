@@ -32,11 +32,11 @@ def assign(costs: Mapping[str, float], shards: int) -> dict[str, int]:
     loads = [0.0] * shards
     found: dict[str, int] = {}
     # Large ones first, as they fit the worst; by classes, so that a change of cost seldom changes the order.
-    for name, seconds in sorted(costs.items(), key=lambda one: (-math.frexp(one[1])[1], _hash(one[0]))):
+    for name, price in sorted(costs.items(), key=lambda one: (-math.frexp(one[1])[1], _hash(one[0]))):
         liked = sorted(range(shards), key=lambda shard: _hash(f"{name} {shard}"))
-        chosen = next((one for one in liked if loads[one] + seconds <= room), None)
+        chosen = next((one for one in liked if loads[one] + price <= room), None)
         found[name] = min(liked, key=lambda one: loads[one]) if chosen is None else chosen
-        loads[found[name]] += seconds
+        loads[found[name]] += price
     return found
 
 
