@@ -110,9 +110,9 @@
       stop = [];
       const found = page.recordings[index];
       try {
-        const usual = found.original === null ? null : mutabot.recordings.recording(await mutabot.load(`original ${found.original}`, `data/originals/${found.original}.js`), null);
+        const usual = found.original === null ? null : mutabot.recordings.recording(await mutabot.load(`original ${found.original}`, `data/originals/${found.original}.js`));
         if (!section.isConnected) return;
-        pair(holder, one, page, found, usual, mutabot.recordings.recording(found, usual), stop);
+        pair(holder, one, page, found, usual, mutabot.recordings.recording(found), stop);
       } catch (error) { holder.replaceChildren(empty("The recording cannot be shown.", error.message)); }
     }
     show(0);
