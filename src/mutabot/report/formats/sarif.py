@@ -9,7 +9,7 @@ from urllib.parse import quote
 from mutabot.model import Mutant, Span
 from mutabot.report.document import dumps
 from mutabot.report.format import Format, Material, utf16
-from mutabot.report.texts import is_divergent, status_of, survivor_text
+from mutabot.report.texts import is_divergent, survivor_text
 from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -86,17 +86,7 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
         "message": {"text": _message(survivor_text(result))},
         "locations": [_location(mutant.site.span, material)],
         "partialFingerprints": {_FINGERPRINT: mutant.id},
-        "properties": {
-            "mutant": mutant.id,
-            "number": mutant.number,
-            "family": mutant.family,
-            "role": mutant.site.role.value,
-            "status": str(status_of(result)),
-            "killed": result.kill_rate.killed,
-            "valid": result.kill_rate.valid,
-            "distance": result.distance,
-            "indistinguishable": result.indistinguishable,
-        },
+        "properties": {"mutant": mutant.id, "number": mutant.number},
     }
 
 
