@@ -14,16 +14,15 @@ from mutabot.cli import options
 from mutabot.cli.output import print_bytes, print_json, show_results, tell
 from mutabot.errors import JournalError, UsageError
 from mutabot.journal.files import find_journal, previous_of
-from mutabot.report.changes import print_changes
+from mutabot.report.changes import changes
 from mutabot.report.format import Format, Material, format_of, names
 from mutabot.report.html.folder import Contents, check_folder, write_folder
-from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.console import make_console, print_section, short_place
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
 from mutabot.report.thresholds import print_thresholds
 from mutabot.results.results import Results, find_mutant, results_at
-from mutabot.results.stored import Changes, StoredEvidence, journal_at
-from mutabot.results.stored import changes as changes_between
+from mutabot.results.stored import StoredEvidence, journal_at
 from mutabot.results.suggested import kept_suggestions
 from mutabot.results.thresholds import thresholds_of
 
@@ -101,11 +100,10 @@ def report(
     html: _Html = None,
     compare: options.Compared = None,
     prefix: _Prefix = "",
-    json: options.Json = False,
 ) -> None:
     """Write the last campaign as HTML pages or in formats of other tools.
 
-    With --compare alone, print how it differs from an older campaign.
+    With --compare alone, print what became of survivors since an older campaign.
     """
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
@@ -115,22 +113,20 @@ def report(
     if html is not None:
         check_folder(html)
     unfit = ["--html"] if html is not None else []
-    unfit += [f"the format {one.name}" for one, _ in wanted if not one.tells_changes]
+    unfit += [f"the format {one.name}" for one, _ in wanted if one.name != "markdown"]
     if compare is not None and unfit:
         raise UsageError(f"{unfit[0]} cannot hold a comparison; markdown can")
-    if json and (wanted or html is not None or compare is None):
-        raise UsageError("--json goes with --compare alone; `mutabot results --json` prints the results")
     journal, folder = find_journal(context.obj), PurePosixPath(prefix)
     if folder.is_absolute() or ".." in folder.parts:
         raise UsageError(f"--prefix {prefix} must be a folder inside the repository, relative to its root")
     stored = results_at(journal)
     campaign = portable(stored)
-    changes = None
-    if compare is not None:
-        changes = _changes(campaign, journal, compare)
-        if not wanted:
-            print_json(changes) if json else print_changes(make_console(), changes)
-    material = Material(campaign, "" if folder == PurePosixPath() else str(folder), changes)
+    older = portable(results_at(_older(compare, journal))) if compare is not None else None
+    if older is not None and not wanted:
+        console = make_console()
+        for section in changes(older, campaign, short_place):
+            print_section(console, section)
+    material = Material(campaign, "" if folder == PurePosixPath() else str(folder), older)
     for one, file in wanted:
         _write(one.make(material), file)
     if html is not None:
@@ -156,12 +152,13 @@ def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Forma
         yield found, file
 
 
-def _changes(campaign: Results, journal: Path, old: Path) -> Changes:
-    other = journal_at(old)
+def _older(path: Path, journal: Path) -> Path:
+    """Return the journal of an older campaign. Raises UsageError if it is this one."""
+    other = journal_at(path)
     if other.exists() and journal.exists() and other.samefile(journal):
         before = f"the last complete one before it, if there was any, is in {previous_of(journal).name}"
-        raise UsageError(f"{old} is the campaign itself; {before} beside it")
-    return changes_between(portable(results_at(other)), campaign)
+        raise UsageError(f"{path} is the campaign itself; {before} beside it")
+    return other
 
 
 def _write(text: str, file: Path) -> None:

@@ -19,7 +19,6 @@ from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
-from mutabot.results.stored import Changes, Ends
 from mutabot.results.suggested import Suggestion, Suggestions
 from mutabot.results.thresholds import line_of
 
@@ -93,41 +92,6 @@ def _replayed(one: records.Replayed) -> dict[str, Any]:
 def _repeats(repeats: records.Repeats) -> dict[str, Any]:
     found = {"false_kills": false_kills(repeats), "false_survivors": false_survivors(repeats)}
     return {**data_of.facts(repeats, "doubted others certain survivors"), **data_of(found)}
-
-
-def _changes(changes: Changes) -> dict[str, Any]:
-    return {
-        "format": FORMAT,
-        **data_of.facts(
-            changes,
-            "old_state new_state notes same_survivors=same new_survivors=appeared fixed_survivors=fixed "
-            "changed_survivors=changed unknown_survivors=unknown gone_mutants=gone new_mutants=added",
-        ),
-        "groups": [
-            {"family": family, "role": role, "old": _mean(old), "new": _mean(new)}
-            for (family, role), (old, new) in changes.scores.items()
-        ],
-    }
-
-
-def _ends(pair: Ends) -> dict[str, Any]:
-    return {**data_of(pair.either.mutant), "old": _end(pair.old), "new": _end(pair.new)}
-
-
-def _end(result: MutantResult | None) -> dict[str, Any] | None:
-    if result is None:
-        return None
-    return {
-        "status": data_of(status_of(result)),
-        "rounds": [one.verdict.value if one is not None else None for one in result.rounds],
-        **data_of.facts(result, "killed=kill_rate.killed valid=kill_rate.valid indistinguishable why"),
-    }
-
-
-def _mean(group: Group | None) -> dict[str, Any] | None:
-    if group is None:
-        return None
-    return data_of.facts(group, "mutants score=scores.mean check_score=scores.mean_check")
 
 
 def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
@@ -218,8 +182,6 @@ data_of = Encoder(
         Confirmed: "outcomes refused confirmed wrong left most level text",
         records.ShardOf: "number of mutants",
         records.Replayed: _replayed,
-        Changes: _changes,
-        Ends: _ends,
         thresholds.Thresholds: _thresholds,
         ladders.Ladder: _ladder,
         ladders.LadderRound: _ladder_round,

@@ -18,7 +18,6 @@ from mutabot.extensions import ExtensionPart, brought
 from mutabot.frozen import frozen
 from mutabot.model import Span
 from mutabot.results.results import Results
-from mutabot.results.stored import Changes
 
 
 @frozen
@@ -28,12 +27,12 @@ class Material:
     Attributes:
         campaign: the campaign, fit for any report.
         prefix: the project's folder in its repository, with forward slashes; empty if that is its root.
-        changes: what differs from an older campaign, if that is to be told.
+        older: an older campaign, if the report is to tell what became of its survivors.
     """
 
     campaign: Results
     prefix: str = ""
-    changes: Changes | None = None
+    older: Results | None = None
 
     def path(self, file: str) -> str:
         """A file of the project, relative to the repository."""
@@ -51,12 +50,10 @@ class Format:
     Attributes:
         name: by which users ask for it.
         make: the text of the whole report.
-        tells_changes: whether it can hold what differs from an older campaign.
     """
 
     name: str
     make: Callable[[Material], str]
-    tells_changes: bool = False
 
 
 @frozen

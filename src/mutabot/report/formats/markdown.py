@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from mutabot.model import Span
-from mutabot.report.changes import change_lines
+from mutabot.report.changes import changes
 from mutabot.report.format import Format, Material
 from mutabot.report.sections import plural, section_lines, sections
 from mutabot.report.texts import escaped
@@ -38,8 +38,10 @@ def _lines(material: Material) -> Iterator[str]:
 
     for section in sections(campaign, place):
         yield from section_lines(section, _ROWS)
-        if section.title == "Scores" and material.changes is not None:
-            yield from change_lines(material.changes, place)
+        if section.title == "Scores" and material.older is not None:
+            yield from ("### Since the older campaign", "")
+            for changed in changes(material.older, campaign, place):
+                yield from section_lines(changed, _ROWS, level=4)
 
 
-FORMAT = Format("markdown", make, tells_changes=True)
+FORMAT = Format("markdown", make)
