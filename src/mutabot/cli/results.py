@@ -113,7 +113,7 @@ def report(
     if html is not None:
         check_folder(html)
     unfit = ["--html"] if html is not None else []
-    unfit += [f"the format {one.name}" for one, _ in wanted if one.name != "markdown"]
+    unfit += [f"the format {name}" for name in format or () if name != "markdown"]
     if compare is not None and unfit:
         raise UsageError(f"{unfit[0]} cannot hold a comparison; markdown can")
     journal, folder = find_journal(context.obj), PurePosixPath(prefix)
@@ -127,8 +127,8 @@ def report(
         for section in changes(older, campaign, short_place):
             print_section(console, section)
     material = Material(campaign, "" if folder == PurePosixPath() else str(folder), older)
-    for one, file in wanted:
-        _write(one.make(material), file)
+    for make, file in wanted:
+        _write(make(material), file)
     if html is not None:
         _write_pages(html, campaign, journal, stored.meta.get("root"))
     if not campaign.is_complete:

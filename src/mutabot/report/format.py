@@ -1,6 +1,6 @@
-"""The contract of a format: what it is called, and what makes it of a campaign.
+"""The contract of a format: a function that makes a text of a campaign.
 
-A format is one file in ``report/formats``, which sets ``FORMAT``; it has the file's name, with hyphens. It is
+A format is the function ``make`` of a file in ``report/formats``; it has the file's name, with hyphens. It is
 found there, and nothing else has to be edited. Packages bring others (``extensions.Extension``). What it is
 given has no absolute path and no character that no format could hold (``report.texts.portable``); what is
 special in the format it escapes itself.
@@ -13,7 +13,7 @@ import pkgutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from mutabot.errors import ExtensionError, UsageError, unknown_name_text
+from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.frozen import frozen
 from mutabot.model import Span
@@ -43,17 +43,8 @@ class Material:
         return place_of(span, self.campaign.source(span.file), length)
 
 
-@frozen
-class Format:
-    """A format.
-
-    Attributes:
-        name: by which users ask for it.
-        make: the text of the whole report.
-    """
-
-    name: str
-    make: Callable[[Material], str]
+#: makes the text of a whole report
+Format = Callable[[Material], str]
 
 
 @frozen
@@ -109,15 +100,11 @@ def format_of(name: str) -> Format:
     """The format of this name. Raises UsageError, with the nearest name, if there is none."""
     if name in _own():
         module = importlib.import_module(f"{__package__}.formats.{name.replace('-', '_')}")
-        found: Format = module.FORMAT
-        return found
+        return module.make  # type: ignore[no-any-return]
     part = _of_packages().get(name)
     if part is None:
         raise UsageError(unknown_name_text("format", name, names()))
-    loaded = part.load()
-    if not isinstance(loaded, Format):
-        raise ExtensionError(f"{part.words} is no {Format.__module__}.Format")
-    return loaded
+    return part.load_function()
 
 
 def _own() -> list[str]:

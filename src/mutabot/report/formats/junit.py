@@ -7,7 +7,7 @@ from dataclasses import replace
 from xml.etree import ElementTree as Xml
 
 from mutabot.model import Verdict
-from mutabot.report.format import Format, Material
+from mutabot.report.format import Material
 from mutabot.report.texts import one_line, reason_of, rounds_text, short_reason, status_of, why_alone
 from mutabot.results.results import MutantResult
 
@@ -91,6 +91,3 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     if element != "skipped":
         told.set("type", str(status).replace(" ", "-"))
     told.text = text
-
-
-FORMAT = Format("junit", make)

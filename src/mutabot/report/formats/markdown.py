@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from mutabot.model import Span
 from mutabot.report.changes import changes
-from mutabot.report.format import Format, Material
+from mutabot.report.format import Material
 from mutabot.report.sections import plural, section_lines, sections
 from mutabot.report.texts import escaped
 
@@ -42,6 +42,3 @@ def _lines(material: Material) -> Iterator[str]:
             yield from ("### Since the older campaign", "")
             for changed in changes(material.older, campaign, place):
                 yield from section_lines(changed, _ROWS, level=4)
-
-
-FORMAT = Format("markdown", make)

@@ -12,7 +12,7 @@ from typing import Any
 
 from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
-from mutabot.report.format import Format, Material, utf16
+from mutabot.report.format import Material, utf16
 from mutabot.report.texts import reason_of, status_of
 from mutabot.results.results import MutantResult, killers
 
@@ -124,6 +124,3 @@ def _test_files(material: Material) -> dict[str, Any]:
 
 def _unique(names: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(names))
-
-
-FORMAT = Format("mutation-testing", make)

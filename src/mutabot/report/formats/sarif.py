@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 from mutabot.model import Mutant, Span
 from mutabot.report.document import dumps
-from mutabot.report.format import Format, Material, utf16
+from mutabot.report.format import Material, utf16
 from mutabot.report.texts import is_divergent, survivor_text
 from mutabot.results.results import MutantResult
 
@@ -116,6 +116,3 @@ def _location(span: Span, material: Material) -> dict[str, Any]:
 def _message(text: str) -> str:
     """Plain text for ``message.text``, in which braces stand for arguments and ``[…](…)`` for a link."""
     return text.replace("{", "{{").replace("}", "}}").replace("](", "] (")
-
-
-FORMAT = Format("sarif", make)
