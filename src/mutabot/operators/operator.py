@@ -236,6 +236,8 @@ class Operator(Rule):
         draws: whether it adds a number that is drawn anew for each round, which reports then show.
         is_raced: whether it leaves to chance what the program's processes still get done, so that equal runs
             may end differently: survivors are run again as well as kills.
+        by_chance: whether only chance says at which calls it acts.
+        calls: how many calls it takes.
     """
 
     family: ClassVar[str] = ROBOT
@@ -244,6 +246,8 @@ class Operator(Rule):
     does_nothing: ClassVar[bool] = False
     draws: ClassVar[bool] = False
     is_raced: ClassVar[bool] = False
+    by_chance: ClassVar[bool] = False
+    calls: ClassVar[int] = 1
 
     def needs_of(self, subject: Subject) -> frozenset[Need]:
         """What it asks for at this subject."""
@@ -257,11 +261,11 @@ class Operator(Rule):
 
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
-        return False
+        return self.by_chance
 
     def least_calls(self, subject: Subject) -> int:
         """How many calls it takes to be what it is; it is left out where the tests make fewer."""
-        return 1
+        return self.calls
 
     @abstractmethod
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:

@@ -284,6 +284,13 @@ def plural(count: int, singular: str, several: str | None = None) -> str:
     return f"{count} {singular if count == 1 else several or singular + 's'}"
 
 
+def size_text(results: Results) -> str:
+    """Return ``24 mutants and 3 ladders × 5 rounds``."""
+    kinds = [plural(len(results.mutants), "mutant")] if results.mutants or not results.ladders else []
+    kinds += [plural(results.ladders, "ladder")] if results.ladders else []
+    return f"{' and '.join(kinds)} × {plural(results.rounds, 'round')}"
+
+
 def percent(share: float | None) -> str:
     """Return a score as text: ``92.3 %``, or ``–`` where nothing was valid."""
     return "–" if share is None else f"{100 * share:.1f} %"

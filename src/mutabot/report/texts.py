@@ -20,7 +20,7 @@ from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
-_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
+ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 #: an absolute path in one of the folders in which machines keep files; topics of ROS look like others
 _ABSOLUTE = re.compile(
     r"(?<![\w.~/…-])(?:file://)?/(?:home|root|tmp|usr|opt|var|etc|mnt|srv|nix|workspace|workspaces|builds|github|"
@@ -49,7 +49,7 @@ class Cleaner:
         self._root = re.compile(rf"(?:file://)?{re.escape(folder)}(?:/|(?![\w.-]))") if folder else None
 
     def __call__(self, text: str) -> str:
-        text = _ESCAPES.sub("", text)
+        text = ESCAPES.sub("", text)
         if self._root is not None:
             text = self._root.sub(lambda found: "" if found[0].endswith("/") else ".", text)
         return legible(_ABSOLUTE.sub("…/", text))

@@ -299,11 +299,9 @@ class _Chance(CommandOperator):
     """
 
     family = CATALOGUE
+    by_chance = True
     needs = frozenset({Need.MEMORY, Need.PROGRAM})
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True
 
 
 class LostCommand(_Chance):
@@ -365,6 +363,7 @@ class UnreportedRefusal(CommandOperator):
     """
 
     name = "unreported-refusal"
+    by_chance = True  # what the robot refuses only the run can tell
     family = CATALOGUE
     needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
     fault = "a refusal is not reported"
@@ -372,9 +371,6 @@ class UnreportedRefusal(CommandOperator):
         Example(Subject(_REFUSED), {"dx": 9.0}, refused=True, performed=({"dx": 9.0},), received={}),
         Example(Subject(_REFUSED), {"dx": 0.1}, away="the robot does not refuse it"),
     )
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True  # what the robot refuses only the run can tell
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         try:

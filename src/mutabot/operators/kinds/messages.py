@@ -119,6 +119,7 @@ class Stale(MessageOperator):
     """
 
     name = "stale"
+    calls = 2
     needs = _EARLIER
     forms = _SENT | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
     variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
@@ -149,9 +150,6 @@ class Stale(MessageOperator):
         Example(Subject(PUBLISH, variant=_FIRST), {"x": 0.4}, away=_NONE_BEFORE),
         Example(Subject(RECEIVE, variant=_PREVIOUS), replied={"gap": 0.02}, earlier=(), away=_NONE_BEFORE),
     )
-
-    def least_calls(self, subject: Subject) -> int:
-        return 2
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         if form_of(call.operation) in _SENT:
@@ -206,6 +204,7 @@ class Reorder(MessageOperator):
     """Messages change places, two by two: the second comes before the first. A last one alone is lost."""
 
     name = "reorder"
+    calls = 2
     needs = _EARLIER
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
     fault = "every other {what} comes after the next one"
@@ -222,9 +221,6 @@ class Reorder(MessageOperator):
         ),
         Example(Subject(RECEIVE), replied={"gap": 0.5}, performed=({},), lost=True),
     )
-
-    def least_calls(self, subject: Subject) -> int:
-        return 2
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         held = context.memory

@@ -151,14 +151,12 @@ class StuckReading(_Reading):
     """
 
     name = "stuck-reading"
+    calls = 2
     kinds = frozenset(Kind)
     examples = (
         changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
         unchanged(_MEASURE, 0.2, "it is the first reading"),
     )
-
-    def least_calls(self, subject: Subject) -> int:
-        return 2
 
     def change(self, value: Value, context: Context) -> Value | None:
         if not context.memory:
@@ -183,6 +181,7 @@ class Spike(_Reading):
     """
 
     name = "spike"
+    by_chance = True
     kinds = MEASURED - WHOLE
     variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
     examples = (
@@ -190,9 +189,6 @@ class Spike(_Reading):
         changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,), note="the far end of its range"),
         unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
     )
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True
 
     def change(self, value: Value, context: Context) -> Value | None:
         context.by_chance()
@@ -289,14 +285,12 @@ class ConfusedLabel(_Reading):
     """
 
     name = "confused-label"
+    by_chance = True
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
     examples = (
         changed(_SEE, "red", "blue", "30%"),
         unchanged(_SEE, "red", "most are read rightly", "30%", earlier=("red",) * 3),
     )
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1

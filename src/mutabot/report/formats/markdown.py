@@ -8,7 +8,7 @@ from dataclasses import replace
 from mutabot.model import Span
 from mutabot.report.changes import changes
 from mutabot.report.format import Material
-from mutabot.report.sections import plural, section_lines, sections
+from mutabot.report.sections import section_lines, sections, size_text
 from mutabot.report.texts import escaped
 
 #: rows of a table; GitHub takes no summary of more than a megabyte
@@ -22,9 +22,7 @@ def make(material: Material) -> str:
 
 def _lines(material: Material) -> Iterator[str]:
     campaign = material.campaign
-    kinds = [plural(len(campaign.mutants), "mutant")] if campaign.mutants or not campaign.ladders else []
-    kinds += [plural(campaign.ladders, "ladder")] if campaign.ladders else []
-    yield from (f"## Mutation testing: {' and '.join(kinds)} × {plural(campaign.rounds, 'round')}", "")
+    yield from (f"## Mutation testing: {size_text(campaign)}", "")
     if not campaign.is_complete or campaign.done < campaign.planned:
         yield from (
             f"> **This campaign is not complete** ({escaped(campaign.state)}): {campaign.known}.",

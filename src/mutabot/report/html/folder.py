@@ -38,7 +38,6 @@ _LADDER = (
 )
 #: ladders that the page shows; `mutabot thresholds` prints all
 _LADDERS = 200
-_META = ("mutabot", "python", "versions", "seed", "engine", "families", "started", "seconds")
 _MARK_TEXT = "A report of mutabot: open index.html. `mutabot report --html` replaces it.\n"
 #: what a report consists of
 _PAGE, _ASSETS, _DATA = "index.html", "assets", "data"
@@ -61,7 +60,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
             "state attempt done planned rounds groups controls verification repeats drawing tests baseline "
             "reaching left_out operators flaky=flaky.tests confirmed=confirmation.text",
         ),
-        "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
+        "meta": campaign.meta,
         # thousands of rows do not repeat the names of their cells
         "columns": [*rows[0]] if rows else [],
         "mutants": [[*one.values()] for one in rows],
