@@ -161,11 +161,6 @@ def status_of(result: MutantResult) -> Verdict | None:
     return next((verdict for verdict in OUTSIDE if verdict in found), None)
 
 
-def is_divergent(result: MutantResult) -> bool:
-    """Whether a survivor is known to have made the robot do anything else than the original."""
-    return any(one.divergence and not one.indistinguishable for one in result.survived)
-
-
 def rounds_text(result: MutantResult) -> str:
     """``killed by check in rounds 1 and 2, survived in round 3, not run in rounds 4 to 6``."""
     by_end: dict[str, list[int]] = {}

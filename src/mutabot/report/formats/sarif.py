@@ -9,7 +9,7 @@ from urllib.parse import quote
 from mutabot.model import Mutant, Span
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
-from mutabot.report.texts import is_divergent, survivor_text
+from mutabot.report.texts import survivor_text
 from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -94,7 +94,8 @@ def _level(result: MutantResult) -> str:
     """How important a survivor is: whether the robot did something else, as far as that is known."""
     if result.indistinguishable:
         return "note"
-    return "error" if is_divergent(result) else "warning"
+    differs = any(one.divergence and not one.indistinguishable for one in result.survived)
+    return "error" if differs else "warning"
 
 
 def _location(span: Span, material: Material) -> dict[str, Any]:

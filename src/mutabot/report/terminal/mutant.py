@@ -10,10 +10,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.evidence.story import amount
 from mutabot.journal.records import Replayed
 from mutabot.model import Diverged, Looked, Mutant, Outcome, Quantity, Span
-from mutabot.model.outcome import Apart, end_in_words
+from mutabot.model.outcome import end_in_words
 from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import effect_text, numbers_text, telling
 from mutabot.results.results import MutantResult
@@ -52,7 +51,7 @@ def print_mutant(
     if lines:
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
-    found = [_rounds(result, everything=everything), *_happened(result, everything=everything)]
+    found = [_rounds(result, everything=everything), *_happened(result)]
     found += [*(_looked(result) if everything else ()), *suggested_sections(result, suggestions)]
     for section in found:
         print_section(console, section)
@@ -143,16 +142,13 @@ def _details(outcome: Outcome) -> Iterator[str]:
         yield f"re-run alone, because beside others it exceeded the wall clock: {outcome.beside}"
 
 
-def _happened(result: MutantResult, *, everything: bool) -> Iterator[Section]:
+def _happened(result: MutantResult) -> Iterator[Section]:
     """What the robot did in the round and test that tell most; nothing where nothing was recorded."""
     number, diverged = telling(result) or (0, None)
     if diverged is None:
         return
     title = f"What the robot did (round {number + 1}, {diverged.test})"
     yield Section(title, lines=[*_sentences(diverged)])
-    if everything and diverged.apart:
-        columns = ("*difference", ">from", ">at most", ">at", ">at the end", ">off its path")
-        yield Section("How far apart", columns, [_apart_row(one) for one in diverged.apart])
 
 
 def _sentences(diverged: Diverged) -> Iterator[str]:
@@ -166,12 +162,6 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
     for one in diverged.near[:2]:
         least = f"{1e3 * one.distance:.0f} mm, in the original {1e3 * one.original:.0f} mm"
         yield f"Closest approach of {one.body} to {one.obstacle}: {least}, at {one.at:.1f} s."
-
-
-def _apart_row(one: Apart) -> tuple[str, ...]:
-    largest, final = amount(one.largest, one.unit), amount(one.final, one.unit)
-    aside = amount(one.aside, one.unit) if one.aside is not None else "–"
-    return one.name, f"{one.first:.1f} s", largest, f"{one.at:.1f} s", final, aside
 
 
 def _looked(result: MutantResult) -> Iterator[Section]:
