@@ -52,6 +52,37 @@ def unchanged(operation: Operation, before: Any, away: str, variant: str = "", *
     return Example(subject, away=away, **more)
 
 
+def whole(
+    operation: Operation,
+    value: Any,
+    *after: Any,
+    variant: str = "",
+    size: tuple[float, str | None] | None = None,
+    earlier: tuple[Any, ...] = (),
+    then: tuple[Any, ...] = (),
+    **more: Any,
+) -> Example:
+    """A call on which the operator acts as a whole.
+
+    Of a call that writes, ``value`` is what it writes, and ``after`` what each call writes that reaches the
+    robot. Of one that reads, they are what the robot answers, and what the program gets, if it gets any.
+    Values are those of the first quantity, or a table of several; ``size``: the magnitude and its unit.
+    """
+    first = next(iter((*operation.arguments, *operation.result)), None)
+
+    def of(one: Any) -> Mapping[str, Value]:
+        return one if first is None or isinstance(one, Mapping) else {first.name: one}
+
+    subject = Subject(operation, variant=variant)
+    if size is not None:
+        subject = next(sized(subject, Magnitudes(size[1], (size[0],))))
+    known = {"earlier": tuple(map(of, earlier)), "then": tuple(map(of, then)), **more}
+    if operation.arguments or not operation.result:
+        return Example(subject, of(value), performed=tuple(map(of, after)), **known)
+    received = of(after[0]) if after else None
+    return Example(subject, replied=of(value), performed=({},), received=received, **known)
+
+
 def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subject:
     quantities = {one.name: one for one in (*operation.arguments, *operation.result)}
     quantity = quantities[more.pop("quantity", next(iter(quantities)))]

@@ -11,7 +11,7 @@ from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Rep
 from mutabot.model.notation import Notation
 from mutabot.model.quantity import WHOLE, Value, are_same
 from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
+from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, whole, writing
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import ValueOperator, given, like, map_numbers
 
@@ -54,14 +54,7 @@ class Repeat(CommandOperator):
 
     name = "repeat"
     fault = "do it twice"
-    examples = (
-        Example(
-            Subject(MOVE_BY),
-            {"dx": 0.1},
-            performed=({"dx": 0.1}, {"dx": 0.1}),
-            note="do command x: do command x twice",
-        ),
-    )
+    examples = (whole(MOVE_BY, 0.1, 0.1, 0.1, note="do command x: do command x twice"),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         await proceed(call)
@@ -178,14 +171,9 @@ class PreviousTarget(_Timing):
     name = "previous-target"
     fault = "the motion of the call before it again"
     examples = (
-        Example(
-            Subject(MOVE_TO),
-            {"x": 0.4, "y": 0.1},
-            previous={"x": 0.2, "y": 0.0},
-            performed=({"x": 0.2, "y": 0.0},),
-        ),
-        Example(Subject(MOVE_TO), {"x": 0.4}, away="there is none before it"),
-        Example(Subject(MOVE_TO), {"x": 0.4}, previous={"x": 0.4}, away="it went there before"),
+        whole(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.2, "y": 0.0}, previous={"x": 0.2, "y": 0.0}),
+        whole(MOVE_TO, 0.4, away="there is none before it"),
+        whole(MOVE_TO, 0.4, previous={"x": 0.4}, away="it went there before"),
     )
 
     def fits(self, whole: Subject) -> bool:
@@ -314,13 +302,8 @@ class LostCommand(_Chance):
     needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
     fault = "do nothing, with a probability of {variant}"
     examples = (
-        Example(Subject(GRIP, variant="30%"), {"position": 1}, performed=()),
-        Example(
-            Subject(GRIP, variant="30%"),
-            {"position": 1},
-            earlier=({"position": 0},) * 3,
-            away="most commands are carried out",
-        ),
+        whole(GRIP, 1, variant="30%"),
+        whole(GRIP, 1, variant="30%", earlier=(0, 0, 0), away="most commands are carried out"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -337,13 +320,8 @@ class DoubleCommand(_Chance):
     name = "double-command"
     fault = "do it twice, with a probability of {variant}"
     examples = (
-        Example(Subject(MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
-        Example(
-            Subject(MOVE_BY, variant="30%"),
-            {"dx": 0.1},
-            earlier=({"dx": 0.2},) * 3,
-            away="most commands are carried out once",
-        ),
+        whole(MOVE_BY, 0.1, 0.1, 0.1, variant="30%"),
+        whole(MOVE_BY, 0.1, variant="30%", earlier=(0.2,) * 3, away="most commands are carried out once"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:

@@ -17,9 +17,9 @@ from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, 
 from mutabot.model.quantity import Value
 from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
 from mutabot.operators.command import CommandOperator
-from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, writing
+from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, whole, writing
 from mutabot.operators.magnitudes import Magnitudes, ladder_in, own_ladder, per_second
-from mutabot.operators.operator import Context, Example, Need, Subject, quantity_of
+from mutabot.operators.operator import Context, Need, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, is_number, label
 
 #: components of a slice without an end that are tried: those of an arm with seven joints
@@ -363,14 +363,8 @@ class Lag(CommandOperator):
     has_sizes = True
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     examples = (
-        Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({},), waited=0.2),
-        Example(
-            Subject(_FEEL, variant="50ms", magnitude=50.0, unit="ms"),
-            replied={"result": 0.3},
-            performed=({},),
-            waited=0.05,
-            note="what was seen then is told now",
-        ),
+        whole(_HOME, {}, {}, size=(200.0, "ms"), waited=0.2),
+        whole(_FEEL, 0.3, size=(50.0, "ms"), waited=0.05, note="what was seen then is told now"),
     )
 
     def fits(self, whole: Subject) -> bool:

@@ -10,6 +10,7 @@ from mutabot.model import Call, Mishap, Proceed, Reply
 from mutabot.model.operation import COMING, WRITTEN, Form
 from mutabot.model.quantity import Value
 from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
+from mutabot.operators.examples import whole
 from mutabot.operators.magnitudes import Magnitudes
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import CallOrReply
@@ -54,17 +55,11 @@ class Drop(MessageOperator):
     }
     fault = "{which} {what} is lost"
     examples = (
-        Example(Subject(PUBLISH), {"x": 0.4}, performed=(), note="nobody hears of it"),
-        Example(
-            Subject(RECEIVE),
-            replied={"gap": 0.02},
-            performed=({},),
-            lost=True,
-            note="the callback is not called; who waits, waits for the next one",
-        ),
-        Example(Subject(CALL), lost=True, note="the service does nothing and never answers"),
-        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.4}, earlier=({"x": 0.2}, {"x": 0.3}), performed=()),
-        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.3}, earlier=({"x": 0.2},), away="only the second"),
+        whole(PUBLISH, 0.4, note="nobody hears of it"),
+        whole(RECEIVE, 0.02, lost=True, note="the callback is not called; who waits, waits for the next one"),
+        whole(CALL, {}, lost=True, note="the service does nothing and never answers"),
+        whole(PUBLISH, 0.4, variant=_THIRD, earlier=(0.2, 0.3)),
+        whole(PUBLISH, 0.3, variant=_THIRD, earlier=(0.2,), away="only the second"),
     )
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
@@ -97,15 +92,9 @@ class Duplicate(MessageOperator):
     forms = _SENT | COMING
     fault = "each {what} arrives twice"
     examples = (
-        Example(Subject(PUBLISH), {"x": 0.4}, performed=({"x": 0.4}, {"x": 0.4})),
-        Example(
-            Subject(RECEIVE),
-            replied={"gap": 0.02},
-            performed=({},),
-            received={"gap": 0.02},
-            then=({"gap": 0.02},),
-        ),
-        Example(Subject(CALL), performed=({}, {}), note="the program sees the second answer"),
+        whole(PUBLISH, 0.4, 0.4, 0.4),
+        whole(RECEIVE, 0.02, 0.02, then=(0.02,)),
+        whole(CALL, {}, {}, {}, note="the program sees the second answer"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -125,30 +114,18 @@ class Stale(MessageOperator):
     variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
     fault = "the {variant} {what} again instead of the new one"
     examples = (
-        Example(
-            Subject(RECEIVE, variant=_FIRST),
-            replied={"gap": 0.02},
-            earlier=({"gap": 0.5}, {"gap": 0.3}),
-            performed=({},),
-            received={"gap": 0.5},
-            note="a sensor that is stuck",
-        ),
-        Example(
-            Subject(PUBLISH, variant=_PREVIOUS),
-            {"x": 0.4},
-            earlier=({"x": 0.2}, {"x": 0.3}),
-            performed=({"x": 0.3},),
-            note="always one behind",
-        ),
-        Example(
-            Subject(CALL_TO, variant=_FIRST),
-            {"x": 0.4},
-            earlier=({"x": 0.2}, {"x": 0.3}),
-            performed=({"x": 0.2},),
+        whole(RECEIVE, 0.02, 0.5, variant=_FIRST, earlier=(0.5, 0.3), note="a sensor that is stuck"),
+        whole(PUBLISH, 0.4, 0.3, variant=_PREVIOUS, earlier=(0.2, 0.3), note="always one behind"),
+        whole(
+            CALL_TO,
+            0.4,
+            0.2,
+            variant=_FIRST,
+            earlier=(0.2, 0.3),
             note="the service is asked for the same over and over",
         ),
-        Example(Subject(PUBLISH, variant=_FIRST), {"x": 0.4}, away=_NONE_BEFORE),
-        Example(Subject(RECEIVE, variant=_PREVIOUS), replied={"gap": 0.02}, earlier=(), away=_NONE_BEFORE),
+        whole(PUBLISH, 0.4, variant=_FIRST, away=_NONE_BEFORE),
+        whole(RECEIVE, 0.02, variant=_PREVIOUS, away=_NONE_BEFORE),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -173,15 +150,13 @@ class Delay(MessageOperator):
     forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
     fault = "each {what} comes {variant} s late"
     examples = (
-        Example(
-            Subject(PUBLISH, variant="0.1", magnitude=0.1), {"x": 0.4}, performed=({"x": 0.4, "late": 0.1},)
-        ),
-        Example(Subject(CALL, variant="1", magnitude=1.0), performed=({"late": 1.0},)),
-        Example(
-            Subject(RECEIVE, variant="1", magnitude=1.0),
-            replied={"gap": 0.02},
-            performed=({},),
-            received={"gap": 0.02},
+        whole(PUBLISH, 0.4, {"x": 0.4, "late": 0.1}, size=(0.1, None)),
+        whole(CALL, {}, {"late": 1.0}, size=(1.0, None)),
+        whole(
+            RECEIVE,
+            0.02,
+            0.02,
+            size=(1.0, None),
             late=1.0,
             note="the callback is called later; messages that come meanwhile overtake it",
         ),
@@ -209,17 +184,10 @@ class Reorder(MessageOperator):
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
     fault = "every other {what} comes after the next one"
     examples = (
-        Example(Subject(PUBLISH), {"x": 0.4}, earlier=({"x": 0.2},), performed=({"x": 0.4}, {"x": 0.2})),
-        Example(Subject(PUBLISH), {"x": 0.2}, performed=(), note="is held back for the next one"),
-        Example(
-            Subject(RECEIVE),
-            replied={"gap": 0.02},
-            earlier=({"gap": 0.5},),
-            performed=({},),
-            received={"gap": 0.02},
-            then=({"gap": 0.5},),
-        ),
-        Example(Subject(RECEIVE), replied={"gap": 0.5}, performed=({},), lost=True),
+        whole(PUBLISH, 0.4, 0.4, 0.2, earlier=(0.2,)),
+        whole(PUBLISH, 0.2, note="is held back for the next one"),
+        whole(RECEIVE, 0.02, 0.02, earlier=(0.5,), then=(0.5,)),
+        whole(RECEIVE, 0.5, lost=True),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:

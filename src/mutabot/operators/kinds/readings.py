@@ -14,7 +14,7 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import MEASURED, PLAIN, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
-from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
+from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged, whole
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_RETURNED,
@@ -315,15 +315,7 @@ class LateReading(CommandOperator):
     family = CATALOGUE
     needs = frozenset({Need.WAIT})
     fault = f"read {_LATE:g} s before the program gets it"
-    examples = (
-        Example(
-            Subject(_MEASURE),
-            replied={"result": 0.2},
-            performed=({},),
-            received={"result": 0.2},
-            waited=_LATE,
-        ),
-    )
+    examples = (whole(_MEASURE, 0.2, 0.2, waited=_LATE),)
 
     def fits(self, whole: Subject) -> bool:
         return bool(whole.read) and not whole.is_command and not comes_by_itself(whole.operation)
