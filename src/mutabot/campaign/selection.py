@@ -18,9 +18,6 @@ from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Role, fits, is_like, means_numbers
 from mutabot.operators import registry
 
-#: signs of a word that messages show
-_LONGEST = 200
-
 
 def select(
     mutants: Sequence[Mutant],
@@ -118,7 +115,7 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
 
 
 def _shown(pattern: str) -> str:
-    return repr(pattern if len(pattern) <= _LONGEST else f"{pattern[:_LONGEST]}…")
+    return repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
 
 
 def refuse_typos(request: Request) -> None:
