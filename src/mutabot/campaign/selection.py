@@ -96,12 +96,12 @@ def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
 
 
 def _names(mutants: Sequence[Mutant]) -> list[str]:
-    names: dict[str, None] = {}
-    for mutant in mutants:
-        span = mutant.site.span
-        words = (mutant.operator, mutant.family, mutant.site.role.value, span.file, mutant.id)
-        names.update(dict.fromkeys(words))
-    return list(names)
+    words = (
+        word
+        for one in mutants
+        for word in (one.operator, one.family, one.site.role.value, one.site.span.file, one.id)
+    )
+    return list(dict.fromkeys(words))
 
 
 def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:

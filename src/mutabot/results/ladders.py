@@ -139,14 +139,10 @@ class LadderRound:
     @property
     def noticed_by(self) -> str | None:
         """Who notices at the upper end of the bracket: ``check``, ``exception`` or ``timeout``."""
-        return noticer(self.outcomes[self.bracket.high]) if self.bracket.high is not None else None
-
-
-def noticer(outcome: Outcome) -> str | None:
-    """Who noticed a fault: ``check``, ``exception`` or ``timeout``; None if nobody did."""
-    if outcome.verdict is Verdict.TIMEOUT:
-        return Verdict.TIMEOUT.value
-    return (outcome.by or By.EXCEPTION).value if outcome.verdict is Verdict.KILLED else None
+        if self.bracket.high is None:
+            return None
+        outcome = self.outcomes[self.bracket.high]
+        return (outcome.by or By.EXCEPTION).value if outcome.verdict is Verdict.KILLED else "timeout"
 
 
 def _above(bracket: Bracket, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> Above:
@@ -226,19 +222,11 @@ class Ladder:
     @property
     def name(self) -> str:
         """``arm.move_by y +``; another operator than an offset is named, and the axis of a turn (``z +``)."""
-        way = self.mutant.direction
-        parts = (self.pair_name, way[:-1], _SIGNS.get(way[-1:], ""))
-        return " ".join(part for part in parts if part)
-
-    @property
-    def pair_name(self) -> str:
-        """The same without the direction."""
-        mutant = self.mutant
+        mutant, way = self.mutant, self.mutant.direction
         operator = mutant.operator if mutant.operator != OFFSET else ""
         moment = f"@{mutant.moment.text}" if mutant.moment is not None else ""
-        pattern = mutant.pattern_name
-        parts = (mutant.site.text, pattern, mutant.quantity, operator, moment)
-        return " ".join(part for part in parts if part)
+        fault = (mutant.site.text, mutant.pattern_name, mutant.quantity, operator, moment)
+        return " ".join(part for part in (*fault, way[:-1], _SIGNS.get(way[-1:], "")) if part)
 
     @property
     def counted(self) -> tuple[LadderRound, ...]:
