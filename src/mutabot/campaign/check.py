@@ -7,11 +7,12 @@ from collections.abc import Collection, Iterator
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import try_controls
 from mutabot.campaign.engines.fork_parent import Unhandled
-from mutabot.campaign.plan import Plan
+from mutabot.campaign.plan import Plan, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.run import at_it, begin, plan_of, selected
+from mutabot.campaign.run import at_it, begin, selected
 from mutabot.config.configuration import Configuration
+from mutabot.errors import in_short
 from mutabot.extensions import brought
 from mutabot.journal.files import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
@@ -29,7 +30,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
         folders = {folder for one in previews.values() for folder in one.folders_left_out}
         with OpenedFiles(request.root, folders) as watch:
             campaign, _ = begin(request, opened, progress)
-        plan = plan_of(request, campaign.baseline)
+        plan = make_plan(campaign.baseline, request.project)
         mutants = selected(campaign, plan).mutants
         controls, unhandled = try_controls(campaign, mutants)
     report = _report(campaign, plan, mutants, controls, unhandled)
@@ -99,9 +100,8 @@ def _unused(vocabulary: Vocabulary, unused: Collection[str]) -> Iterator[str]:
         of.setdefault(operation.source.partition(":")[0], []).append(operation.target)
     for name, there in of.items():
         found = [target for target in there if target in unused]
-        more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
         if found:
             yield (
                 f"unused    {len(found)} of {len(there)} operations of {name}, which no test reaches from "
-                f"the program or the oracle: {', '.join(found[:_SHOWN])}{more}"
+                f"the program or the oracle: {in_short(found, _SHOWN)}"
             )

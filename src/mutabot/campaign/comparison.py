@@ -192,25 +192,26 @@ class Observation:
 
 @frozen
 class Difference:
-    """How far a mutant's test is from the original's.
+    """How far a mutant's test is from the original's. An outcome has the same fields.
 
     Attributes:
-        indistinguishable: whether all that was compared is equal within the tolerance.
+        indistinguishable: whether all that was compared is equal within the tolerance; None if that is not
+            to be claimed.
         distance: greatest difference of a probe, in multiples of its tolerance (``OTHER_WORLD`` for one
             that is not of numbers); None without probes, or if none that differs more is all that is known.
         divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
         gaps: what could not be compared, one line each.
         way: greatest difference of a probe along the way, in multiples of its tolerance; None if none was
             compared.
-        compared: how much was.
+        compared: how much was; None if nothing was.
     """
 
-    indistinguishable: bool
+    indistinguishable: bool | None
     distance: float | None
     divergence: tuple[str, ...]
     gaps: tuple[str, ...] = ()
     way: float | None = None
-    compared: Compared = field(default=Compared(), compare=False)
+    compared: Compared | None = field(default=None, compare=False)
 
 
 def compare(
@@ -324,7 +325,7 @@ def farthest(comparisons: Sequence[Difference]) -> Difference:
     distance = max(distances, default=None)
     if gaps and (distance or 0.0) <= 1.0:
         distance = None
-    compared = Compared.together(one.compared for one in comparisons)
+    compared = Compared.together(one.compared for one in comparisons if one.compared is not None)
     way = max((one.way for one in comparisons if one.way is not None), default=None)
     return Difference(together, distance, tuple(lines), gaps, way, compared)
 

@@ -18,9 +18,6 @@ from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Role, fits, is_like, means_numbers
 from mutabot.operators import registry
 
-#: signs of a word that messages show
-_LONGEST = 200
-
 
 def select(
     mutants: Sequence[Mutant],
@@ -99,12 +96,12 @@ def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
 
 
 def _names(mutants: Sequence[Mutant]) -> list[str]:
-    names: dict[str, None] = {}
-    for mutant in mutants:
-        span = mutant.site.span
-        words = (mutant.operator, mutant.family, mutant.site.role.value, span.file, mutant.id)
-        names.update(dict.fromkeys(words))
-    return list(names)
+    words = (
+        word
+        for one in mutants
+        for word in (one.operator, one.family, one.site.role.value, one.site.span.file, one.id)
+    )
+    return list(dict.fromkeys(words))
 
 
 def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:
@@ -118,7 +115,7 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
 
 
 def _shown(pattern: str) -> str:
-    return repr(pattern if len(pattern) <= _LONGEST else f"{pattern[:_LONGEST]}…")
+    return repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
 
 
 def refuse_typos(request: Request) -> None:

@@ -416,3 +416,12 @@ class Vocabulary:
     def operation(self, target: str) -> Operation | None:
         """The operation with this target, or None."""
         return next((operation for operation in self.operations if operation.target == target), None)
+
+    def quantity(self, target: str, pattern: str | None, name: str | None) -> Quantity | None:
+        """The quantity of this name in a command of an operation, or in the operation; None if none is."""
+        operation = self.operation(target)
+        if operation is None or name is None:
+            return None
+        owner = operation.pattern(pattern) or operation
+        known = (*owner.arguments, *owner.result, *operation.arguments, *operation.result)
+        return next((quantity for quantity in known if quantity.name == name), None)

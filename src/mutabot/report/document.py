@@ -111,7 +111,7 @@ def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
             data["median"] = data_of.facts(ladder.median, "above=low? at_most=high level")
     return data | {
         "rounds_counted": len(ladder.counted),
-        **data_of.facts(ladder, "rounds violations runs"),
+        **data_of.facts(ladder, "rounds violations"),
     }
 
 
@@ -129,7 +129,7 @@ def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
 
 
 def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
-    line = "state rounds ladders=all runs exhaustive"
+    line = "state rounds ladders=all"
     return {"format": FORMAT, **data_of.facts(found, line)}
 
 

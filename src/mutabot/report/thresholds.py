@@ -88,6 +88,4 @@ def _confidence(thresholds: Thresholds) -> str:
         if shares:
             share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"
             parts.append(f"Where all rounds notice, {share}.")
-    if thresholds.exhaustive:
-        parts.append(f"{thresholds.runs} of {plural(thresholds.exhaustive, 'possible run')} were needed.")
     return " ".join(parts)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 
 from mutabot.frozen import frozen
@@ -125,7 +125,8 @@ class LadderRound:
         if not self.outcomes:
             return "was not run"
         if not self.bracket.is_known:
-            return _without_valid(self.outcomes)
+            verdicts = {one.verdict for one in self.outcomes.values()}
+            return next((words for end, words in _WORDS.items() if end in verdicts), "says nothing")
         if self.above is Above.OPEN:
             return "is not judged to the end of the ladder"
         return ""
@@ -138,14 +139,10 @@ class LadderRound:
     @property
     def noticed_by(self) -> str | None:
         """Who notices at the upper end of the bracket: ``check``, ``exception`` or ``timeout``."""
-        return noticer(self.outcomes[self.bracket.high]) if self.bracket.high is not None else None
-
-
-def noticer(outcome: Outcome) -> str | None:
-    """Who noticed a fault: ``check``, ``exception`` or ``timeout``; None if nobody did."""
-    if outcome.verdict is Verdict.TIMEOUT:
-        return Verdict.TIMEOUT.value
-    return (outcome.by or By.EXCEPTION).value if outcome.verdict is Verdict.KILLED else None
+        if self.bracket.high is None:
+            return None
+        outcome = self.outcomes[self.bracket.high]
+        return (outcome.by or By.EXCEPTION).value if outcome.verdict is Verdict.KILLED else "timeout"
 
 
 def _above(bracket: Bracket, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> Above:
@@ -157,20 +154,8 @@ def _above(bracket: Bracket, sizes: Sequence[float], outcomes: Mapping[float, Ou
     if bracket.refused is not None:
         return Above.REFUSED
     # the next one tells: what changes nothing there is beyond what the robot takes
-    ends = list(_verdicts(above, outcomes))
-    return Above.NO_EFFECT if ends and set(ends) <= _NOTHING_THERE and above[0] in outcomes else Above.OPEN
-
-
-def _verdicts(sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> Iterator[Verdict]:
-    return (outcomes[size].verdict for size in sizes if size in outcomes)
-
-
-def _without_valid(outcomes: Mapping[float, Outcome]) -> str:
-    verdicts = {one.verdict for one in outcomes.values()}
-    for verdict, words in _WORDS.items():
-        if verdict in verdicts:
-            return words
-    return "says nothing"
+    ends = {outcomes[size].verdict for size in above if size in outcomes}
+    return Above.NO_EFFECT if above[0] in outcomes and ends <= _NOTHING_THERE else Above.OPEN
 
 
 #: why nothing is known of a round, the worst first
@@ -237,19 +222,11 @@ class Ladder:
     @property
     def name(self) -> str:
         """``arm.move_by y +``; another operator than an offset is named, and the axis of a turn (``z +``)."""
-        way = self.mutant.direction
-        parts = (self.pair_name, way[:-1], _SIGNS.get(way[-1:], ""))
-        return " ".join(part for part in parts if part)
-
-    @property
-    def pair_name(self) -> str:
-        """The same without the direction."""
-        mutant = self.mutant
+        mutant, way = self.mutant, self.mutant.direction
         operator = mutant.operator if mutant.operator != OFFSET else ""
         moment = f"@{mutant.moment.text}" if mutant.moment is not None else ""
-        pattern = mutant.pattern_name
-        parts = (mutant.site.text, pattern, mutant.quantity, operator, moment)
-        return " ".join(part for part in parts if part)
+        fault = (mutant.site.text, mutant.pattern_name, mutant.quantity, operator, moment)
+        return " ".join(part for part in (*fault, way[:-1], _SIGNS.get(way[-1:], "")) if part)
 
     @property
     def counted(self) -> tuple[LadderRound, ...]:
@@ -306,16 +283,6 @@ class Ladder:
         """The smallest magnitude from which on a round knows nothing but refusals; None if none does."""
         ends = (one.bracket.refused for one in self.counted if one.bracket.high is None)
         return min((end for end in ends if end is not None), default=None)
-
-    @property
-    def runs(self) -> int:
-        """How many (magnitude, round) were run."""
-        return sum(len(one.outcomes) for one in self.rounds)
-
-    @property
-    def exhaustive(self) -> int:
-        """How many there are."""
-        return len(self.results) * len(self.rounds)
 
     @property
     def why_unjudged(self) -> str:

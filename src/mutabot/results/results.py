@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mutabot.errors import SelectionError, unknown_name_text
+from mutabot.errors import SelectionError, in_short, unknown_name_text
 from mutabot.frozen import frozen
 from mutabot.journal import records
 from mutabot.journal.files import is_written
@@ -437,10 +437,9 @@ def unlooked(results: Iterable[MutantResult]) -> list[str]:
 
 def _unlooked_text(operation: str, quantity: str, found: Sequence[MutantResult]) -> str:
     """``tests/sensors.py:12:5 tracker:robot_position .y: none of its 3 mutants was noticed``."""
-    first, *others = dict.fromkeys(one.mutant.site.place for one in found)
-    more = f" and {len(others)} more" if others else ""
+    places = in_short(list(dict.fromkeys(one.mutant.site.place for one in found)), 1)
     which = "its only mutant was not" if len(found) == 1 else f"none of its {len(found)} mutants was"
-    return f"{first}{more} {operation} {quantity}: {which} noticed"
+    return f"{places} {operation} {quantity}: {which} noticed"
 
 
 #: what the facts of a class are, where they are others than its fields: a line, or a function

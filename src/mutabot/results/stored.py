@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import UsageError
@@ -17,7 +18,6 @@ from mutabot.evidence.recording import Recording, from_bytes
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
 from mutabot.journal.recordings import ORIGINAL, Recordings
-from mutabot.model import Mutant, Outcome, Quantity
 from mutabot.model.codec import shallow
 from mutabot.results.results import Encoder, MutantResult, Results, find_mutant, results_at
 from mutabot.results.score import Group
@@ -94,37 +94,17 @@ COLUMNS: Mapping[str, type] = {
 _FACTS = Encoder({})
 
 
-@frozen
-class _Row:
-    """A row: a mutant's outcome."""
-
-    mutant: Mutant
-    quantity: Quantity | None
-    outcome: Outcome
-
-    @property
-    def before(self) -> Any:
-        return self._example[0]
-
-    @property
-    def after(self) -> Any:
-        return self._example[1]
-
-    @property
-    def _example(self) -> tuple[Any, ...]:
-        found = self.outcome.example
-        return found if found is not None and len(found) == 2 else (None, None)
-
-    @property
-    def divergence(self) -> str | None:
-        return next(iter(self.outcome.divergence), None)
-
-
 def rows(results: Results) -> Iterator[tuple[Cell, ...]]:
     """The cells of all outcomes, in the order of ``COLUMNS``: by mutant, then by round."""
     for result in results.everything:
         for outcome in result.outcomes:
-            cells = _FACTS.facts(_Row(result.mutant, result.quantity, outcome), _LINE)
+            example = outcome.example if outcome.example is not None and len(outcome.example) == 2 else ()
+            before, after = example or (None, None)
+            row = SimpleNamespace(
+                mutant=result.mutant, quantity=result.quantity, outcome=outcome, before=before, after=after,
+                divergence=next(iter(outcome.divergence), None),
+            )  # fmt: skip
+            cells = _FACTS.facts(row, _LINE)
             yield tuple(_cell(COLUMNS[name], found) for name, found in cells.items())
 
 

@@ -141,16 +141,6 @@ class Thresholds:
         """All ladders."""
         return (*self.ladders, *self.unjudged)
 
-    @property
-    def runs(self) -> int:
-        """How many (magnitude, round) were run."""
-        return sum(one.runs for one in self.all)
-
-    @property
-    def exhaustive(self) -> int:
-        """How many there are."""
-        return sum(one.exhaustive for one in self.all)
-
 
 def thresholds_of(results: Results) -> Thresholds:
     """The thresholds of a campaign."""

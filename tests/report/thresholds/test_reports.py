@@ -79,7 +79,6 @@ def test_all_that_is_to_be_said_is_said(thresholds: Thresholds) -> None:
     assert "noticed at 5 mm" not in text
     assert "noticed at 5 deg, survives 10 deg, rounds 1, 2, 3, 4 and 5" in text
     assert "the robot refuses every magnitude that was tried" in text
-    assert "210 of 210 possible runs were needed." in text
 
 
 def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:

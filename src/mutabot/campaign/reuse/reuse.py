@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.request import Progress, Request
+from mutabot.errors import in_short
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import MovedOutcome
 from mutabot.model import Mutant, Verdict
@@ -19,12 +20,6 @@ from .keys import Dependencies, Parts, Tree, Was
 Pair = tuple[str, int]
 #: names that are given before it is said how many more there are
 _SHOWN = 3
-
-
-def in_short(names: Sequence[str]) -> str:
-    """The first of these, and how many more there are."""
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return ", ".join(names[:_SHOWN]) + more
 
 
 class Earlier:
