@@ -224,7 +224,17 @@ class NoWait(HalfWait):
         return map_numbers(value, lambda number: like(number, 0.0))
 
 
-class LateGrip(_Timing):
+class _Grip(_Timing):
+    """Does something with a command to a gripper."""
+
+    where = _GRIPPING
+
+    def fits(self, whole: Subject) -> bool:
+        has_opening = any(one.kind is Kind.OPENING for one in whole.written)
+        return whole.is_command and (has_opening or (whole.opposite is not None and not whole.written))
+
+
+class LateGrip(_Grip):
     """A gripper command is carried out 0.5 s late, and the program waits for it."""
 
     name = "late-grip"
@@ -233,21 +243,17 @@ class LateGrip(_Timing):
     fault = f"{_LATE:g} s late"
     examples = (Example(Subject(GRIP), {"position": 1}, waited=_LATE, performed=({"position": 1},)),)
 
-    def fits(self, whole: Subject) -> bool:
-        return _is_gripping(whole)
-
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         await call.wait(_LATE)
         return await proceed(call)
 
 
-class EarlyRelease(_Timing):
+class EarlyRelease(_Grip):
     """A gripper command is taken back right after the program's next command: what was gripped is let go too
     early. If no command follows, nothing happens.
     """
 
     name = "early-release"
-    where = _GRIPPING
     fault = "and back after the next command"
     examples = (
         Example(Subject(GRIP), {"position": 1}, performed=({"position": 1},), afterwards=({"position": 0},)),
@@ -255,20 +261,11 @@ class EarlyRelease(_Timing):
         Example(Subject(GRIP), {"position": 0.5}, away="half open has no opposite"),
     )
 
-    def fits(self, whole: Subject) -> bool:
-        return _is_gripping(whole)
-
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         back = _undone(context.subject, call)
         reply = await proceed(call)
         call.defer(back)
         return reply
-
-
-def _is_gripping(whole: Subject) -> bool:
-    """Whether it is a command to a gripper."""
-    has_opening = any(one.kind is Kind.OPENING for one in whole.written)
-    return whole.is_command and (has_opening or (whole.opposite is not None and not whole.written))
 
 
 def _undone(subject: Subject, call: Call) -> Call:

@@ -53,6 +53,10 @@ _TIP = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, ran
 _MOVE_TIP = Operation("robot:Arm.move_to", (_TIP,))
 
 
+def _joints(quantities: tuple[Quantity, ...], *angles: float) -> dict[str, float]:
+    return {quantity.name: angle for quantity, angle in zip(quantities, angles, strict=True)}
+
+
 class AxisSwap(Exchange):
     """Two components of a motion are exchanged: what is meant along x goes along y.
 
@@ -85,21 +89,9 @@ class JointOrder(Exchange):
 
     name = "joint-order"
     examples = (
-        changed(
-            _SET_JOINTS,
-            {"joints[0]": 10, "joints[1]": 20, "joints[2]": 30},
-            {"joints[0]": 30, "joints[1]": 20, "joints[2]": 10},
-            "joints[2]",
-        ),
-        changed(
-            _READ_JOINTS,
-            {"[0]": 10.0, "[1]": 20.0, "[2]": 30.0},
-            {"[0]": 30.0, "[1]": 20.0, "[2]": 10.0},
-            "[2]",
-        ),
-        unchanged(
-            _SET_JOINTS, {"joints[0]": 0, "joints[1]": 20, "joints[2]": 0}, "both are the same", "joints[2]"
-        ),
+        changed(_SET_JOINTS, _joints(_SET, 10, 20, 30), _joints(_SET, 30, 20, 10), "joints[2]"),
+        changed(_READ_JOINTS, _joints(_READ, 10.0, 20.0, 30.0), _joints(_READ, 30.0, 20.0, 10.0), "[2]"),
+        unchanged(_SET_JOINTS, _joints(_SET, 0, 20, 0), "both are the same", "joints[2]"),
     )
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
