@@ -151,9 +151,9 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)
     for reason, names in tests.items():
-        where = f"in {in_short(names, 1)}" if names[0] else "while the program is imported"
-        text = f"no branches {where}: {reason}; mutants there run in processes of their own"
-        campaign.progress.note(text)
+        during = "no branches while the program is imported"
+        where = f"no branches in {in_short(names, 1)}" if names[0] else during
+        campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
     if left.apart:
         text = "each is in place from the start of each test, in a process of its own"
         campaign.progress.note(f"{len(left.apart)} mutants: {text}")
