@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
@@ -114,9 +114,7 @@ _OWN = (Mutant, LeftOut)
 
 def mapped(value: T, change: Callable[[str], str]) -> T:
     """The same data with every text in it changed; keys of tables too. Of ids, only signs are."""
-    made: Any = _mapped(value, change)
-    result: T = made
-    return result
+    return cast("T", _mapped(value, change))
 
 
 def _mapped(value: Any, change: Callable[[str], str]) -> Any:

@@ -304,23 +304,18 @@ class WrongPeriod(_Setting):
         return value * context.option
 
 
+_SET, _READ = Subject(SPEED, quantity=SPEED.result[0]), {"value": 0.25}
+
+
 class UseDefault(FreeValueOperator):
     """A parameter has the default that the program gives, instead of what was set."""
 
     name = "use-default"
     of_written = False
     examples = (
-        Example(
-            Subject(SPEED, quantity=SPEED.result[0]),
-            {"default": 1.0},
-            {"value": 0.25},
-            performed=({"default": 1.0},),
-            received={"value": 1.0},
-        ),
-        Example(Subject(SPEED, quantity=SPEED.result[0]), {}, {"value": 0.25}, away=_NO_DEFAULT),
-        Example(
-            Subject(SPEED, quantity=SPEED.result[0]), {"default": 0.25}, {"value": 0.25}, away=_IS_DEFAULT
-        ),
+        Example(_SET, {"default": 1.0}, _READ, performed=({"default": 1.0},), received={"value": 1.0}),
+        Example(_SET, {}, _READ, away=_NO_DEFAULT),
+        Example(_SET, {"default": 0.25}, _READ, away=_IS_DEFAULT),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:

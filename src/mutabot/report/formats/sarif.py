@@ -60,9 +60,7 @@ def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
     return {
         "id": name,
         "shortDescription": {"text": f"The tests let a mutant of {name} through"},
-        "fullDescription": {"text": _message(summary)},
         "help": {"text": _message(f"{summary}\n\n{_HELP}")},
-        "defaultConfiguration": {"level": "warning"},
         "properties": {"tags": ["mutation-testing", mutant.family]},
     }
 
