@@ -35,10 +35,11 @@ from typing import Any
 from mutabot.campaign.campaign import Campaign, OutcomeWriter
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
+from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.snapshot import Snapshot, State
-from mutabot.campaign.run import begin, open_executor, plan_of, selected
+from mutabot.campaign.run import begin, open_executor, selected
 from mutabot.cli.request import request_of
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.journal.journal import Journal
@@ -219,7 +220,7 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
     ):
         recorder = Recorder(opened)
         campaign, results = begin(request, recorder, Silent(), evidence)
-        plan = selected(campaign, plan_of(request, campaign.baseline))
+        plan = selected(campaign, make_plan(campaign.baseline, request.project))
         for result in results:
             number, repetition = result.task.key
             for end in result.ends:

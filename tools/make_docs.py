@@ -7,6 +7,7 @@ out of date.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -51,14 +52,14 @@ GRADED_HEAD = """\
 `--family graded` plants the same fault at rising magnitudes, to find from which on the tests notice it: see
 [thresholds](thresholds.md), which also says where their ladders come from.
 """
-#: what the groups of the catalogue are called; by the tens of their operators' ranks
+#: what the groups of the catalogue are called, by the first operator of each
 GROUPS = {
-    30: "Units",
-    31: "Frames, axes, joints and tools",
-    32: "Orientations as a whole",
-    33: "Order and time",
-    34: "Readings",
-    35: "Actuation",
+    "cm-for-m": "Units",
+    "axis-swap": "Frames, axes, joints and tools",
+    "euler-order": "Orientations as a whole",
+    "swap-next": "Order and time",
+    "dropout": "Readings",
+    "speed-override": "Actuation",
 }
 
 TAIL = """\
@@ -115,10 +116,11 @@ def page() -> str:
     operators = _operators(of_middleware=False)
     graded = [each for each in operators if each.family == GRADED]
     first = [each for each in operators if each.family not in (CATALOGUE, GRADED)]
-    groups = {
-        title: [each for each in operators if each.family == CATALOGUE and each.rank // 10 == group]
-        for group, title in GROUPS.items()
-    }
+    groups: dict[str, list[Operator]] = {}
+    title = ""
+    for each in (each for each in operators if each.family == CATALOGUE):
+        title = GROUPS.get(each.name, title)
+        groups.setdefault(title, []).append(each)
     lines = [HEAD, *_overview(first), *_published(operators)]
     for each in first:
         lines += _section(each)
@@ -157,9 +159,11 @@ def _overview(operators: list[Operator]) -> Iterator[str]:
 def _published(operators: list[Operator]) -> Iterator[str]:
     yield "The published operators, and what makes them here:\n"
     yield from _table("original", "mutant", "operator")
-    rows = {row.row: (row, each.name) for each in operators for row in each.published}
-    for row, name in (rows[number] for number in sorted(rows)):
-        yield _row(row.original, row.mutant, f"[{name}](#{name})")
+    rows = {}
+    for each in operators:
+        for number, original, mutant in re.findall(r"(\d+)\. (.*?) → (.*?)(?:; |$)", each.published):
+            rows[int(number)] = (original, mutant, f"[{each.name}](#{each.name})")
+    yield from (_row(*rows[number]) for number in sorted(rows))
     yield ""
 
 

@@ -23,7 +23,7 @@ facts are attributes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from enum import IntEnum
 
 from .limits import shortened
@@ -247,6 +247,12 @@ class OperatorError(MutabotError):
     def __init__(self, message: str, *, operator: str) -> None:
         super().__init__(message)
         self.operator = operator
+
+
+def in_short(names: Sequence[str], most: int = 3) -> str:
+    """The first of these, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:

@@ -8,7 +8,7 @@ since reading entry points is slow.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import field
 from functools import cache
 from importlib import import_module
@@ -73,7 +73,7 @@ class Extension:
             gives commands that run campaigns an option ``--cluster``, whose value says where.
         tables: subclasses of ``mutabot.config.table.Table``, by the table's name in the configuration.
         commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.app.Commands``).
-        formats: a ``mutabot.report.format.Format`` each, by its name.
+        formats: a function (``mutabot.report.format.Format``) each, by its name.
         sections: functions of ``mutabot.results.results.Results`` that make a section of the results
             document each, of plain data, by its name.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
@@ -122,6 +122,13 @@ class ExtensionPart:
         except Exception as error:  # a package of others may fail in any way
             raise ExtensionError(f"{self.words} cannot be loaded: {error!r}") from error
         return found
+
+    def load_function(self) -> Callable[..., Any]:
+        """The same for a function. Raises ExtensionError also if it is none."""
+        found = self.load()
+        if not callable(found):
+            raise ExtensionError(f"{self.words} is no function")
+        return found  # type: ignore[no-any-return]
 
     @property
     def file(self) -> Path:

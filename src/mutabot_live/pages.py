@@ -139,7 +139,7 @@ class Pages:
         result = next(found, None)
         if result is None:
             return None
-        page = script(f"mutant {number}", {**mutant_page(result), "suggestion": None, "media": []})
+        page = script(f"mutant {number}", {**mutant_page(result), "suggestion": None})
         with closing(StoredEvidence(self._journal)) as evidence:
             # originals that were asked for before keep their numbers: browsers know them by these
             known = self._recorded.originals if self._recorded is not None else {}

@@ -92,12 +92,14 @@ class ClassicalOperator(Rule):
     """A rule that makes alternatives of program text.
 
     Class attributes, beside those of every ``Rule``:
+        rank: its place in the documentation and among the alternatives of a place: smaller first.
         asks_variables: whether it is asked once more after the baseline, with the variables that were in
             scope at a place (``with_variables``).
     """
 
     family: ClassVar[str] = CLASSICAL
     examples: ClassVar[tuple[TextExample, ...]] = ()
+    rank: ClassVar[int] = 1000
     asks_variables: ClassVar[bool] = False
 
     @abstractmethod

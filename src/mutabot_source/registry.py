@@ -8,7 +8,6 @@ from importlib import import_module
 from pathlib import Path
 
 from mutabot.errors import OperatorError, unknown_name_text
-from mutabot.operators.operator import in_order
 from mutabot.operators.registry import classes_in, modules_in
 
 from .extension import OF_TEXT
@@ -35,7 +34,7 @@ def load_all() -> tuple[ClassicalOperator, ...]:
                 text = f"operator {made.name!r} is of family {made.family!r}, which is none of {OF_TEXT}"
                 raise OperatorError(text, operator=made.name)
             owners[made.name] = made
-    return tuple(in_order(owners.values()))
+    return tuple(sorted(owners.values(), key=lambda rule: (rule.rank, rule.name)))
 
 
 def names(family: str | None = None) -> list[str]:

@@ -1,4 +1,4 @@
-"""Operators of the catalogue in a campaign: who applies nowhere, and who needs a call that raises."""
+"""Operators of the catalogue in a campaign: which of them need a call that raises."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.check import check
 from mutabot.campaign.run import plan_only
 from tests.campaign.project import Quiet, request_for, write_project
 
@@ -34,25 +33,6 @@ TESTS = """
 def folder(tmp_path: Path) -> Path:
     write_project(tmp_path, MISSION, TESTS)
     return tmp_path
-
-
-def test_check_names_each_operator_that_applies_nowhere_with_the_reason(folder: Path) -> None:
-    report = check(request_for(folder, families=("catalogue",)), Quiet())
-    lines = [line for line in report.lines if line.startswith("nowhere")]
-    told = {line.split()[1].rstrip(":"): line.partition(": ")[2] for line in lines}
-    assert told == report.data["nowhere"]
-    assert (
-        told["quaternion-order"]
-        == "nothing here has what it needs: written and read quantities of kind quaternion"
-    )
-    assert told["stuck-reading"] == "takes 2 calls in a test, and no test makes more than 1"
-    assert not {"cm-for-m", "swap-next", "saturated-reading"} & {*told}
-
-
-@pytest.mark.whole
-def test_check_says_nothing_of_a_catalogue_that_nobody_asked_for(folder: Path) -> None:
-    report = check(request_for(folder), Quiet())
-    assert not [line for line in report.lines if line.startswith("nowhere")]
 
 
 def test_a_refusal_goes_unreported_only_where_a_call_raises(folder: Path) -> None:

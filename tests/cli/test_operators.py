@@ -38,7 +38,7 @@ def test_one_family_says_what_each_stands_for_and_where(capsys: pytest.CaptureFi
 def test_published_operators_name_the_rows_that_they_make(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["operators", "--family", "robot", "--json"]) == 0
     found = {one["name"]: one for one in json.loads(capsys.readouterr().out)["operators"]}
-    assert found["repeat"]["source"] == "Published operators: do command x → do command x twice."
+    assert found["repeat"]["source"] == "Published operators: 8. do command x → do command x twice."
     assert found["repeat"]["where"]
 
 

@@ -25,11 +25,11 @@ def test_a_demand_is_read_with_its_place(tmp_path: Path) -> None:
     text = (
         '[[demand]]\nnotice = "5 mm"\n'
         '[[demand]]\nsite = "mission.py:38"\nquantity = "y"\nkind = "translation"\n'
-        'notice = "1 cm"\nshare = 0.9\n'
+        'notice = "1 cm"\n'
     )
     assert demands(tmp_path, text) == (
         Demand(5.0, "mm", source="mutabot.toml:3"),
-        Demand(1.0, "cm", "mission.py:38", "y", Kind.TRANSLATION, share=0.9, source="mutabot.toml:5"),
+        Demand(1.0, "cm", "mission.py:38", "y", Kind.TRANSLATION, source="mutabot.toml:5"),
     )
 
 
@@ -58,8 +58,6 @@ def test_a_plain_number_has_no_unit(tmp_path: Path, notice: str) -> None:
         ('notice = "5 mm"\nkind = "count"', "it has no unit"),
         ('notice = "5 mm"\nsite = "16-20"', "'16-20' is the number of a mutant, which may change"),
         ('notice = "5 mm"\noperator = "ofset"', "unknown graded operator 'ofset'; did you mean 'offset'?"),
-        ('notice = "5 mm"\nshare = 1.0', "must be less than 1"),
-        ('notice = "5 mm"\nshare = 90', "must be less than 1"),
         ("notice = true", "notice"),
         ('notice = "5 mm"\nsite = ""', "site"),
     ],

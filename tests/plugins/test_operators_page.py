@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -31,5 +32,6 @@ def test_every_operator_has_its_section() -> None:
 
 
 def test_every_row_of_the_published_table_is_made_by_one_of_ours() -> None:
-    rows = sorted(row.row for name in built_in() for row in operator(name).published)
+    told = (operator(name).published for name in built_in())
+    rows = sorted(int(row) for text in told for row in re.findall(r"(\d+)\. .* → ", text.replace("; ", "\n")))
     assert rows == [*range(1, 14)]

@@ -35,7 +35,7 @@ EXTENSION = """
         executors={"toy": Described("toy.parts:Choice", "Run it on toys.", "HOW")},
         tables={"toy": "toy.parts:ToyTable"},
         commands={"play": Described("toy.parts:play", "Play with the campaign.")},
-        formats={"toys": "toy.parts:FORMAT"},
+        formats={"toys": "toy.parts:toys"},
         sections={"toys": "toy.parts:count"},
     )
     """
@@ -50,7 +50,6 @@ PARTS = '''
     from mutabot.cli import options
     from mutabot.cli.request import request_of
     from mutabot.errors import UsageError
-    from mutabot.report.format import Format
     from mutabot.config.table import ProjectFiles, Table
 
     class ToyTable(Table):
@@ -96,7 +95,10 @@ PARTS = '''
     def count(results):
         return {"mutants": len(results.mutants)}
 
-    FORMAT = Format("toys", lambda material: f"{len(material.campaign.mutants)} toys")
+    def toys(material):
+        return f"{len(material.campaign.mutants)} toys"
+
+    NOTHING = None
     '''
 
 
@@ -225,7 +227,7 @@ def test_help_tells_of_packages_and_imports_none_of_them(site: Path) -> None:
     ("old", "new", "told"),
     [
         ('"play"', '"show"', "'show' of package 'toy-package' has the name of one of 'mutabot' (commands)"),
-        ("parts:play", "parts:FORMAT", "'play' of package 'toy-package' (toy.parts:FORMAT) is no function"),
+        ("parts:play", "parts:NOTHING", "'play' of package 'toy-package' (toy.parts:NOTHING) is no function"),
         ("parts:play", "parts:ply", "'play' of package 'toy-package' (toy.parts:ply) cannot be loaded"),
         ("interface=1", "interface=2", "was written for version 2 of the extension interface"),
     ],
@@ -250,7 +252,7 @@ def test_a_package_that_does_not_fit_is_named(old: str, new: str, told: str, tmp
         ("parts:ToyTable", "parts:Choice", ["list"], "is not a subclass of mutabot.config.table.Table"),
         ('tables={"toy"', 'tables={"seed"', ["list"], "has the name of one of 'mutabot' (tables)"),
         ('"toys"', '"csv"', ["report", "--format", "pages"], "has the name of one of 'mutabot' (formats)"),
-        ("parts:FORMAT", "parts:play", ["report", "--format", "toys"], "is no mutabot.report.format.Format"),
+        ("parts:toys", "parts:NOTHING", ["report", "--format", "toys"], "(toy.parts:NOTHING) is no function"),
     ],
 )
 def test_a_part_that_is_not_what_it_should_be_is_named(

@@ -53,7 +53,7 @@ def stored(folder: Path, **changes: Any) -> mutabot.StoredCampaign:
 
 def made(name: str, campaign: mutabot.StoredCampaign, **options: Any) -> str:
     """A campaign in a format that is text."""
-    text = format_of(name).make(Material(portable(campaign), **options))
+    text = format_of(name)(Material(portable(campaign), **options))
     assert isinstance(text, str)
     text.encode()  # a lone half of a pair could not be written
     return text

@@ -10,7 +10,7 @@ import pytest
 
 from mutabot.model import By, Outcome, Verdict
 from mutabot.results.score import RoundScores, Score
-from mutabot.results.statistics import LEVEL, crossed, mean_of, sampled, student, wilson
+from mutabot.results.statistics import LEVEL, crossed, sampled, student, wilson
 
 CAMPAIGNS = 1000
 #: four standard errors of a coverage of 95 % measured in so many campaigns, in which a sound interval errs
@@ -82,29 +82,6 @@ def test_the_interval_of_a_score_covers_what_it_says(
 ) -> None:
     held = coverage(draw, effect, mutants, rounds, missing)
     assert 0.93 - MARGIN <= held <= 0.97 + MARGIN
-
-
-@pytest.mark.parametrize("rounds", [5, 10])
-def test_the_interval_of_a_mean_covers_what_it_says(rounds: int) -> None:
-    """Of differences in steps, where places and rounds have effects of their own."""
-    chance, held, campaigns = random.Random(11), 0, 300
-    for _ in range(campaigns):
-        shifts = [chance.gauss(0.0, 0.3) for _ in range(rounds)]
-        table = []
-        for _ in range(14):
-            place = chance.gauss(0.5, 1.0)
-            table.append([place + shift + chance.gauss(0.0, 0.5) for shift in shifts])
-        found = mean_of(table)
-        assert found is not None
-        held += found.low <= 0.5 <= found.high
-    assert 0.91 <= held / campaigns <= 0.99
-
-
-def test_a_mean_of_equal_numbers_is_that_number() -> None:
-    found = mean_of([[1.0, None, 1.0], [1.0, 1.0, 1.0]])
-    assert found is not None
-    assert (found.mean, found.low, found.high) == (1.0, 1.0, 1.0)
-    assert mean_of([[1.0, 1.0]]) is None
 
 
 def test_cells_of_one_mutant_do_not_count_as_independent() -> None:

@@ -12,8 +12,9 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.isolated_run import replay
 from mutabot.campaign.faults.providers import prepare
+from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import open_executor, plan_of
+from mutabot.campaign.run import open_executor
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import JournalReader
 from mutabot.journal.records import Replayed
@@ -61,7 +62,7 @@ def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant
     """The mutant in the program as it is now: edits elsewhere move it."""
     if Place.of(mutant) in baseline.hits:
         return mutant
-    planned = {one.id: one for one in plan_of(request, baseline).mutants}
+    planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
     if mutant.id not in planned:
         problem = f"the program has changed: no test reaches {mutant.id} any more"
         raise SelectionError(problem, unknown=[mutant.id])

@@ -82,7 +82,7 @@ def _run_batches(
 ) -> None:
     """Run these in batches, and keep note of how far it came."""
     request = campaign.request
-    runs = in_order(mutants, request.rounds, found.done, request.seed, found.before, found.sites)
+    runs = in_order(mutants, request.rounds, found.done, request.seed, found.before)
     seconds = request.budget or 0.0
     left = max(until - request.clock(), 0.0)
     campaign.progress.note(f"budget: {in_words(seconds)}, of which {left:.0f} s are left")
@@ -110,16 +110,11 @@ def in_order(
     done: Iterable[Pair],
     seed: int,
     before: Mapping[Pair, Verdict],
-    sites: Collection[str],
 ) -> list[MutantRun]:
     """All that is not done, what is expected to tell most first, one round after the other.
 
     Among those that are expected to tell alike much, the order depends on the seed and the mutants' ids
-    alone.
-
-    Args:
-        before: what outcomes were that do not hold any more.
-        sites: mutants, by id, at which something else stands than when they were run.
+    alone. ``before``: what outcomes were that do not hold any more.
     """
     firsts: dict[tuple[str, object], str] = {}
     for mutant in shuffled(mutants, f"{seed}:site"):
@@ -133,9 +128,7 @@ def in_order(
             return 0 if mutant.id in first_ids else 1
         if verdict.is_valid and not verdict.is_killed:
             return 2
-        if mutant.id in sites:
-            return 3
-        return 4 if mutant.id in first_ids else 5
+        return 3 if mutant.id in first_ids else 4
 
     return [
         run

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Iterator
 
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import try_controls
 from mutabot.campaign.engines.fork_parent import Unhandled
-from mutabot.campaign.plan import Plan
+from mutabot.campaign.plan import Plan, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.run import at_it, begin, plan_of, selected
+from mutabot.campaign.run import at_it, begin, selected
 from mutabot.config.configuration import Configuration
+from mutabot.errors import in_short
 from mutabot.extensions import brought
-from mutabot.families import CATALOGUE
 from mutabot.journal.files import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.codec import to_data
-from mutabot.operators import load_all
 
 #: operations that are named of those that no test reaches
 _SHOWN = 5
@@ -32,7 +30,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
         folders = {folder for one in previews.values() for folder in one.folders_left_out}
         with OpenedFiles(request.root, folders) as watch:
             campaign, _ = begin(request, opened, progress)
-        plan = plan_of(request, campaign.baseline)
+        plan = make_plan(campaign.baseline, request.project)
         mutants = selected(campaign, plan).mutants
         controls, unhandled = try_controls(campaign, mutants)
     report = _report(campaign, plan, mutants, controls, unhandled)
@@ -63,7 +61,6 @@ def _report(
     why = "cannot matter" if baseline.faults.left_out_beforehand else "would change nothing"
     reached = {place.operation for place in baseline.places}
     unused = [one.target for one in request.vocabulary.operations if one.target not in reached]
-    nowhere = dict(_nowhere(plan)) if CATALOGUE in request.families else {}
     flaky, restless = baseline.unstable, sorted(baseline.restless)
     clock = request.vocabulary.clock
     never_ticks = clock is not None and all(end.simulated is None for end in baseline.ends.values())
@@ -78,7 +75,6 @@ def _report(
     ]
     if clock is not None and never_ticks:
         lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
-    lines += [f"nowhere   {name}: {why}" for name, why in nowhere.items()]
     lines += [f"note      {remark}" for remark in baseline.remarks]
     lines += [f"replay    {test}: {why}" for test, why in unhandled.reasons.items()]
     data = {
@@ -92,23 +88,9 @@ def _report(
         "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in flaky.items()],
         "restless": [{"round": r, "test": t} for r, t in restless],
         "unused": unused,
-        "nowhere": nowhere,
         "remarks": [to_data(remark) for remark in baseline.remarks],
     }
     return CheckReport(lines, data)
-
-
-def _nowhere(plan: Plan) -> Iterator[tuple[str, str]]:
-    """Operators of the catalogue of which the plan has no mutant, with the reason."""
-    made = {mutant.operator for mutant in plan.mutants}
-    reasons: dict[str, Counter[str]] = {}
-    for item in plan.left_out:
-        name = item.id.rpartition(":")[2].partition("=")[0].partition("@")[0]
-        reasons.setdefault(name, Counter())[item.reason] += 1
-    for rule in load_all():
-        if rule.family == CATALOGUE and rule.name not in made:
-            known = reasons.get(rule.name, Counter([f"nothing here has what it needs: {rule.where}"]))
-            yield rule.name, known.most_common(1)[0][0]
 
 
 def _unused(vocabulary: Vocabulary, unused: Collection[str]) -> Iterator[str]:
@@ -118,9 +100,8 @@ def _unused(vocabulary: Vocabulary, unused: Collection[str]) -> Iterator[str]:
         of.setdefault(operation.source.partition(":")[0], []).append(operation.target)
     for name, there in of.items():
         found = [target for target in there if target in unused]
-        more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
         if found:
             yield (
                 f"unused    {len(found)} of {len(there)} operations of {name}, which no test reaches from "
-                f"the program or the oracle: {', '.join(found[:_SHOWN])}{more}"
+                f"the program or the oracle: {in_short(found, _SHOWN)}"
             )

@@ -15,7 +15,6 @@ from typing import Any
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Operation, Pattern, Probe, Quantity
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import Figure
 from mutabot.model.quantity import is_number, told_apart, value_text
 from mutabot.model.units import apart, distance
 
@@ -193,27 +192,26 @@ class Observation:
 
 @frozen
 class Difference:
-    """How far a mutant's test is from the original's.
+    """How far a mutant's test is from the original's. An outcome has the same fields.
 
     Attributes:
-        indistinguishable: whether all that was compared is equal within the tolerance.
+        indistinguishable: whether all that was compared is equal within the tolerance; None if that is not
+            to be claimed.
         distance: greatest difference of a probe, in multiples of its tolerance (``OTHER_WORLD`` for one
             that is not of numbers); None without probes, or if none that differs more is all that is known.
         divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
         gaps: what could not be compared, one line each.
         way: greatest difference of a probe along the way, in multiples of its tolerance; None if none was
             compared.
-        compared: how much was.
-        figures: figures of merit that differ.
+        compared: how much was; None if nothing was.
     """
 
-    indistinguishable: bool
+    indistinguishable: bool | None
     distance: float | None
     divergence: tuple[str, ...]
     gaps: tuple[str, ...] = ()
     way: float | None = None
-    compared: Compared = field(default=Compared(), compare=False)
-    figures: tuple[Figure, ...] = field(default=(), compare=False)
+    compared: Compared | None = field(default=None, compare=False)
 
 
 def compare(
@@ -253,8 +251,7 @@ def compare(
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
     compared = _compared(original, mutant, moments)
-    figures = tuple(_figures(original, mutant, probes))
-    return Difference(not lines, distance, tuple(lines), gaps, way, compared, figures)
+    return Difference(not lines, distance, tuple(lines), gaps, way, compared)
 
 
 def _on_the_way(
@@ -328,7 +325,7 @@ def farthest(comparisons: Sequence[Difference]) -> Difference:
     distance = max(distances, default=None)
     if gaps and (distance or 0.0) <= 1.0:
         distance = None
-    compared = Compared.together(one.compared for one in comparisons)
+    compared = Compared.together(one.compared for one in comparisons if one.compared is not None)
     way = max((one.way for one in comparisons if one.way is not None), default=None)
     return Difference(together, distance, tuple(lines), gaps, way, compared)
 
@@ -369,18 +366,6 @@ def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple
         for name in readings_of(probe, values) if probe.result else ():
             for quantity in probe.result:
                 yield name, quantity
-
-
-def _figures(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> Iterator[Figure]:
-    for probe in probes:
-        # a class of which the program uses several objects has a figure for each
-        keys = (key for key in original.probes if key == probe.target or key.startswith(f"{probe.target}#"))
-        for key in keys if probe.better is not None else ():
-            before, after = original.probes[key], mutant.probes.get(key)
-            if not (is_number(before) and is_number(after)):
-                continue
-            if math.inf > _distance(before, after) > probe.tolerance:
-                yield Figure(key, float(before), float(after or 0.0), probe.better or "")
 
 
 def _readable(original: Observation, mutant: Observation, target: str) -> str:

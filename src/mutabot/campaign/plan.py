@@ -21,7 +21,6 @@ from mutabot.frozen import frozen
 from mutabot.journal.records import Drawing, Reaching, Stratum
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Place
-from mutabot.operators.operator import Rule, in_order
 
 
 @frozen
@@ -139,39 +138,19 @@ def renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mut
     return found
 
 
-@frozen
-class ListedRule:
-    """One operator.
-
-    Attributes:
-        name, family, summary: the operator's own.
-        where: where it applies, in the words of vocabularies; empty if it does not say.
-        source: the bug class that it stands for, or the published operators that it makes; else empty.
-    """
-
-    name: str
-    family: str
-    summary: str
-    where: str
-    source: str
-
-
-def listed_rules(families: Collection[str] = ()) -> list[ListedRule]:
+def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     """The operators of these families, or all: by family, in the order of the documentation.
+
+    ``source`` is the bug class that one stands for, or the published operators that it makes; else empty.
 
     Raises OperatorError for a plug-in that is of no use.
     """
     wanted = [family for family in known_families() if not families or family in families]
     rules = rules_of(wanted)
-    return [
-        ListedRule(rule.name, rule.family, rule.summary, rule.where, _source(rule))
-        for family in wanted
-        for rule in in_order(rule for rule in rules if rule.family == family)
-    ]
-
-
-def _source(rule: Rule) -> str:
-    if rule.stands_for or not rule.published:
-        return rule.stands_for
-    rows = "; ".join(f"{row.original} → {row.mutant}" for row in rule.published)
-    return f"Published operators: {rows}."
+    found = []
+    for family in wanted:
+        for rule in (one for one in rules if one.family == family):
+            told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
+            published = f"Published operators: {rule.published}." if rule.published else ""
+            found.append({**told, "source": rule.stands_for or published})
+    return found

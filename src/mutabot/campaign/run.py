@@ -32,7 +32,7 @@ from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.since.since import Revision, altered_since, only_altered, open_others
-from mutabot.errors import JournalError, NothingToDoError
+from mutabot.errors import JournalError, NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.execution.task import Executor, Result
@@ -84,11 +84,6 @@ def begin(
     return Campaign(request, baseline, executor, progress, evidence), results
 
 
-def plan_of(request: Request, baseline: Baseline) -> Plan:
-    """All mutants that a request may be about."""
-    return make_plan(baseline, request.project)
-
-
 def selected(campaign: Campaign, plan: Plan) -> Plan:
     """The plan with the mutants that were asked for.
 
@@ -128,7 +123,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     """Take the baseline and plan, without running a mutant."""
     with at_it(request, progress) as opened:
         campaign, _ = begin(request, opened, progress)
-    plan = selected(campaign, plan_of(request, campaign.baseline))
+    plan = selected(campaign, make_plan(campaign.baseline, request.project))
     return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
 
 
@@ -184,7 +179,7 @@ def _run(
         campaign, results = begin(request, opened, progress, evidence)
     _note_lacking(request, watch, progress)
     baseline, decided = campaign.baseline, earlier_decision(journal)
-    whole = plan_of(request, baseline)
+    whole = make_plan(baseline, request.project)
     plan = selected(campaign, whole)
     part = part_of(plan, request.shard, baseline)
     _write_beginning(campaign, journal, results, plan, whole)
@@ -202,7 +197,7 @@ def _run(
     after = Snapshot.take(request.root, before)
     edited = after.edited_programs(before)
     if edited:
-        progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
+        progress.note(f"{in_short(edited)} changed during the baseline: no outcome is reused, now or later")
         is_whole = _run_all(campaign, part, OutcomeWriter(journal), Reused(), started)
         return _end(journal, part, campaign, is_whole=is_whole)
     state = State.now(request, before, after, watch.opened)
@@ -290,15 +285,10 @@ def _forget_if_edited(
     edited = Snapshot.take(campaign.request.root, after).edited_since(dependencies.files)
     if edited:
         campaign.progress.note(
-            f"{_listed(edited)} changed while mutants ran: what was found will not be reused"
+            f"{in_short(edited)} changed while mutants ran: what was found will not be reused"
         )
         with suppress(JournalError):
             journal.forget_keys()
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-    return ", ".join(names[:3]) + more
 
 
 @contextmanager

@@ -129,8 +129,11 @@ def run_ladders(
     kept = {
         (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
     }
-    request = campaign.request
-    searches = _searches(campaign, ladders, always or {})
+    request, searches = campaign.request, dict[str, LadderSearch]()
+    for ladder in ladders:
+        demanded = (always or {}).get(ladder.id, ())
+        steps = frozenset(step for step, one in enumerate(ladder.mutants) if one.magnitude in demanded)
+        searches[ladder.id] = LadderSearch(len(ladder.mutants), request.rounds, request.seed, steps)
     found: list[Outcome] = []
 
     def run(known: range) -> None:
@@ -159,15 +162,3 @@ def run_ladders(
         f"thresholds: {len(ladders)} ladders in {len(rounds)} rounds took {runs} runs; all their magnitudes "
         f"would have taken {whole}"
     )
-
-
-def _searches(
-    campaign: Campaign, ladders: Sequence[FaultLadder], always: Mapping[str, Collection[float]]
-) -> dict[str, LadderSearch]:
-    found = {}
-    for ladder in ladders:
-        demanded = always.get(ladder.id, ())
-        steps = frozenset(step for step, one in enumerate(ladder.mutants) if one.magnitude in demanded)
-        request, size = campaign.request, len(ladder.mutants)
-        found[ladder.id] = LadderSearch(size, request.rounds, request.seed, steps)
-    return found

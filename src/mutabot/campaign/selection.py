@@ -15,11 +15,8 @@ from mutabot.errors import SelectionError, nearest_name
 from mutabot.faults import known_families
 from mutabot.languages.front_end import program_files
 from mutabot.model import LeftOut, Mutant
-from mutabot.model.mutant import Role, fits, is_like, line_of, means_numbers
+from mutabot.model.mutant import Role, fits, is_like, means_numbers
 from mutabot.operators import registry
-
-#: signs of a word that messages show
-_LONGEST = 200
 
 
 def select(
@@ -99,12 +96,12 @@ def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
 
 
 def _names(mutants: Sequence[Mutant]) -> list[str]:
-    names: dict[str, None] = {}
-    for mutant in mutants:
-        span = mutant.site.span
-        words = (mutant.operator, mutant.family, mutant.site.role.value, span.file, mutant.id)
-        names.update(dict.fromkeys(words))
-    return list(names)
+    words = (
+        word
+        for one in mutants
+        for word in (one.operator, one.family, one.site.role.value, one.site.span.file, one.id)
+    )
+    return list(dict.fromkeys(words))
 
 
 def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:
@@ -118,7 +115,7 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
 
 
 def _shown(pattern: str) -> str:
-    return repr(pattern if len(pattern) <= _LONGEST else f"{pattern[:_LONGEST]}…")
+    return repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
 
 
 def refuse_typos(request: Request) -> None:
@@ -128,7 +125,7 @@ def refuse_typos(request: Request) -> None:
     names = [*registry.names(), *known_families(), *(role.value for role in Role)]
     mistakes = []
     for option, words in (("--only", request.only), ("--skip", request.skip)):
-        unknown = [word for word in words if not _may_fit(word, request.root, files, names)]
+        unknown = [word for word in words if not _may_fit(word, files, names)]
         if unknown:
             mistakes.append(nothing_fits(option, unknown, [*names, *operators_of_packages(), *files]))
     if mistakes:
@@ -136,25 +133,14 @@ def refuse_typos(request: Request) -> None:
         raise SelectionError(text, unknown=[word for mistake in mistakes for word in mistake.unknown])
 
 
-def _may_fit(word: str, root: Path, files: Sequence[str], names: Collection[str]) -> bool:
+def _may_fit(word: str, files: Sequence[str], names: Collection[str]) -> bool:
     """Whether there may be such a mutant. What holds wild signs, numbers or a list is for the plan to say."""
     file, colon, _ = word.partition(":")
     if means_numbers(word) or word.startswith("@") or {"*", "?"} & {*file}:
         return True
     if not colon and (word in names or word in operators_of_packages()):
         return True
-    found = [known for known in files if _is_file(file, known)]
-    line = line_of(word)
-    if found and line is not None and not {"*", "?"} & {*line[0]}:
-        return any(line[1].start <= _lines(root / known) for known in found)
-    return bool(found) or _exists(root, file)
-
-
-def _lines(file: Path) -> int:
-    try:
-        return file.read_bytes().count(b"\n") + 1
-    except OSError:
-        return 0
+    return any(_is_file(file, known) for known in files)
 
 
 def _is_file(word: str, file: str) -> bool:
@@ -164,10 +150,3 @@ def _is_file(word: str, file: str) -> bool:
         or file.endswith("/" + word.removeprefix("…/"))
         or file.startswith(word.rstrip("/") + "/")
     )
-
-
-def _exists(root: Path, file: str) -> bool:
-    try:
-        return bool(file) and (root / file).exists()
-    except (OSError, ValueError):  # too long for a name, or with a zero in it
-        return False

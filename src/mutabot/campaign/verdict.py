@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparison import Observation, compare, farthest
-from mutabot.errors import MutabotError
+from mutabot.errors import MutabotError, in_short
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
+from mutabot.model.codec import shallow
 from mutabot.model.event_file import OWN_FAULT
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import Figure, added, in_words
+from mutabot.model.outcome import added, in_words
 from mutabot.model.source_units import Executed, together
 
 #: tests of a survivor whose checks are kept
@@ -78,7 +78,7 @@ class Run:
     round: int
     tests: tuple[str, ...]
     ends: list[TestEnd] = field(default_factory=list)
-    observations: Mapping[str, Observation] = field(default_factory=dict)
+    observations: dict[str, Observation] = field(default_factory=dict)
     death: Death | None = None
     wall: float = 0.0
     shared: float | None = None
@@ -142,8 +142,7 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
     verdict, end, message = _ruling(run, baseline.exits[run.round])
     aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
     if aside:
-        more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
-        others = f"{aside[0]}{more}, set aside in this round, might not"
+        others = f"{in_short(aside, 1)}, set aside in this round, might not"
         verdict = Verdict.UNSTABLE
         message = f"the tests that can be relied on let it through; {others}"
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
@@ -299,7 +298,6 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
     """The outcome of a survivor with how far its world is from the original's."""
     baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
     comparisons = []
-    figures: list[Figure] = []
     first = next((number for number, end in enumerate(run.ends) if end.hits), 0)
     since_hit = {end.test for end in run.ends[first:]}  # before it is hit, a mutant is the original
     for test, found in run.observations.items():
@@ -311,17 +309,7 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
         if key in baseline.observations:
             known = (vocabulary.probes, vocabulary.operations)
             comparisons.append(compare(baseline.observations[key], found, *known))
-            figures += (replace(one, test=test) for one in comparisons[-1].figures)
     worst = farthest(comparisons)
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.
     is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
-    return replace(
-        outcome,
-        indistinguishable=worst.indistinguishable if is_claimed else None,
-        distance=worst.distance,
-        divergence=worst.divergence,
-        gaps=worst.gaps,
-        way=worst.way,
-        compared=worst.compared if comparisons else None,
-        figures=tuple(figures),
-    )
+    return replace(outcome, **shallow(worst if is_claimed else replace(worst, indistinguishable=None)))

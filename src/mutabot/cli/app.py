@@ -21,7 +21,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from mutabot.errors import ExitCode, ExtensionError, MutabotError, UsageError
+from mutabot.errors import ExitCode, MutabotError, UsageError
 from mutabot.extensions import brought, not_installed
 from mutabot.limits import shortened
 
@@ -61,7 +61,10 @@ _GONE = {
     "--view": "`mutabot motion MUTANT --rerun` shows what was recorded",
     "--write": "apply the diff that `mutabot suggest` prints",
     **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
-    **dict.fromkeys(("--steps", "--sort", "--picture"), "`mutabot thresholds --json` has every magnitude"),
+    "--suggest-demands": "write a demand with a magnitude that `mutabot thresholds` shows",
+    **dict.fromkeys(
+        ("--steps", "--sort", "--picture", "--compare"), "`mutabot thresholds --json` has every magnitude"
+    ),
     **dict.fromkeys(("--video", "--rerun", "--rrd", "--mcap"), "use `mutabot motion MUTANT`"),
     **dict.fromkeys(
         ("--tls-ca", "--tls-cert", "--tls-key"), "use -o cluster.ca=FILE, cluster.cert or cluster.key"
@@ -109,11 +112,7 @@ def function_of(name: str) -> Callable[..., object]:
     if name in _OWN:
         module, _, attribute = _OWN[name][0].partition(":")
         return getattr(importlib.import_module(f"mutabot.cli.{module}"), attribute)  # type: ignore[no-any-return]
-    part = brought("commands", _OWN)[name]
-    found = part.load()
-    if not callable(found):
-        raise ExtensionError(f"{part.words} is no function")
-    return found  # type: ignore[no-any-return]
+    return brought("commands", _OWN)[name].load_function()
 
 
 def _command(name: str, function: Callable[..., object], help: str | None = None) -> Any:

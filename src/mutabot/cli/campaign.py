@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Unpack
@@ -52,7 +51,7 @@ def init(
 
 def operators(family: options.Families = None, json: options.Json = False) -> None:
     """List the operators and the bugs they stand for."""
-    rules = [asdict(rule) for rule in listed_rules(families_of(family))]
+    rules = listed_rules(families_of(family))
     print_json({"operators": rules}) if json else print_rules(make_console(), rules)
 
 

@@ -11,29 +11,24 @@ from typing import Annotated
 import typer
 
 from mutabot.cli import options
-from mutabot.cli.output import echo, print_bytes, print_json, show_results, tell
+from mutabot.cli.output import print_bytes, print_json, show_results, tell
 from mutabot.errors import JournalError, UsageError
 from mutabot.journal.files import find_journal, previous_of
-from mutabot.report.changes import print_changes
+from mutabot.report.changes import changes
 from mutabot.report.format import Format, Material, format_of, names
 from mutabot.report.html.folder import Contents, check_folder, write_folder
-from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.console import make_console, print_section, short_place
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
-from mutabot.report.thresholds import print_compared, print_thresholds, suggested_toml
+from mutabot.report.thresholds import print_thresholds
 from mutabot.results.results import Results, find_mutant, results_at
-from mutabot.results.stored import Changes, StoredEvidence, journal_at
-from mutabot.results.stored import changes as changes_between
+from mutabot.results.stored import StoredEvidence, journal_at
 from mutabot.results.suggested import kept_suggestions
-from mutabot.results.thresholds import compare as compared
 from mutabot.results.thresholds import thresholds_of
 
 #: stands for standard output
 _STANDARD = Path("-")
 
-_Demands = Annotated[
-    bool, typer.Option("--suggest-demands", help="Print demands that this campaign meets, as TOML.")
-]
 _Formats = Annotated[
     list[str] | None,
     typer.Option(
@@ -81,52 +76,21 @@ def show(
     if json:
         print_json(result)
     else:
-        with closing(StoredEvidence(path)) as evidence:
-            suggestions = kept_suggestions(path, found.meta)
-            print_mutant(make_console(), result, source, evidence, suggestions, everything=all)
+        suggestions = kept_suggestions(path, found.meta)
+        print_mutant(make_console(), result, source, suggestions, everything=all)
 
 
-def thresholds(
-    context: typer.Context,
-    compare: options.Compared = None,
-    suggest_demands: _Demands = False,
-    json: options.Json = False,
-) -> None:
+def thresholds(context: typer.Context, json: options.Json = False) -> None:
     """Show how large a fault must be before the tests notice it."""
-    if suggest_demands and (json or compare is not None):
-        raise UsageError("--suggest-demands prints TOML alone")
     journal = find_journal(context.obj)
-    results = _graded(journal)
-    if compare is not None:
-        other = journal_at(compare)
-        _check_other(
-            other, journal, f"{compare} is the campaign itself; keep a copy of its journal to compare"
-        )
-        comparison = compared(_graded(other), results)
-        print_json(comparison) if json else print_compared(make_console(), comparison)
-        return
-    found = thresholds_of(results)
-    if suggest_demands:
-        table = "demand" if (context.obj / "mutabot.toml").is_file() else "tool.mutabot.demand"
-        echo(suggested_toml(found.ladders, table=table))
-    else:
-        print_json(found) if json else print_thresholds(make_console(), found)
-
-
-def _graded(journal: Path) -> Results:
-    """Read a journal. Raises JournalError if it holds no graded mutants."""
-    found = results_at(journal)
-    if not found.ladders:
+    results = results_at(journal)
+    if not results.ladders:
         raise JournalError(
             f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them",
             path=str(journal),
         )
-    return found
-
-
-def _check_other(other: Path, journal: Path, problem: str) -> None:
-    if other.exists() and journal.exists() and other.samefile(journal):
-        raise UsageError(problem)
+    found = thresholds_of(results)
+    print_json(found) if json else print_thresholds(make_console(), found)
 
 
 def report(
@@ -136,11 +100,10 @@ def report(
     html: _Html = None,
     compare: options.Compared = None,
     prefix: _Prefix = "",
-    json: options.Json = False,
 ) -> None:
     """Write the last campaign as HTML pages or in formats of other tools.
 
-    With --compare alone, print how it differs from an older campaign.
+    With --compare alone, print what became of survivors since an older campaign.
     """
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
@@ -150,24 +113,22 @@ def report(
     if html is not None:
         check_folder(html)
     unfit = ["--html"] if html is not None else []
-    unfit += [f"the format {one.name}" for one, _ in wanted if not one.tells_changes]
+    unfit += [f"the format {name}" for name in format or () if name != "markdown"]
     if compare is not None and unfit:
         raise UsageError(f"{unfit[0]} cannot hold a comparison; markdown can")
-    if json and (wanted or html is not None or compare is None):
-        raise UsageError("--json goes with --compare alone; `mutabot results --json` prints the results")
     journal, folder = find_journal(context.obj), PurePosixPath(prefix)
     if folder.is_absolute() or ".." in folder.parts:
         raise UsageError(f"--prefix {prefix} must be a folder inside the repository, relative to its root")
     stored = results_at(journal)
     campaign = portable(stored)
-    changes = None
-    if compare is not None:
-        changes = _changes(campaign, journal, compare)
-        if not wanted:
-            print_json(changes) if json else print_changes(make_console(), changes)
-    material = Material(campaign, "" if folder == PurePosixPath() else str(folder), changes)
-    for one, file in wanted:
-        _write(one.make(material), file)
+    older = portable(results_at(_older(compare, journal))) if compare is not None else None
+    if older is not None and not wanted:
+        console = make_console()
+        for section in changes(older, campaign, short_place):
+            print_section(console, section)
+    material = Material(campaign, "" if folder == PurePosixPath() else str(folder), older)
+    for make, file in wanted:
+        _write(make(material), file)
     if html is not None:
         _write_pages(html, campaign, journal, stored.meta.get("root"))
     if not campaign.is_complete:
@@ -191,12 +152,13 @@ def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Forma
         yield found, file
 
 
-def _changes(campaign: Results, journal: Path, old: Path) -> Changes:
-
-    other = journal_at(old)
-    before = f"the last complete one before it, if there was any, is in {previous_of(journal).name} beside it"
-    _check_other(other, journal, f"{old} is the campaign itself; {before}")
-    return changes_between(portable(results_at(other)), campaign)
+def _older(path: Path, journal: Path) -> Path:
+    """Return the journal of an older campaign. Raises UsageError if it is this one."""
+    other = journal_at(path)
+    if other.exists() and journal.exists() and other.samefile(journal):
+        before = f"the last complete one before it, if there was any, is in {previous_of(journal).name}"
+        raise UsageError(f"{path} is the campaign itself; {before} beside it")
+    return other
 
 
 def _write(text: str, file: Path) -> None:

@@ -36,7 +36,6 @@ class DemandTable(Table):
     quantity: Annotated[str | None, Field(min_length=1)] = None
     kind: Annotated[Kind | None, Field(strict=False), AfterValidator(_check_kind)] = None
     operator: str = OFFSET
-    share: Annotated[float | None, Field(gt=0, lt=1)] = None
 
 
 def check_demands(place: DocumentPlace, tables: Sequence[Mapping[str, Any]]) -> tuple[Demand, ...]:
@@ -62,7 +61,7 @@ def _demand(place: DocumentPlace, raw: Mapping[str, Any]) -> Demand | None:
         return None
     line = place.document.line(place.path)
     source = f"{place.document.file}:{line}" if line is not None else place.document.file
-    return Demand(notice, unit, table.site, table.quantity, table.kind, table.operator, table.share, source)
+    return Demand(notice, unit, table.site, table.quantity, table.kind, table.operator, source)
 
 
 def _amount(place: DocumentPlace, notice: str | float) -> tuple[float, str | None]:

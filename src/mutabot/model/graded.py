@@ -38,7 +38,6 @@ class Demand:
         quantity: the name of the quantity; None for any.
         kind: its kind; None for any.
         operator: the graded operator.
-        share: the share of rounds that must notice it, to be shown; None for all rounds that are run.
         source: ``file:line`` where it stands.
     """
 
@@ -48,7 +47,6 @@ class Demand:
     quantity: str | None = None
     kind: Kind | None = None
     operator: str = OFFSET
-    share: float | None = None
     source: str = ""
 
     def is_about(self, mutant: Mutant, kind: Kind | None) -> bool:

@@ -378,15 +378,12 @@ class Probe:
             attribute of a class's objects is read from those that the program uses.
         tolerance: greatest difference between two equal worlds, in the reading's own units.
         result: what parts of it mean, where that decides how they are compared: angles and orientations.
-        better: whether ``less`` or ``more`` of it is better, where it is one number and a figure of merit;
-            else None.
     """
 
     target: str
     tolerance: float = 1e-6
     source: str = ""
     result: tuple[Quantity, ...] = ()
-    better: str | None = None
 
     @property
     def owner(self) -> str:
@@ -419,3 +416,12 @@ class Vocabulary:
     def operation(self, target: str) -> Operation | None:
         """The operation with this target, or None."""
         return next((operation for operation in self.operations if operation.target == target), None)
+
+    def quantity(self, target: str, pattern: str | None, name: str | None) -> Quantity | None:
+        """The quantity of this name in a command of an operation, or in the operation; None if none is."""
+        operation = self.operation(target)
+        if operation is None or name is None:
+            return None
+        owner = operation.pattern(pattern) or operation
+        known = (*owner.arguments, *owner.result, *operation.arguments, *operation.result)
+        return next((quantity for quantity in known if quantity.name == name), None)

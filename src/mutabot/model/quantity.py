@@ -162,8 +162,6 @@ class Quantity:
         ladder: the magnitudes of graded faults to try, in ``ladder_unit``, rising; None for the usual ones.
         ladder_unit: the unit of these; it measures what the quantity measures, or a time, or a ratio; only
             graded faults of that measure follow it. None for its own unit.
-        repeatability: standard deviation of equal readings, as the sensor itself has it, in the unit; None if
-            the vocabulary does not say.
         missing: what a reading gives that is not there: ``none``, ``nan``, or an exception that is raised
             (``module:Name``); None if the vocabulary does not say.
         tcp: the part of the tool centre point's offset that lies along this axis, in its unit; None if the
@@ -185,7 +183,6 @@ class Quantity:
     relative: bool = False
     ladder: tuple[float, ...] | None = None
     ladder_unit: str | None = None
-    repeatability: float | None = None
     missing: str | None = None
     tcp: float | None = None
 

@@ -1,4 +1,4 @@
-"""What operators say of themselves: worked examples in few words, and the studies that they stand for."""
+"""Worked examples of operators in few words."""
 
 from __future__ import annotations
 
@@ -11,15 +11,6 @@ from mutabot.model.quantity import Value
 from .magnitudes import Magnitudes, sized
 from .operator import Example, Subject, quantity_of
 
-#: how often each class of bugs was counted in public studies
-_STUDIES = "of the bugs on commands and readings in studies of ROS and PX4/ArduPilot software"
-TIMING = f"timing and order are 28 {_STUDIES}"
-SENSORS = f"sensor dropouts and misreadings are 20 {_STUDIES}"
-PARAMETERS = f"parameters are 14 {_STUDIES}"
-COMMANDS = f"missing and duplicated commands are 13 {_STUDIES}"
-FRAMES = f"frames are 9 {_STUDIES}"
-SIGNS = f"signs are 4 {_STUDIES}"
-UNITS = f"units are 2 {_STUDIES}"
 X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", "world")
 LOCATE = Operation("camera:locate", result=(X,), command=False)
 GRIP = Operation(
@@ -59,6 +50,37 @@ def unchanged(operation: Operation, before: Any, away: str, variant: str = "", *
     subject = _subject(operation, variant, more)
     more["values" if subject.is_written else "replied"] = _values(subject, before)
     return Example(subject, away=away, **more)
+
+
+def whole(
+    operation: Operation,
+    value: Any,
+    *after: Any,
+    variant: str = "",
+    size: tuple[float, str | None] | None = None,
+    earlier: tuple[Any, ...] = (),
+    then: tuple[Any, ...] = (),
+    **more: Any,
+) -> Example:
+    """A call on which the operator acts as a whole.
+
+    Of a call that writes, ``value`` is what it writes, and ``after`` what each call writes that reaches the
+    robot. Of one that reads, they are what the robot answers, and what the program gets, if it gets any.
+    Values are those of the first quantity, or a table of several; ``size``: the magnitude and its unit.
+    """
+    first = next(iter((*operation.arguments, *operation.result)), None)
+
+    def of(one: Any) -> Mapping[str, Value]:
+        return one if first is None or isinstance(one, Mapping) else {first.name: one}
+
+    subject = Subject(operation, variant=variant)
+    if size is not None:
+        subject = next(sized(subject, Magnitudes(size[1], (size[0],))))
+    known = {"earlier": tuple(map(of, earlier)), "then": tuple(map(of, then)), **more}
+    if operation.arguments or not operation.result:
+        return Example(subject, of(value), performed=tuple(map(of, after)), **known)
+    received = of(after[0]) if after else None
+    return Example(subject, replied=of(value), performed=({},), received=received, **known)
 
 
 def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subject:

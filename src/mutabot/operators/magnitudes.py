@@ -75,16 +75,11 @@ _COUNTED = Magnitudes(None, series(1, 7))
 _PER_SECOND = 0.1
 
 
-def measure_of(quantity: Quantity) -> Dimension | None:
-    """What a quantity's values measure; None for plain numbers. Orientations as a whole are angles."""
-    if quantity.is_whole:
-        return Dimension.ANGLE
-    return dimension_of(quantity.unit) if quantity.unit is not None else None
-
-
 def own_ladder(quantity: Quantity) -> Magnitudes | None:
     """Of faults in the quantity's own measure; None where neither the vocabulary nor its kind says."""
-    measure = measure_of(quantity)
+    # orientations as a whole are angles; plain numbers have no measure
+    unit = "rad" if quantity.is_whole else quantity.unit
+    measure = dimension_of(unit) if unit is not None else None
     told = _told(quantity)
     if told is not None and (told.unit is None or dimension_of(told.unit) is measure):
         return told

@@ -28,28 +28,25 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from random import Random
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from typing import Any, ClassVar
 
 from mutabot.families import ROBOT
 from mutabot.model import Call, Middleware, Operation, Pattern, Quantity
 from mutabot.model.quantity import Value
 
-
-class Published(NamedTuple):
-    """A row of the table of published operators that an operator makes.
-
-    Attributes:
-        row: 1-based place in that table.
-        original, mutant: the row's two columns, in words.
-    """
-
-    row: int
-    original: str
-    mutant: str
-
-
-#: how the paragraph of a docstring begins that says where an operator applies
-_WHERE = "Where: "
+#: how often each class of bugs was counted in public studies, by the word of docstrings
+_COUNTED = {
+    "timing": "timing and order are 28",
+    "sensors": "sensor dropouts and misreadings are 20",
+    "parameters": "parameters are 14",
+    "commands": "missing and duplicated commands are 13",
+    "frames": "frames are 9",
+    "signs": "signs are 4",
+    "units": "units are 2",
+}
+_STUDIES = "of the bugs on commands and readings in studies of ROS and PX4/ArduPilot software"
+#: how the paragraphs of a docstring begin that are attributes, and what these are called
+_PARAGRAPHS = {"Where": "where", "Stands for": "stands_for", "Published": "published"}
 
 
 class Rule(ABC):
@@ -60,24 +57,24 @@ class Rule(ABC):
         family: the family of its mutants (``mutabot.families``), or one of its own for a plug-in.
         summary: one sentence for the documentation: what the docstring says first, unless it is given.
         examples: worked examples; they are tests and documentation at once.
-        rank: its place in the documentation and in the numbering of mutants: smaller first, then by name.
-            Without one it comes after those that have one.
-        published: rows of the table of published operators that it makes; empty for all others.
-        stands_for: the bug class that it stands for and the evidence of it, in one sentence; may be empty for
-            those that are published.
-        where: where it applies, in the words of vocabularies: the paragraph of the docstring that begins with
-            ``Where:``, unless it is given.
+        where: where it applies, in the words of vocabularies.
+        stands_for: the bug class that it stands for and the evidence of it, in one sentence, which
+            ``{timing}`` and the like stand for; may be empty for those that are published.
+        published: rows of the table of published operators that it makes, ``7. original → mutant``, with
+            semicolons between them; empty for all others.
         has_sizes: whether it plants each fault in several magnitudes, of which a threshold is sought.
+
+    ``where``, ``stands_for`` and ``published`` are paragraphs of the docstring, which begin with ``Where:``,
+    ``Stands for:`` and ``Published:``, unless they are given.
     """
 
     name: ClassVar[str]
     family: ClassVar[str]
     summary: ClassVar[str] = ""
     examples: ClassVar[tuple[Any, ...]] = ()
-    rank: ClassVar[int] = 1000
-    published: ClassVar[tuple[Published, ...]] = ()
-    stands_for: ClassVar[str] = ""
     where: ClassVar[str] = ""
+    stands_for: ClassVar[str] = ""
+    published: ClassVar[str] = ""
     has_sizes: ClassVar[bool] = False
 
     def __init_subclass__(cls) -> None:
@@ -86,16 +83,12 @@ class Rule(ABC):
         if summary and "summary" not in vars(cls):
             cls.summary = summary
         for other in others:
-            if other.startswith(_WHERE) and "where" not in vars(cls):
-                cls.where = other.removeprefix(_WHERE).rstrip(".")
-
-
-R = TypeVar("R", bound=Rule)
-
-
-def in_order(rules: Iterable[R]) -> list[R]:
-    """The operators in the order of the documentation."""
-    return sorted(rules, key=lambda rule: (rule.rank, rule.name))
+            begin, _, text = other.partition(": ")
+            name = _PARAGRAPHS.get(begin, "")
+            if name and name not in vars(cls):
+                for word, counted in _COUNTED.items():
+                    text = text.replace(f"{{{word}}}", f"{counted} {_STUDIES}")
+                setattr(cls, name, text.rstrip(".") if name == "where" else text)
 
 
 class Need(Enum):
@@ -243,6 +236,8 @@ class Operator(Rule):
         draws: whether it adds a number that is drawn anew for each round, which reports then show.
         is_raced: whether it leaves to chance what the program's processes still get done, so that equal runs
             may end differently: survivors are run again as well as kills.
+        by_chance: whether only chance says at which calls it acts.
+        calls: how many calls it takes.
     """
 
     family: ClassVar[str] = ROBOT
@@ -251,6 +246,8 @@ class Operator(Rule):
     does_nothing: ClassVar[bool] = False
     draws: ClassVar[bool] = False
     is_raced: ClassVar[bool] = False
+    by_chance: ClassVar[bool] = False
+    calls: ClassVar[int] = 1
 
     def needs_of(self, subject: Subject) -> frozenset[Need]:
         """What it asks for at this subject."""
@@ -264,11 +261,11 @@ class Operator(Rule):
 
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
-        return False
+        return self.by_chance
 
     def least_calls(self, subject: Subject) -> int:
         """How many calls it takes to be what it is; it is left out where the tests make fewer."""
-        return 1
+        return self.calls
 
     @abstractmethod
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
@@ -319,26 +316,6 @@ def subject_of(
 _BITS = 64
 
 
-class Draws:
-    """Numbers drawn for one call, whatever other calls draw.
-
-    A draw is keyed by the mutant's own seed, in which are campaign, round, test and site, and by the number
-    of the call. From a stream a program that reads once more would shift all later draws, and one magnitude
-    of a fault could not be compared with another (common random numbers: L'Ecuyer 1994; keyed generators:
-    Salmon et al. 2011).
-
-    Args:
-        random: the mutant's generator for this round and test; one number is taken of it, now.
-    """
-
-    def __init__(self, random: Random) -> None:
-        self._key = random.getrandbits(_BITS)
-
-    def of(self, number: int) -> Random:
-        """The generator of the call of this number, from 1; a new one each time."""
-        return Random(f"{self._key}:{number}")
-
-
 @dataclass(slots=True)
 class Context:
     """One mutant at work in one test.
@@ -358,7 +335,7 @@ class Context:
     call: Call = field(init=False)
     number: int = 0
     memory: list[Any] = field(default_factory=list)
-    _draws: Draws | None = None
+    _key: int | None = None
 
     @property
     def quantity(self) -> Quantity:
@@ -366,9 +343,16 @@ class Context:
         return quantity_of(self.subject)
 
     def draw(self) -> Random:
-        """The call's own generator; a new one each time."""
-        self._draws = self._draws or Draws(self.random)
-        return self._draws.of(self.number)
+        """The call's own generator; a new one each time.
+
+        It is keyed by the mutant's own seed, in which are campaign, round, test and site, and by the number
+        of the call. From a stream a program that reads once more would shift all later draws, and one
+        magnitude of a fault could not be compared with another (common random numbers: L'Ecuyer 1994; keyed
+        generators: Salmon et al. 2011).
+        """
+        if self._key is None:
+            self._key = self.random.getrandbits(_BITS)
+        return Random(f"{self._key}:{self.number}")
 
     def by_chance(self) -> None:
         """Raises Unchanged unless chance wants this call; the option is how likely that is."""

@@ -60,7 +60,17 @@ class ValuesOperator(Operator):
 
     def why_unchanged(self, quantity: Quantity, before: Value, after: Value | None) -> str:
         """Why a new value is not put in place of another one; empty if it can be."""
-        return why_unchanged(quantity, before, after)
+        if after is None:
+            return "a value of this type cannot be changed"
+        if not _allowed(quantity, after):
+            if quantity.range is None:
+                return "the vocabulary does not allow the new value"
+            return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
+        if is_same(quantity, before, after):
+            return SAME
+        if quantity.clip is not None and is_same(quantity, quantity.clipped(before), quantity.clipped(after)):
+            return "both values are limited to the same one by clip = [{:g}, {:g}]".format(*quantity.clip)
+        return ""
 
     async def _changed(self, one: CallOrReply, call: Call, context: Context) -> CallOrReply:
         """The call, or the reply to it, with the new values in it."""
@@ -147,21 +157,6 @@ def given(values: Mapping[str, Value], name: str, subject: Subject) -> Value:
     if name not in values:
         raise Unchanged(NOT_PASSED if subject.is_written else NOT_RETURNED)
     return values[name]
-
-
-def why_unchanged(quantity: Quantity, before: Value, after: Value | None) -> str:
-    """Why a new value is not put in place of another one; empty if it can be."""
-    if after is None:
-        return "a value of this type cannot be changed"
-    if not _allowed(quantity, after):
-        if quantity.range is None:
-            return "the vocabulary does not allow the new value"
-        return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
-    if is_same(quantity, before, after):
-        return SAME
-    if quantity.clip is not None and is_same(quantity, quantity.clipped(before), quantity.clipped(after)):
-        return "both values are limited to the same one by clip = [{:g}, {:g}]".format(*quantity.clip)
-    return ""
 
 
 def _allowed(quantity: Quantity, value: Value) -> bool:

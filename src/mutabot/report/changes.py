@@ -1,91 +1,66 @@
-"""What differs between two campaigns, in the same sections on the terminal and as Markdown."""
+"""What became of survivors since an older campaign, as the same sections on the terminal and in Markdown.
+
+Mutants are the same if their ids are. A mutant is a survivor if any round lets it through. Only what was
+judged can be fixed: a survivor that is refused, unstable, not run or not there in the new campaign is told
+apart.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 
-from rich.console import Console
-from rich.text import Text
+from mutabot.results.results import MutantResult, Results
 
-from mutabot.model import Span
-from mutabot.results.score import Group
-from mutabot.results.stored import Changes, Ends
+from .sections import Place, Section, percent
+from .texts import rounds_text
 
-from .sections import Section, percent, section_lines
-from .terminal.console import plain, print_section, short_place
-from .texts import escaped, rounds_text
-
-#: mutants of a section that are shown
-_ROWS = 50
+_COLUMNS = (">no.", "place", "operator", "*fault", "*result")
 
 
-def sections(changes: Changes, place: Callable[[Span], str]) -> Iterator[Section]:
-    """Yield the scores, then the sections that are not empty, what needs action first."""
-    yield Section("Scores", ("family · role", ">old", ">new", ">points"), [*_score_rows(changes)])
-    pairs: tuple[tuple[str, Sequence[Ends]], ...] = (
-        ("New survivors", changes.appeared),
-        ("Changed survivors", changes.changed),
-        ("Survivors with unknown state now", changes.unknown),
-        ("Fixed survivors", changes.fixed),
-        ("Removed mutants", changes.gone),
-        ("New mutants that do not survive", [one for one in changes.added if not one.either.is_survivor]),
-    )
-    for name, found in pairs:
-        rows = [_row(pair, place) for pair in found]
-        if rows:
-            yield Section(f"{name}: {len(rows)}", (">no.", "place", "operator", "*fault", "*result"), rows)
+def changes(old: Results, new: Results, place: Place) -> Iterator[Section]:
+    """Yield how complete the campaigns are, the scores, and the survivors that changed, new ones first."""
+    for name, campaign in (("older", old), ("new", new)):
+        if not campaign.is_complete:
+            yield Section(f"The {name} campaign is not complete: {campaign.state}", is_alarm=True)
+    yield Section("Scores", ("family · role", ">old", ">new", ">points"), [*_score_rows(old, new)])
+    before, after = ({one.mutant.id: one for one in campaign.mutants} for campaign in (old, new))
+    survived, survives = ({one.mutant.id for one in campaign.survivors} for campaign in (old, new))
+    lost = [one for one in old.worst_first if one.mutant.id in survived - survives]
+    found = {
+        "New survivors": [one for one in new.worst_first if one.mutant.id in survives - survived],
+        "Survivors with unknown state now": [one for one in lost if not _is_judged(after.get(one.mutant.id))],
+        "Fixed survivors": [one for one in lost if _is_judged(after.get(one.mutant.id))],
+    }
+    for name, those in found.items():
+        rows = [
+            (
+                str(one.number),
+                place(one.site.span),
+                one.operator,
+                one.description,
+                f"{_end(after.get(one.id))}; before: {_end(before.get(one.id))}",
+            )
+            for one in (result.mutant for result in those)
+        ]
+        yield Section(f"{name}: {len(rows)}", _COLUMNS if rows else (), rows)
+    yield Section(f"Survivors as before: {len(survives & survived)}")
 
 
-def _row(pair: Ends, place: Callable[[Span], str]) -> tuple[str, ...]:
-    mutant = pair.either.mutant
-    told = rounds_text(pair.either)
-    if pair.new is not None and pair.old is not None:
-        told = f"{told}; before: {rounds_text(pair.old)}"
-    elif pair.new is None:
-        told = f"before: {told}"
-    return str(mutant.number), place(mutant.site.span), mutant.operator, mutant.description, told
+def _is_judged(result: MutantResult | None) -> bool:
+    """Whether all its rounds were run, and it stood in the score of at least one."""
+    return result is not None and result.kill_rate.valid > 0 and None not in result.rounds
 
 
-def summary(changes: Changes) -> str:
-    """Return the numbers in a line."""
-    return (
-        f"Survivors: {len(changes.appeared)} new, {len(changes.fixed)} fixed, "
-        f"{len(changes.changed)} changed, {changes.same} as before, {len(changes.unknown)} unknown; "
-        f"mutants: {len(changes.added)} new, {len(changes.gone)} removed"
-    )
+def _end(result: MutantResult | None) -> str:
+    return rounds_text(result) if result is not None else "not in the campaign"
 
 
-def notes(changes: Changes) -> list[str]:
-    """Return what to know about campaigns that did not run to their end, or not of the same mutants."""
-    states = (("old", changes.old_state), ("new", changes.new_state))
-    ends = [f"the {name} campaign is not complete: {state}" for name, state in states if state != "complete"]
-    return [*ends, *changes.notes]
-
-
-def _score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
+def _score_rows(old: Results, new: Results) -> Iterator[tuple[str, ...]]:
     """Family and role, the old score, the new one, and the difference in percentage points."""
-    for (family, role), (old, new) in changes.scores.items():
-        before, after = _mean(old), _mean(new)
-        by = f"{100 * (after - before):+.1f}" if before is not None and after is not None else "–"
-        yield f"{family} · {role}", percent(before), percent(after), by
-
-
-def _mean(group: Group | None) -> float | None:
-    return group.scores.mean if group is not None else None
-
-
-def change_lines(changes: Changes, place: Callable[[Span], str]) -> Iterator[str]:
-    """Yield the lines of Markdown. ``place`` names a span as the reader knows it."""
-    yield from ("### Since the older campaign", "", f"{summary(changes)}.", "")
-    for line in notes(changes):
-        yield from (f"> **{escaped(line)}**", "")
-    for section in sections(changes, place):
-        yield from section_lines(section, _ROWS, level=4)
-
-
-def print_changes(console: Console, changes: Changes) -> None:
-    """Print what differs."""
-    for line in (summary(changes), *notes(changes)):
-        console.print(Text(plain(line), style="bold"))
-    for section in sections(changes, short_place):
-        print_section(console, section, _ROWS)
+    before, after = (
+        {f"{one.family} · {one.role}": one.scores.mean for one in each.groups} for each in (old, new)
+    )
+    for name in {**before, **after}:
+        was, becomes = before.get(name), after.get(name)
+        by = f"{100 * (becomes - was):+.1f}" if was is not None and becomes is not None else "–"
+        yield name, percent(was), percent(becomes), by

@@ -14,13 +14,11 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
-from mutabot.model.outcome import Figure
 from mutabot.report.texts import status_of
 from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
-from mutabot.results.stored import Changes, Ends
 from mutabot.results.suggested import Suggestion, Suggestions
 from mutabot.results.thresholds import line_of
 
@@ -96,41 +94,6 @@ def _repeats(repeats: records.Repeats) -> dict[str, Any]:
     return {**data_of.facts(repeats, "doubted others certain survivors"), **data_of(found)}
 
 
-def _changes(changes: Changes) -> dict[str, Any]:
-    return {
-        "format": FORMAT,
-        **data_of.facts(
-            changes,
-            "old_state new_state notes same_survivors=same new_survivors=appeared fixed_survivors=fixed "
-            "changed_survivors=changed unknown_survivors=unknown gone_mutants=gone new_mutants=added",
-        ),
-        "groups": [
-            {"family": family, "role": role, "old": _mean(old), "new": _mean(new)}
-            for (family, role), (old, new) in changes.scores.items()
-        ],
-    }
-
-
-def _ends(pair: Ends) -> dict[str, Any]:
-    return {**data_of(pair.either.mutant), "old": _end(pair.old), "new": _end(pair.new)}
-
-
-def _end(result: MutantResult | None) -> dict[str, Any] | None:
-    if result is None:
-        return None
-    return {
-        "status": data_of(status_of(result)),
-        "rounds": [one.verdict.value if one is not None else None for one in result.rounds],
-        **data_of.facts(result, "killed=kill_rate.killed valid=kill_rate.valid indistinguishable why"),
-    }
-
-
-def _mean(group: Group | None) -> dict[str, Any] | None:
-    if group is None:
-        return None
-    return data_of.facts(group, "mutants score=scores.mean check_score=scores.mean_check")
-
-
 def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
     known = "none_up_to? half_from all_from refused_from median share_shown"
     data = data_of.facts(
@@ -148,7 +111,7 @@ def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
             data["median"] = data_of.facts(ladder.median, "above=low? at_most=high level")
     return data | {
         "rounds_counted": len(ladder.counted),
-        **data_of.facts(ladder, "rounds steps violations better runs"),
+        **data_of.facts(ladder, "rounds violations"),
     }
 
 
@@ -166,28 +129,8 @@ def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
 
 
 def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
-    line = "state rounds ladders=all floors runs exhaustive controls false_alarms most_violated"
+    line = "state rounds ladders=all"
     return {"format": FORMAT, **data_of.facts(found, line)}
-
-
-def _floor(one: thresholds.Floor) -> dict[str, Any]:
-    return {
-        **data_of.facts(one, "up=up.id down=down.id unit=up.unit blind half_width"),
-        "bias": [
-            {"round": pair.round + 1, "above": pair.bias[0], "at_most": pair.bias[1]} for pair in one.pairs
-        ],
-        **data_of.facts(one, "noise below_noise=is_below_noise false_alarms"),
-        "text": one.text if one.is_below_noise else None,
-    }
-
-
-def _comparison(found: thresholds.Comparison) -> dict[str, Any]:
-    data = data_of.facts(found, "why_no_words? mean improved=has_improved ladders gone added")
-    if found.mean is not None:
-        data["mean"] = data_of.facts(found.mean, "steps=mean low high level")
-    if found.why_no_words:
-        data["ladders"] = [{**one, "change": None} for one in data["ladders"]]
-    return {"format": FORMAT, **data}
 
 
 def _suggestions(found: Suggestions) -> dict[str, Any]:
@@ -221,8 +164,7 @@ data_of = Encoder(
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
         "cpu simulated indistinguishable distance divergence way gaps compared commands engine stuck repeats "
-        "beside confirmed kills complete figures looked diverged",
-        Figure: "* is_better",
+        "beside confirmed kills complete looked diverged",
         Diverged: "* worst",
         Score: "score check_score killed valid by_check timeouts counts=of_each",
         RoundScores: "*total score=mean check_score=mean_check interval check_interval sample_interval "
@@ -240,17 +182,10 @@ data_of = Encoder(
         Confirmed: "outcomes refused confirmed wrong left most level text",
         records.ShardOf: "number of mutants",
         records.Replayed: _replayed,
-        Changes: _changes,
-        Ends: _ends,
         thresholds.Thresholds: _thresholds,
         ladders.Ladder: _ladder,
         ladders.LadderRound: _ladder_round,
-        ladders.MagnitudeStep: "magnitude number noticed valid interval by refused unknown",
         ladders.Violation: "round=round+1 noticed missed",
-        ladders.Better: "round=round+1 magnitude text",
-        thresholds.Floor: _floor,
-        thresholds.Comparison: _comparison,
-        thresholds.LadderChange: "id=new.id change steps old new",
         Suggestions: _suggestions,
     }
 )

@@ -1,6 +1,6 @@
-"""The contract of a format: what it is called, and what makes it of a campaign.
+"""The contract of a format: a function that makes a text of a campaign.
 
-A format is one file in ``report/formats``, which sets ``FORMAT``; it has the file's name, with hyphens. It is
+A format is the function ``make`` of a file in ``report/formats``; it has the file's name, with hyphens. It is
 found there, and nothing else has to be edited. Packages bring others (``extensions.Extension``). What it is
 given has no absolute path and no character that no format could hold (``report.texts.portable``); what is
 special in the format it escapes itself.
@@ -12,14 +12,12 @@ import importlib
 import pkgutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
-from mutabot.errors import ExtensionError, UsageError, unknown_name_text
+from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.frozen import frozen
 from mutabot.model import Span
 from mutabot.results.results import Results
-from mutabot.results.stored import Changes
 
 
 @frozen
@@ -29,12 +27,12 @@ class Material:
     Attributes:
         campaign: the campaign, fit for any report.
         prefix: the project's folder in its repository, with forward slashes; empty if that is its root.
-        changes: what differs from an older campaign, if that is to be told.
+        older: an older campaign, if the report is to tell what became of its survivors.
     """
 
     campaign: Results
     prefix: str = ""
-    changes: Changes | None = None
+    older: Results | None = None
 
     def path(self, file: str) -> str:
         """A file of the project, relative to the repository."""
@@ -44,32 +42,9 @@ class Material:
         """Where a span is. ``length`` counts the characters of a part of a line."""
         return place_of(span, self.campaign.source(span.file), length)
 
-    def scores(self) -> list[dict[str, Any]]:
-        """The scores of each family and role."""
-        return [
-            {
-                "family": one.family,
-                "role": one.role,
-                "score": one.scores.mean,
-                "checkScore": one.scores.mean_check,
-            }
-            for one in self.campaign.groups
-        ]
 
-
-@frozen
-class Format:
-    """A format.
-
-    Attributes:
-        name: by which users ask for it.
-        make: the text of the whole report.
-        tells_changes: whether it can hold what differs from an older campaign.
-    """
-
-    name: str
-    make: Callable[[Material], str]
-    tells_changes: bool = False
+#: makes the text of a whole report
+Format = Callable[[Material], str]
 
 
 @frozen
@@ -125,15 +100,11 @@ def format_of(name: str) -> Format:
     """The format of this name. Raises UsageError, with the nearest name, if there is none."""
     if name in _own():
         module = importlib.import_module(f"{__package__}.formats.{name.replace('-', '_')}")
-        found: Format = module.FORMAT
-        return found
+        return module.make  # type: ignore[no-any-return]
     part = _of_packages().get(name)
     if part is None:
         raise UsageError(unknown_name_text("format", name, names()))
-    loaded = part.load()
-    if not isinstance(loaded, Format):
-        raise ExtensionError(f"{part.words} is no {Format.__module__}.Format")
-    return loaded
+    return part.load_function()
 
 
 def _own() -> list[str]:

@@ -52,16 +52,8 @@ def sections(results: Results, place: Place) -> Iterator[Section]:
         yield from _scores(results)
     yield from _narrowed(results)
     yield from _survivors(results, place)
-    found = [one.text for one in unlooked(results.mutants)]
-    if found:
+    if found := unlooked(results.mutants):
         yield Section("Readings that no test checks", lines=found)
-    better = [
-        f"{one.mutant.number} {place(one.mutant.site.span)} {one.mutant.operator}: {one.improvement}"
-        for one in results.mutants
-        if one.improvement
-    ]
-    if better:
-        yield Section(f"{plural(len(better), 'mutant')} did better than the original", lines=better)
     yield from _outside(results, place)
     if results.left_out:
         yield skipped(results.left_out)
@@ -290,6 +282,13 @@ def numbered(numbers: Sequence[int]) -> str:
 def plural(count: int, singular: str, several: str | None = None) -> str:
     """Return ``1 mutant``, ``2 mutants``."""
     return f"{count} {singular if count == 1 else several or singular + 's'}"
+
+
+def size_text(results: Results) -> str:
+    """Return ``24 mutants and 3 ladders × 5 rounds``."""
+    kinds = [plural(len(results.mutants), "mutant")] if results.mutants or not results.ladders else []
+    kinds += [plural(results.ladders, "ladder")] if results.ladders else []
+    return f"{' and '.join(kinds)} × {plural(results.rounds, 'round')}"
 
 
 def percent(share: float | None) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
@@ -20,7 +20,7 @@ from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
-_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
+ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 #: an absolute path in one of the folders in which machines keep files; topics of ROS look like others
 _ABSOLUTE = re.compile(
     r"(?<![\w.~/…-])(?:file://)?/(?:home|root|tmp|usr|opt|var|etc|mnt|srv|nix|workspace|workspaces|builds|github|"
@@ -49,7 +49,7 @@ class Cleaner:
         self._root = re.compile(rf"(?:file://)?{re.escape(folder)}(?:/|(?![\w.-]))") if folder else None
 
     def __call__(self, text: str) -> str:
-        text = _ESCAPES.sub("", text)
+        text = ESCAPES.sub("", text)
         if self._root is not None:
             text = self._root.sub(lambda found: "" if found[0].endswith("/") else ".", text)
         return legible(_ABSOLUTE.sub("…/", text))
@@ -114,9 +114,7 @@ _OWN = (Mutant, LeftOut)
 
 def mapped(value: T, change: Callable[[str], str]) -> T:
     """The same data with every text in it changed; keys of tables too. Of ids, only signs are."""
-    made: Any = _mapped(value, change)
-    result: T = made
-    return result
+    return cast("T", _mapped(value, change))
 
 
 def _mapped(value: Any, change: Callable[[str], str]) -> Any:
@@ -159,11 +157,6 @@ def status_of(result: MutantResult) -> Verdict | None:
     if valid:
         return Verdict.TIMEOUT if valid == {Verdict.TIMEOUT} else Verdict.KILLED
     return next((verdict for verdict in OUTSIDE if verdict in found), None)
-
-
-def is_divergent(result: MutantResult) -> bool:
-    """Whether a survivor is known to have made the robot do anything else than the original."""
-    return any(one.divergence and not one.indistinguishable for one in result.survived)
 
 
 def rounds_text(result: MutantResult) -> str:

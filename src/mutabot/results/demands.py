@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
-from enum import StrEnum
 
 from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.model import Kind, Outcome, Verdict
 from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
-from mutabot.model.mutant import is_like
-from mutabot.results.ladders import Ladder, LadderRound, lower_limit, rounds_for, upper_limit
+from mutabot.results.ladders import Ladder, LadderRound
 from mutabot.results.thresholds import amount, in_rounds
 
 _UNSOUND = {Verdict.UNSTABLE: "is unstable", Verdict.ERROR: "ended in error"}
-
-
-class DemandResult(StrEnum):
-    """What became of a demand on one ladder."""
-
-    PASSED = "passed"
-    FAILED = "failed"
-    UNDECIDED = "undecided"
 
 
 @frozen
@@ -33,13 +22,13 @@ class Ruling:
     Attributes:
         demand: the demand.
         ladder: which; None for a demand that fits none.
-        held: whether it holds.
+        is_met: whether it holds.
         why: in words.
     """
 
     demand: Demand
     ladder: Ladder | None
-    held: DemandResult
+    is_met: bool
     why: str
 
     @property
@@ -61,37 +50,27 @@ def rulings(
     found: list[Ruling] = []
     for demand in demands:
         about = [one for one in ladders if demand.is_about(one.mutant, _kind(one))]
-        found += (ruling(demand, one) for one in about)
+        found += (Ruling(demand, one, *_held(demand, one)) for one in about)
         if not about:
-            found.append(
-                Ruling(demand, None, DemandResult.FAILED, _why_nothing_fits(demand, ladders, families))
-            )
+            found.append(Ruling(demand, None, False, _why_nothing_fits(demand, ladders, families)))
     return tuple(found)
 
 
-def ruling(demand: Demand, ladder: Ladder) -> Ruling:
-    """One demand on one ladder that it speaks of."""
+def _held(demand: Demand, ladder: Ladder) -> tuple[bool, str]:
+    """Whether all rounds notice what is demanded and no valid run of it or more survives; and why."""
     demanded = demand.magnitude_in(ladder.unit)
     assert demanded is not None, "it speaks of ladders of its own measure alone"
-    if demand.share is not None:
-        held, why = _share(ladder, demanded, demand.share)
-    else:
-        held, why = _all_rounds(ladder, demanded)
-    return Ruling(demand, ladder, held, why)
-
-
-def suggested(ladder: Ladder) -> float | None:
-    """What may be demanded of a ladder: its ``all_from`` if the rounds lie close together, or a step more.
-
-    A refusal is as good as being noticed. None if some round neither notices nor refuses it, or if there is
-    no larger magnitude.
-    """
-    ends = [one.bracket.high or one.bracket.refused for one in ladder.counted]
-    known = [end for end in ends if end is not None]
-    if not known or len(known) < len(ends):
-        return None
-    largest = max(known)
-    return largest if ladder.are_neighbours(ladder.none_up_to, largest) else ladder.above(largest)
+    size = amount(demanded, ladder.unit)
+    survivors = list(_survivors(ladder, demanded))
+    problem = _survivors_text(ladder, survivors) if survivors else _problem(ladder, demanded)
+    if problem:
+        return False, problem
+    ends = [seen(one) for one in _at(ladder, demanded)]
+    if MagnitudeResult.NOTICED in ends:
+        return True, f"noticed at {size} in {ends.count(MagnitudeResult.NOTICED)} of {len(ends)} rounds"
+    if set(ends) == {MagnitudeResult.REFUSED}:
+        return True, f"the robot refuses {size}"
+    return False, f"{size} has no effect in any round, so nothing is known; demand it of other sites"
 
 
 def _kind(ladder: Ladder) -> Kind | None:
@@ -103,82 +82,18 @@ def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Seque
         return 'the campaign has no graded mutants; add "graded" to families, or run with --family graded'
     if not ladders:
         return "the campaign has no ladders"
-    about = [one for one in ladders if one.mutant.operator == demand.operator]
-    if not about:
-        return unknown_name_text("operator", demand.operator, {one.mutant.operator for one in ladders})
-    here = [one for one in about if demand.is_at(one.mutant)]
+    here = [one for one in ladders if demand.is_at(one.mutant)]
     if not here:
-        places = {name for one in about for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
+        places = {name for one in ladders for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
         return unknown_name_text("site", demand.site or "", places)
-    names = {one.mutant.quantity or "" for one in here}
-    if demand.quantity is not None and not any(is_like(demand.quantity, name) for name in names):
-        return unknown_name_text("quantity", demand.quantity, names)
-    units = ", ".join(sorted({one.unit or "no unit" for one in here}))
-    kinds = ", ".join(sorted({kind.value for kind in map(_kind, here) if kind is not None}))
-    return f"fits none of {len(here)} ladders, which are of {kinds or 'unknown kinds'}, in {units}"
-
-
-def _all_rounds(ladder: Ladder, demanded: float) -> tuple[DemandResult, str]:
-    """All rounds must notice it, and no valid run of it or more may survive."""
-    size = amount(demanded, ladder.unit)
-    survivors = list(_survivors(ladder, demanded))
-    if survivors:
-        return DemandResult.FAILED, _survivors_text(ladder, survivors)
-    problem = _problem(ladder, demanded)
-    if problem:
-        return DemandResult.FAILED, problem
-    ends = [seen(one) for one in _at(ladder, demanded)]
-    if MagnitudeResult.NOTICED in ends:
-        return (
-            DemandResult.PASSED,
-            f"noticed at {size} in {ends.count(MagnitudeResult.NOTICED)} of {len(ends)} rounds",
-        )
-    if set(ends) == {MagnitudeResult.REFUSED}:
-        return DemandResult.PASSED, f"the robot refuses {size}"
-    return (
-        DemandResult.FAILED,
-        f"{size} has no effect in any round, so nothing is known; demand it of other sites",
-    )
-
-
-def _share(ladder: Ladder, demanded: float, share: float) -> tuple[DemandResult, str]:
-    """At least this share of rounds notices it, with 95 % confidence."""
-    size = amount(demanded, ladder.unit)
-    problem = _problem(ladder, demanded)
-    if problem:
-        return DemandResult.FAILED, problem
-    ends = [seen(one) for one in _at(ladder, demanded)]
-    noticed, valid = ends.count(MagnitudeResult.NOTICED), sum(one.is_valid for one in ends)
-    if not valid:
-        if set(ends) == {MagnitudeResult.REFUSED}:
-            return DemandResult.PASSED, f"the robot refuses {size}"
-        return DemandResult.FAILED, f"{size} has no effect in any round, so nothing is known"
-    low, high = lower_limit(noticed, valid), upper_limit(noticed, valid)
-    found = f"noticed at {size} in {noticed} of {valid} rounds"
-    if low >= share:
-        return DemandResult.PASSED, f"{found}, at least {_percent(low, up=False)} of all (95 %)"
-    if high < share:
-        return DemandResult.FAILED, f"{found}, at most {_percent(high, up=True)} of all (95 %)"
-    if noticed < valid:
-        return (
-            DemandResult.UNDECIDED,
-            f"{found}, which decides nothing about {share:.0%}: it takes more rounds",
-        )
-    return (
-        DemandResult.UNDECIDED,
-        f"{found}, which shows {_percent(low, up=False)}: it takes {rounds_for(share)} rounds",
-    )
-
-
-def _percent(share: float, *, up: bool) -> str:
-    return f"{math.ceil(100 * share) if up else math.floor(100 * share)} %"
+    known = ", ".join(sorted({f"{one.name} in {one.unit or 'no unit'}" for one in here}))
+    return f"fits none of {len(here)} ladders: {known}"
 
 
 def _at(ladder: Ladder, demanded: float) -> Iterator[Outcome]:
-    """The outcomes at the demanded magnitude, in rounds that do not fail without a fault."""
+    """The outcomes at the demanded magnitude."""
     for one in ladder.rounds:
-        if not one.fails_without_fault:
-            yield from (outcome for size, outcome in one.outcomes.items() if is_same(size, demanded))
+        yield from (outcome for size, outcome in one.outcomes.items() if is_same(size, demanded))
 
 
 def _survivors(ladder: Ladder, demanded: float) -> Iterator[tuple[LadderRound, float, Outcome]]:
@@ -207,9 +122,6 @@ def _problem(ladder: Ladder, demanded: float) -> str:
     size = amount(demanded, ladder.unit)
     if ladder.number_of(demanded) is None:
         return f"{size} is not on its ladder; `mutabot run` again plants it"
-    unclean = [one.number + 1 for one in ladder.rounds if one.fails_without_fault]
-    if unclean:
-        return f"the tests fail without a fault in {in_rounds(unclean)}"
     for verdict, words in _UNSOUND.items():
         rounds = [one.number + 1 for one in ladder.rounds if _verdict(one, demanded) is verdict]
         if rounds:

@@ -11,13 +11,9 @@ from mutabot.model.quantity import told_apart, value_text
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
     """The quantity a mutant changes, or None if it concerns the call or the vocabulary is not known."""
-    operation = vocabulary.operation(mutant.operation) if vocabulary is not None else None
-    if operation is None or mutant.quantity is None:
+    if vocabulary is None:
         return None
-    pattern = operation.pattern(mutant.pattern)
-    owner = pattern if pattern is not None else operation
-    known = (*owner.arguments, *owner.result, *operation.arguments, *operation.result)
-    return next((quantity for quantity in known if quantity.name == mutant.quantity), None)
+    return vocabulary.quantity(mutant.operation, mutant.pattern, mutant.quantity)
 
 
 def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary | None = None) -> str:
@@ -69,7 +65,8 @@ def _verb(quantity: Quantity | None) -> str:
 
 def _world_text(outcome: Outcome) -> str:
     if outcome.indistinguishable:
-        return f"nothing differs{_extent_text(outcome)} (indistinguishable)"
+        extent = f"in {outcome.compared.text}" if outcome.compared is not None else "that was compared"
+        return f"nothing differs {extent} (indistinguishable)"
     story = next((one.story for one in outcome.diverged if one.story), "")
     if story:
         return story
@@ -80,10 +77,6 @@ def _world_text(outcome: Outcome) -> str:
     if outcome.distance is not None:
         return "every probe ended within its tolerance"
     return "nothing tells how the world ended (the vocabulary names no probe)"
-
-
-def _extent_text(outcome: Outcome) -> str:
-    return f" in {outcome.compared.text}" if outcome.compared is not None else " that was compared"
 
 
 def _end_text(outcome: Outcome) -> str:

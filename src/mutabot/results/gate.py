@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from mutabot.errors import ExitCode
+from mutabot.errors import ExitCode, in_short
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.journal.records import ShardOf
 from mutabot.model import Verdict
 from mutabot.model.graded import Demand
-from mutabot.results.demands import DemandResult, rulings
+from mutabot.results.demands import rulings
 from mutabot.results.ladders import ladders_of
 from mutabot.results.results import Results
-
-#: rows of the journal that are named
-_SHOWN = 5
 
 
 @frozen
@@ -90,21 +87,17 @@ def _doubtful(results: Results) -> Iterator[str]:
     """What others did to the journal: nobody who can do that is to decide about an exit code."""
     if results.set_aside:
         yield (
-            f"{_listed(results.set_aside)} in the journal: not written by mutabot, or damaged; nothing of it "
-            "is believed, and `mutabot run` runs it again"
+            f"{in_short(results.set_aside, 5)} in the journal: not written by mutabot, or damaged; "
+            "nothing of it is believed, and `mutabot run` runs it again"
         )
     elif results.is_incomplete:
         yield _incomplete(results)
     if results.altered:
         yield (
-            f"the journal was changed by something else while the campaign ran: {_listed(results.altered)}. "
-            "What mutabot had found was restored; see to it that no test writes into .mutabot"
+            "the journal was changed by something else while the campaign ran: "
+            f"{in_short(results.altered, 5)}. What mutabot had found was restored; see to it that no test "
+            "writes into .mutabot"
         )
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return ", ".join(names[:_SHOWN]) + more
 
 
 def _of_shard(results: Results, shard: ShardOf) -> Decision:
@@ -175,7 +168,7 @@ def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
         return
     families = [*(results.meta.get("families") or ()), *([GRADED] if results.graded else [])]
     for one in rulings(demands, ladders_of(results), families):
-        if one.held is not DemandResult.PASSED:
+        if not one.is_met:
             yield one.text
 
 

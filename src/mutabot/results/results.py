@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mutabot.errors import SelectionError, unknown_name_text
+from mutabot.errors import SelectionError, in_short, unknown_name_text
 from mutabot.frozen import frozen
 from mutabot.journal import records
 from mutabot.journal.files import is_written
@@ -79,11 +79,6 @@ class MutantResult:
         return next(
             filter(None, (change_text(self.mutant, one, self.quantity) for one in self.outcomes)), None
         )
-
-    @property
-    def improvement(self) -> str:
-        """What a test did better with it than without, in words; empty if nothing."""
-        return next((one.improvement for one in self.outcomes if one.improvement), "")
 
     @property
     def indistinguishable(self) -> bool:
@@ -197,7 +192,7 @@ class Results:
     @property
     def ladders(self) -> int:
         """Number of ladders of graded mutants; ``results`` says what became of them."""
-        return len({one.mutant.ladder for one in self.graded if one.mutant.magnitude})
+        return len({one.mutant.ladder for one in self.graded})
 
     @property
     def earlier(self) -> list[MutantResult]:
@@ -418,32 +413,8 @@ def _state(journal: JournalReader, shard: records.ShardOf | None, *, is_whole: b
     return shard.words if state == "complete" else f"{shard.words}, {state}"
 
 
-@frozen
-class Unlooked:
-    """A part of what an operation reads for the tests.
-
-    Attributes:
-        operation: the operation, as the vocabulary names it.
-        quantity: the part, as the vocabulary names it.
-        places: ``file:line:column`` of the calls.
-        mutants: how many mutants of it there were, none of which was noticed.
-    """
-
-    operation: str
-    quantity: str
-    places: tuple[str, ...]
-    mutants: int
-
-    @property
-    def text(self) -> str:
-        """``tests/sensors.py:12:5 tracker:robot_position .y: none of its 3 mutants was noticed``."""
-        more = f" and {len(self.places) - 1} more" if len(self.places) > 1 else ""
-        which = "its only mutant was not" if self.mutants == 1 else f"none of its {self.mutants} mutants was"
-        return f"{self.places[0]}{more} {self.operation} {self.quantity}: {which} noticed"
-
-
-def unlooked(results: Iterable[MutantResult]) -> tuple[Unlooked, ...]:
-    """Such readings of the oracle, in the order of their mutants; only those that were judged count.
+def unlooked(results: Iterable[MutantResult]) -> list[str]:
+    """The oracle's readings of which no mutant was noticed, in words; only mutants that were judged count.
 
     Of a reading with a mutant that is still to be run, as in another shard, nothing is said.
     """
@@ -457,11 +428,18 @@ def unlooked(results: Iterable[MutantResult]) -> tuple[Unlooked, ...]:
             groups.setdefault(key, []).append(one)
         elif is_reading and not one.outcomes and not mutant.ladder:  # of a ladder, a search runs some
             open_ones.add(key)
-    return tuple(
-        Unlooked(*key, tuple(dict.fromkeys(one.mutant.site.place for one in found)), len(found))
+    return [
+        _unlooked_text(*key, found)
         for key, found in groups.items()
         if key not in open_ones and not any(one.kill_rate.killed for one in found)
-    )
+    ]
+
+
+def _unlooked_text(operation: str, quantity: str, found: Sequence[MutantResult]) -> str:
+    """``tests/sensors.py:12:5 tracker:robot_position .y: none of its 3 mutants was noticed``."""
+    places = in_short(list(dict.fromkeys(one.mutant.site.place for one in found)), 1)
+    which = "its only mutant was not" if len(found) == 1 else f"none of its {len(found)} mutants was"
+    return f"{places} {operation} {quantity}: {which} noticed"
 
 
 #: what the facts of a class are, where they are others than its fields: a line, or a function

@@ -4,7 +4,6 @@
 table mutants × rounds shares its mutant with a row and its round with a column, so cells are not independent
 and a plain binomial interval would be far too narrow (rounds of one mutant mostly agree). ``sampled`` is for
 the score of a finite list of mutants of which only a random sample was run, in these very rounds.
-``mean_of`` is ``crossed`` for numbers that are no shares.
 
 All are tested by simulation, see ``benchmarks/interval_coverage.py`` and docs/statistics.md.
 
@@ -100,7 +99,7 @@ def crossed(table: Sequence[Sequence[float | None]]) -> Interval | None:
     cells = _Cells.of(table)
     if cells is None:
         return None
-    variance, freedom = cells.variance(cells.variance_of_mutants())
+    variance, freedom = cells.variance()
     independent = cells.smoothed * (1 - cells.smoothed) / variance
     independent *= (_NORMAL / student(freedom)) ** 2
     return _wilson(cells.score, min(independent, cells.count))
@@ -139,44 +138,6 @@ def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interva
     independent = cells.smoothed * (1 - cells.smoothed) / variance
     independent *= (_NORMAL / student(cells.mutants - 1)) ** 2
     return _wilson(cells.score, min(independent, cells.mutants / left))
-
-
-@frozen
-class Mean:
-    """A mean of numbers with its interval.
-
-    Attributes:
-        mean: the mean over rounds.
-        low, high: ends of its interval.
-        level: how often such an interval holds the true mean.
-    """
-
-    mean: float
-    low: float
-    high: float
-    level: float = LEVEL
-
-
-def mean_of(table: Sequence[Sequence[float | None]]) -> Mean | None:
-    """The mean of a table of any numbers over rounds and places, both taken as random samples.
-
-    The variance and the degrees of freedom are those of ``crossed``, without the imagined mutants, which only
-    shares have; the interval is symmetric.
-
-    Args:
-        table: one row per place with one cell per round; None where nothing is known.
-
-    Returns:
-        The mean, or None with fewer than two rounds or two places.
-    """
-    cells = _Cells.of(table)
-    if cells is None:
-        return None
-    rows = cells.mutants
-    of_rows = rows / (rows - 1) * math.fsum(cells.influence(row) ** 2 for row in cells.rows)
-    variance, freedom = cells.variance(of_rows)
-    half = student(freedom) * math.sqrt(variance) if variance else 0.0
-    return Mean(cells.score, cells.score - half, cells.score + half)
 
 
 @frozen
@@ -243,14 +204,14 @@ class _Cells:
         size = mutants + 2 * _IMAGINED
         return squares / (size * (size - 1))
 
-    def variance(self, of_mutants: float) -> tuple[float, float]:
-        """V of ``crossed`` with its degrees of freedom, where that of mutants alone is this."""
-        of_rounds = self.mean_square_of_rounds()
+    def variance(self) -> tuple[float, float]:
+        """V of ``crossed`` with its degrees of freedom."""
+        of_mutants, of_rounds = self.variance_of_mutants(), self.mean_square_of_rounds()
         excess = max(0.0, of_rounds - self.variance_of_cells())
         variance = of_mutants + excess
         spread = of_mutants**2 / (self.mutants - 1)
         spread += of_rounds**2 / (len(self.rounds) - 1) if excess else 0.0
-        return variance, max(1.0, variance**2 / spread) if spread else math.inf
+        return variance, max(1.0, variance**2 / spread)
 
     def mean_square_of_rounds(self) -> float:
         """MSr / MR: that of the score if only the rounds were drawn anew."""

@@ -1,8 +1,4 @@
-"""Stored campaigns: what a journal holds as one object, with recordings, as a table, beside an older one.
-
-Two campaigns side by side: mutants are the same if their ids are. A mutant is a survivor if any round lets it
-through. Only what was judged can be fixed: a survivor that is refused, unstable or not run in the other
-campaign is told apart.
+"""Stored campaigns: what a journal holds as one object, with recordings, and as a table.
 
 The table has one row per mutant and round that has been run; docs/reports.md has its columns. Names, types
 and units are stable: columns may be added, at the end.
@@ -11,11 +7,10 @@ and units are stable: columns may be added, at the end.
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import UsageError
@@ -23,7 +18,6 @@ from mutabot.evidence.recording import Recording, from_bytes
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
 from mutabot.journal.recordings import ORIGINAL, Recordings
-from mutabot.model import Mutant, Outcome, Quantity
 from mutabot.model.codec import shallow
 from mutabot.results.results import Encoder, MutantResult, Results, find_mutant, results_at
 from mutabot.results.score import Group
@@ -31,118 +25,6 @@ from mutabot.results.thresholds import Thresholds, thresholds_of
 
 if TYPE_CHECKING:
     import pandas
-
-
-@dataclass(frozen=True, slots=True)
-class Ends:
-    """A mutant in both campaigns.
-
-    Attributes:
-        old, new: what became of it; None in a campaign that has no such mutant.
-    """
-
-    old: MutantResult | None
-    new: MutantResult | None
-
-    @property
-    def either(self) -> MutantResult:
-        """Its newest result."""
-        found = self.new or self.old
-        assert found is not None
-        return found
-
-
-@frozen
-class Changes:
-    """What differs between an old campaign and a new one.
-
-    Attributes:
-        appeared: survivors of the new one that the old one did not let through, or did not have.
-        fixed: survivors of the old one that the new one kills in every round in which they are valid.
-        changed: survivors of both that are let through in another share of rounds, or of which only one of
-            the campaigns shows anything that differs from the original.
-        same: number of survivors of both that are not in ``changed``.
-        unknown: survivors of the old one of which the new one says nothing: not run, or outside the score.
-        gone: mutants that only the old one has, of families that were asked for in the new one.
-        added: mutants that only the new one has, of families that were asked for in the old one.
-        scores: the old and the new scores per family and role; None where a campaign has none of them.
-        old_state, new_state: how the campaigns ended.
-        notes: what else is to be known of the campaigns before they are compared, a sentence each.
-    """
-
-    appeared: tuple[Ends, ...]
-    fixed: tuple[Ends, ...]
-    changed: tuple[Ends, ...]
-    same: int
-    unknown: tuple[Ends, ...]
-    gone: tuple[Ends, ...]
-    added: tuple[Ends, ...]
-    scores: Mapping[tuple[str, str], tuple[Group | None, Group | None]]
-    old_state: str
-    new_state: str
-    notes: tuple[str, ...] = ()
-
-
-def changes(old: Results, new: Results) -> Changes:
-    """Compare two campaigns."""
-    before = {one.mutant.id: one for one in old.mutants}
-    after = {one.mutant.id: one for one in new.mutants}
-    pairs = [Ends(before.get(one.mutant.id), one) for one in new.worst_first]
-    both = [pair for pair in pairs if _is_survivor(pair.old) and _is_survivor(pair.new)]
-    changed = [pair for pair in both if _told(pair.old) != _told(pair.new)]
-    lost = [Ends(one, after.get(one.mutant.id)) for one in old.worst_first if one.is_survivor]
-    lost = [pair for pair in lost if pair.new is not None and not pair.new.is_survivor]
-    return Changes(
-        appeared=tuple(pair for pair in pairs if _is_survivor(pair.new) and not _is_survivor(pair.old)),
-        fixed=tuple(pair for pair in lost if _is_judged(pair.new)),
-        changed=tuple(changed),
-        same=len(both) - len(changed),
-        unknown=tuple(pair for pair in lost if not _is_judged(pair.new)),
-        gone=tuple(Ends(one, None) for one in _asked_for(new, old.mutants) if one.mutant.id not in after),
-        added=tuple(Ends(None, one) for one in _asked_for(old, new.mutants) if one.mutant.id not in before),
-        scores=_scores(old.groups, new.groups),
-        old_state=old.state,
-        new_state=new.state,
-        notes=(*_notes("new", new, old), *_notes("old", old, new)),
-    )
-
-
-def _asked_for(results: Results, mutants: Iterable[MutantResult]) -> list[MutantResult]:
-    """The mutants of families that a campaign had; all of them if it does not say which."""
-    families = results.meta.get("families")
-    return [one for one in mutants if families is None or one.mutant.family in families]
-
-
-def _notes(name: str, results: Results, other: Results) -> Iterator[str]:
-    """What a campaign did not look at, so that nobody takes it for gone or new."""
-    asked = {one.mutant.id for one in _asked_for(results, other.mutants)}
-    missing = [one.mutant.family for one in other.mutants if one.mutant.id not in asked]
-    for family, count in Counter(missing).items():
-        yield f"the {name} campaign was not to run family {family}; mutants that are not compared: {count}"
-    if results.drawing is not None:
-        yield f"the {name} campaign is of a sample: mutants that it does not have may not have been drawn"
-
-
-def _is_survivor(result: MutantResult | None) -> bool:
-    return result is not None and result.is_survivor
-
-
-def _is_judged(result: MutantResult | None) -> bool:
-    """Whether all its rounds were run, and it stood in the score of at least one."""
-    return result is not None and result.kill_rate.valid > 0 and None not in result.rounds
-
-
-def _told(result: MutantResult | None) -> tuple[float | None, bool] | None:
-    """What of a survivor is compared: numbers of its probes differ a little from machine to machine."""
-    return (result.kill_rate.score, result.indistinguishable) if result is not None else None
-
-
-def _scores(
-    old: Iterable[Group], new: Iterable[Group]
-) -> dict[tuple[str, str], tuple[Group | None, Group | None]]:
-    before = {(group.family, group.role): group for group in old}
-    after = {(group.family, group.role): group for group in new}
-    return {key: (before.get(key), after.get(key)) for key in {**before, **after}}
 
 
 #: recordings that are held
@@ -212,37 +94,17 @@ COLUMNS: Mapping[str, type] = {
 _FACTS = Encoder({})
 
 
-@frozen
-class _Row:
-    """A row: a mutant's outcome."""
-
-    mutant: Mutant
-    quantity: Quantity | None
-    outcome: Outcome
-
-    @property
-    def before(self) -> Any:
-        return self._example[0]
-
-    @property
-    def after(self) -> Any:
-        return self._example[1]
-
-    @property
-    def _example(self) -> tuple[Any, ...]:
-        found = self.outcome.example
-        return found if found is not None and len(found) == 2 else (None, None)
-
-    @property
-    def divergence(self) -> str | None:
-        return next(iter(self.outcome.divergence), None)
-
-
 def rows(results: Results) -> Iterator[tuple[Cell, ...]]:
     """The cells of all outcomes, in the order of ``COLUMNS``: by mutant, then by round."""
     for result in results.everything:
         for outcome in result.outcomes:
-            cells = _FACTS.facts(_Row(result.mutant, result.quantity, outcome), _LINE)
+            example = outcome.example if outcome.example is not None and len(outcome.example) == 2 else ()
+            before, after = example or (None, None)
+            row = SimpleNamespace(
+                mutant=result.mutant, quantity=result.quantity, outcome=outcome, before=before, after=after,
+                divergence=next(iter(outcome.divergence), None),
+            )  # fmt: skip
+            cells = _FACTS.facts(row, _LINE)
             yield tuple(_cell(COLUMNS[name], found) for name, found in cells.items())
 
 

@@ -1,31 +1,17 @@
-"""The thresholds of a campaign: its ladders, what they cost, how wide the checks are; also of two of them.
+"""The thresholds of a campaign: its ladders, what they cost, and what the rounds showed, in words.
 
-A check |reading| ≤ T on a reading that is off by ε in a round notices faults above T − ε in one direction and
-above T + ε in the other. So the half of the sum of both thresholds is T, however the rounds fell, and half of
-their difference is the bias of the round.
-
-Thresholds in words: what the rounds showed, as brackets and never as a number between them.
+Words give brackets, and never a number between them.
 """
 
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from enum import StrEnum
-from functools import cached_property
-from statistics import NormalDist
-from typing import Any
 
-from mutabot.frozen import frozen
-from mutabot.model import Quantity
-from mutabot.model.graded import OFFSET, is_same, seen
-from mutabot.model.units import UNITS, convert_difference
 from mutabot.results.ladders import Above, Ladder, LadderRound, ladders_of, looseness
 from mutabot.results.results import Results
-from mutabot.results.statistics import Mean, mean_of
 
 
 def amount(magnitude: float, unit: str | None) -> str:
@@ -134,149 +120,12 @@ def in_rounds(numbers: Iterable[int]) -> str:
     return f"rounds {', '.join(rest)} and {last}" if rest else f"round {last}"
 
 
-#: a check that is not wider than so many standard deviations fails now and then without a fault
-_DEVIATIONS = 3.0
-
-
-@frozen
-class Pair:
-    """Both directions of an offset in one round.
-
-    Attributes:
-        round: 0-based.
-        half_width: between which values T lies; the upper end is infinite where one side is never noticed.
-        bias: between which values the bias lies; infinite likewise.
-    """
-
-    round: int
-    half_width: tuple[float, float]
-    bias: tuple[float, float]
-
-
-@frozen
-class Floor:
-    """Both directions of an offset.
-
-    Attributes:
-        up, down: the ladders.
-        pairs: one per round in which both count.
-        noise: standard deviation of the reading, in the ladders' unit; None if the vocabulary does not say.
-    """
-
-    up: Ladder
-    down: Ladder
-    pairs: tuple[Pair, ...]
-    noise: float | None
-
-    @property
-    def blind(self) -> tuple[float, float]:
-        """From the largest fault down to the largest up that some round may miss."""
-        return -self.down.all_from, self.up.all_from
-
-    @property
-    def half_width(self) -> tuple[float, float]:
-        """Between which values T lies, which is the same in all rounds."""
-        low = max(one.half_width[0] for one in self.pairs)
-        high = min(one.half_width[1] for one in self.pairs)
-        return (low, high) if low < high else (min(one.half_width[0] for one in self.pairs), high)
-
-    @property
-    def is_below_noise(self) -> bool:
-        """Whether the check is so narrow that its sensor's noise alone makes it fail now and then."""
-        return self.noise is not None and self.half_width[1] < _DEVIATIONS * self.noise
-
-    @property
-    def false_alarms(self) -> float | None:
-        """Share of readings that fail without a fault, at least; None if the noise is not known."""
-        high = self.half_width[1]
-        if self.noise is None or not math.isfinite(high):
-            return None
-        return 2.0 * (1.0 - NormalDist().cdf(high / self.noise))
-
-    @property
-    def blind_text(self) -> str:
-        """``blind between −10 mm and +20 mm``."""
-        low, high = self.blind
-        return f"blind between {_end(low, self.up.unit, self.down)} and {_end(high, self.up.unit, self.up)}"
-
-    @property
-    def text(self) -> str:
-        """``notices 1 mm, sensor noise 2 mm; passes only by its seed``."""
-        notices = amount(min(self.up.highs[0], self.down.highs[0]), self.up.unit)
-        noise = amount(self.noise or 0.0, self.up.unit)
-        return f"notices {notices}, sensor noise {noise}; passes only by its seed"
-
-
-def floors_of(ladders: Iterable[Ladder]) -> Iterator[Floor]:
-    """The offsets that are known in both directions, in the order of the first of them."""
-    found: dict[str, dict[str, Ladder]] = {}
-    for one in ladders:
-        if one.mutant.operator == OFFSET and one.mutant.direction and one.counted:
-            found.setdefault(_both(one), {})[one.mutant.direction[-1]] = one
-    for both in found.values():
-        if both.keys() == {"+", "-"}:
-            up, down = both["+"], both["-"]
-            pairs = tuple(_pairs(up, down))
-            if pairs:
-                yield Floor(up, down, pairs, noise_of(up.quantity, up.unit))
-
-
-def noise_of(quantity: Quantity | None, unit: str | None) -> float | None:
-    """The standard deviation of a reading, in this unit; None if nothing says."""
-    if quantity is None or quantity.repeatability is None or quantity.path.root is not None:
-        return None
-    if unit == quantity.unit or unit not in UNITS or quantity.unit not in UNITS:
-        return quantity.repeatability if unit == quantity.unit else None
-    try:
-        return float(f"{convert_difference(quantity.repeatability, quantity.unit, unit):.12g}")
-    except ValueError:  # a magnitude of another kind, such as a delay
-        return None
-
-
-def _both(ladder: Ladder) -> str:
-    mutant = ladder.mutant
-    moment = mutant.moment.text if mutant.moment is not None else ""
-    axis = mutant.direction[:-1]
-    names = (mutant.site.id, mutant.pattern, mutant.quantity, moment, mutant.unit, axis, mutant.operation)
-    return "|".join(name or "" for name in names)
-
-
-def _pairs(up: Ladder, down: Ladder) -> Iterator[Pair]:
-    for one, other in zip(up.rounds, down.rounds, strict=True):
-        if one.counts and other.counts:
-            (low, high), (low_down, high_down) = _ends(one), _ends(other)
-            width = (low + low_down) / 2.0, (high + high_down) / 2.0
-            yield Pair(one.number, width, ((low - high_down) / 2.0, (high - low_down) / 2.0))
-
-
-def _ends(one: LadderRound) -> tuple[float, float]:
-    high = one.bracket.high
-    return one.bracket.low or 0.0, math.inf if high is None else high
-
-
-def _end(value: float, unit: str | None, ladder: Ladder) -> str:
-    if math.isfinite(value):
-        sign = "−" if value < 0 else "+"
-        return f"{sign}{amount(abs(value), unit)}"
-    sign = "−" if value < 0 else "+"
-    return f"beyond {sign}{amount(max(ladder.lows), unit)}"
-
-
-_Key = Callable[[Ladder], Any]
-#: orders of the table; the first is the usual one
-SORTS: Mapping[str, _Key] = {
-    "loosest": lambda one: tuple(-end for end in looseness(one)[:3]),
-    "place": lambda one: (one.mutant.site.span.file, one.mutant.site.span.line, one.mutant.site.span.column),
-    "operator": lambda one: (one.mutant.operator, *(-end for end in looseness(one)[:3])),
-}
-
-
 @dataclass(frozen=True)
 class Thresholds:
     """The thresholds of a campaign.
 
     Attributes:
-        ladders: those of which something is known, in the order that was asked for.
+        ladders: those of which something is known, the loosest first.
         unjudged: the others.
         rounds: number of rounds.
         state: how the campaign ended, as in ``Results``.
@@ -292,175 +141,14 @@ class Thresholds:
         """All ladders."""
         return (*self.ladders, *self.unjudged)
 
-    @property
-    def runs(self) -> int:
-        """How many (magnitude, round) were run, without magnitude 0."""
-        return sum(one.runs for one in self.all)
 
-    @property
-    def exhaustive(self) -> int:
-        """How many there are."""
-        return sum(one.exhaustive for one in self.all)
-
-    @property
-    def controls(self) -> int:
-        """How many runs of magnitude 0 there were."""
-        return sum(1 for one in self._zeros)
-
-    @property
-    def false_alarms(self) -> int:
-        """How many of these were noticed."""
-        return sum(1 for one in self._zeros if one.fails_without_fault)
-
-    @cached_property
-    def floors(self) -> tuple[Floor, ...]:
-        """Offsets that are known in both directions."""
-        return tuple(floors_of(self.ladders))
-
-    @property
-    def most_violated(self) -> float | None:
-        """Largest share of such ladders that may be out of order (95 %), where none of them is.
-
-        None if one is, or if they are too few to say anything.
-        """
-        count = len(self.ladders)
-        if any(one.violations for one in self.ladders) or count <= 3:
-            return None
-        return 3.0 / count
-
-    @property
-    def _zeros(self) -> list[LadderRound]:
-        known = (one for ladder in self.all for one in ladder.rounds if one.zero is not None)
-        return [one for one in known if one.zero is not None and seen(one.zero).is_valid]
-
-
-def thresholds_of(results: Results, sort: str = "loosest") -> Thresholds:
-    """The thresholds of a campaign; ``sort`` is one of ``SORTS``."""
+def thresholds_of(results: Results) -> Thresholds:
+    """The thresholds of a campaign."""
     ladders = ladders_of(results)
-    judged = [one for one in ladders if not one.why_unjudged]
+    judged = (one for one in ladders if not one.why_unjudged)
     return Thresholds(
-        ladders=_sorted(judged, sort),
+        ladders=tuple(sorted(judged, key=lambda one: [-end for end in looseness(one)])),
         unjudged=tuple(one for one in ladders if one.why_unjudged),
         rounds=results.rounds,
         state=results.state,
     )
-
-
-def _sorted(ladders: Sequence[Ladder], sort: str) -> tuple[Ladder, ...]:
-    return tuple(sorted(ladders, key=SORTS[sort]))
-
-
-class Change(StrEnum):
-    """What became of a ladder: a fact about these rounds, and no test."""
-
-    IMPROVED = "improved"  # worse in no round, better in at least one
-    WORSE = "worse"
-    MIXED = "mixed"  # both occur
-    SAME = "unchanged"
-    UNKNOWN = "not compared"  # no round is known in both, or the robot refused
-
-
-@frozen
-class LadderChange:
-    """One ladder in both campaigns.
-
-    Attributes:
-        old, new: the ladder.
-        steps: per round, by how many steps of the ladder the new suite notices sooner; None where either is
-            not known.
-    """
-
-    old: Ladder
-    new: Ladder
-    steps: tuple[float | None, ...]
-
-    @property
-    def change(self) -> Change:
-        """What became of it."""
-        known = [step for step in self.steps if step is not None]
-        better, worse = any(step > 0 for step in known), any(step < 0 for step in known)
-        if not known:
-            return Change.UNKNOWN
-        if better and worse:
-            return Change.MIXED
-        return Change.IMPROVED if better else Change.WORSE if worse else Change.SAME
-
-
-@frozen
-class Comparison:
-    """Two campaigns.
-
-    Attributes:
-        ladders: those that both have.
-        gone, added: ids of ladders that only the old, or only the new one has.
-        why_no_words: why single ladders are not said to be improved or worse; empty if they are.
-        mean: by how many steps the new suite notices sooner, over all ladders and rounds, with its interval;
-            None if there are too few.
-    """
-
-    ladders: tuple[LadderChange, ...]
-    gone: tuple[str, ...]
-    added: tuple[str, ...]
-    why_no_words: str
-    mean: Mean | None
-
-    @property
-    def has_improved(self) -> bool | None:
-        """Whether the interval of the mean is above 0, or below (False); None if it holds 0."""
-        if self.mean is None or self.mean.low <= 0.0 <= self.mean.high:
-            return None
-        return self.mean.low > 0.0
-
-
-def compare(old: Results, new: Results) -> Comparison:
-    """Compare the thresholds of two campaigns, as far as both have the same ladders."""
-    before = {one.id: one for one in ladders_of(old)}
-    after = {one.id: one for one in ladders_of(new)}
-    both = tuple(
-        LadderChange(before[name], one, tuple(_steps(before[name], one)))
-        for name, one in _common(before, after)
-    )
-    return Comparison(
-        ladders=both,
-        gone=tuple(name for name in before if name not in after),
-        added=tuple(name for name in after if name not in before),
-        why_no_words=_why_no_words(old, new),
-        mean=mean_of([one.steps for one in both]),
-    )
-
-
-def _common(before: Mapping[str, Ladder], after: Mapping[str, Ladder]) -> Iterator[tuple[str, Ladder]]:
-    return ((name, one) for name, one in after.items() if name in before)
-
-
-def _why_no_words(old: Results, new: Results) -> str:
-    seeds = old.meta.get("seed"), new.meta.get("seed")
-    if seeds[0] != seeds[1]:
-        return f"the seeds differ ({seeds[0]} and {seeds[1]}), so rounds of equal numbers are not alike"
-    return ""
-
-
-def _steps(old: Ladder, new: Ladder) -> Iterator[float | None]:
-    """Per round that both have, how many steps sooner the new suite notices."""
-    sizes = _together(old.sizes, new.sizes)
-    for before, after in zip(old.rounds, new.rounds, strict=False):
-        places = _place(before, sizes), _place(after, sizes)
-        yield None if None in places else float((places[0] or 0) - (places[1] or 0))
-
-
-def _together(one: Sequence[float], other: Sequence[float]) -> list[float]:
-    """The magnitudes of both, rising, equal ones once: a ladder may have got those of a demand."""
-    sizes: list[float] = []
-    for size in sorted((*one, *other)):
-        if not sizes or not is_same(sizes[-1], size):
-            sizes.append(size)
-    return sizes
-
-
-def _place(one: LadderRound, sizes: Sequence[float]) -> int | None:
-    """The step from which on a round notices, from 0; one above the top if it never does."""
-    if not one.counts or one.above in (Above.REFUSED, Above.NO_EFFECT):
-        return None
-    if one.bracket.high is None:
-        return len(sizes)
-    return bisect_left(sizes, one.bracket.high * (1.0 - 1e-9))

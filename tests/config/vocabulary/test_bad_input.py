@@ -174,10 +174,6 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
         GOOD_OPERATION + "[wait]\ncall = 'wait'",
         ["robot.toml:4", "wait.call", "'wait'"],
     ),
-    "probe_that_is_better_somehow": (
-        "[[probe]]\ncall = 'world:box'\nbetter = 'most'",
-        ["robot.toml:3", "better", "'more'"],
-    ),
     "clock_with_a_length": (
         GOOD_OPERATION + "[clock]\ntick = 'sim:step'\nunit = 'mm'",
         ["robot.toml:5", "clock.unit", "did you mean 'ms'"],
@@ -237,10 +233,6 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     "missing_in_another_way": (
         "result = { kind = 'distance', unit = 'm', missing = 'empty' }",
         ["result.missing", "'empty'", "module:Name"],
-    ),
-    "repeatability_of_nothing": (
-        "result = { kind = 'distance', unit = 'm', repeatability = 0 }",
-        ["result.repeatability", "more than 0"],
     ),
     "tool_in_front_of_a_relative_move": (
         "arguments.dx = { " + _BY + ", tcp = 0.1 }",

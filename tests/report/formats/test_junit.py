@@ -71,6 +71,4 @@ def test_scores_are_properties(tmp_path: Path) -> None:
     mutants = tuple(one for one in samples.MUTANTS if one.id != samples.BY_TO.id)
     root = xml(stored(tmp_path, mutants=mutants, outcomes=ends))
     found = {one.attrib["name"]: one.attrib["value"] for one in root[0].findall("properties/property")}
-    assert found["state"] == "complete"
-    assert (found["score"], found["killed"], found["valid"]) == ("0.5000", "2", "4")
-    assert (found["robot.program.check_score"], found["robot.program.valid"]) == ("0.2500", "4")
+    assert found == {"score": "0.5000", "check_score": "0.2500"}

@@ -53,22 +53,16 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
     assert [one.name for one in tmp_path.iterdir()] == ["notes.txt"]
 
 
-def test_an_older_report_is_replaced_and_its_clips_stay(tmp_path: Path) -> None:
+def test_an_older_report_is_replaced(tmp_path: Path) -> None:
     journal, stored = reports.campaign(tmp_path)
     report = tmp_path / "report"
-    (report / "clips").mkdir(parents=True)
-    (report / "clips" / "2-side.png").write_bytes(b"mine")
-    (report / "clips" / "2.mp4").write_bytes(b"mine")
-    (report / "clips" / "notes.txt").write_bytes(b"mine")
     reports.write(report, journal, stored)
     (report / "data" / "mutants" / "99.js").write_text("old")
+    (report / "clip.mp4").write_bytes(b"mine")
     reports.write(report, journal, stored)
     assert not (report / "data" / "mutants" / "99.js").exists()
     assert (report / REPORT_MARK).is_file()
-    assert (report / "clips" / "notes.txt").read_bytes() == b"mine"
-    text = (report / "data" / "mutants" / "2.js").read_text()
-    assert '"media":["clips/2-side.png","clips/2.mp4"]' in text
-    assert '"media":[]' in (report / "data" / "mutants" / "1.js").read_text()
+    assert (report / "clip.mp4").read_bytes() == b"mine"
 
 
 def test_recordings_that_have_no_room_are_counted_and_pages_say_so(tmp_path: Path) -> None:

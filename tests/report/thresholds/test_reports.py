@@ -5,32 +5,22 @@ from __future__ import annotations
 import io
 import json
 import re
-import tomllib
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from mutabot.model import Operation, Role, Vocabulary
-from mutabot.model.outcome import Figure
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds import bar, print_compared, print_thresholds, suggested_toml
-from mutabot.results.thresholds import SORTS, Thresholds, compare, thresholds_of
+from mutabot.report.thresholds import bar, print_thresholds
+from mutabot.results.thresholds import Thresholds, thresholds_of
 from results import samples
 from results.thresholds import journals
 from results.thresholds.journals import Rungs
 
 FIVE = 5
-NOISY = Vocabulary(
-    operations=(
-        *samples.VOCABULARY.operations[:1],
-        Operation("tracker:box_position", result=(replace(samples.X, repeatability=0.002),), command=False),
-    )
-)
 READING = {"site": samples.READ, "quantity": ".x", "operation": "tracker:box_position"}
 LADDERS = (
-    Rungs(["SSSSCCC"] * 3 + ["SSSCCXX"] * 2, zero="S" * FIVE),
+    Rungs(["SSSSCCC"] * 3 + ["SSSCCXX"] * 2),
     Rungs(["SSSSSRR"] * FIVE, direction="-"),
     Rungs(["SSCSCCC"] * FIVE, site=samples.BACK, unit="deg"),
     Rungs(["RRRRRRR"] * FIVE, site=samples.BACK, unit="deg", direction="-"),
@@ -41,7 +31,7 @@ LADDERS = (
 
 @pytest.fixture
 def thresholds(tmp_path: Path) -> Thresholds:
-    return thresholds_of(journals.results(tmp_path, *LADDERS, vocabulary=NOISY))
+    return thresholds_of(journals.results(tmp_path, *LADDERS))
 
 
 def text_of(thresholds: Thresholds, *, width: int = 120) -> str:
@@ -57,12 +47,11 @@ def test_a_ladder_is_one_row_with_a_bar(thresholds: Thresholds) -> None:
 
 
 def test_a_round_that_does_not_count_is_named_with_the_reason(tmp_path: Path) -> None:
-    found = thresholds_of(
-        journals.results(tmp_path, Rungs(["SSSSCCC"] * FIVE, zero="SCSSS"), vocabulary=NOISY)
-    )
+    rounds = ["SSSSCCC", "UUUUUUU", *["SSSSCCC"] * 3]
+    found = thresholds_of(journals.results(tmp_path, Rungs(rounds)))
     text = text_of(found)
     assert "Rounds that do not count" in text
-    assert "round 2 fails without a fault" in text
+    assert "round 2 is unstable" in text
 
 
 def test_a_bar_has_one_sign_per_magnitude(thresholds: Thresholds) -> None:
@@ -89,29 +78,7 @@ def test_all_that_is_to_be_said_is_said(thresholds: Thresholds) -> None:
     text = " ".join(text_of(thresholds, width=300).split())
     assert "noticed at 5 mm" not in text
     assert "noticed at 5 deg, survives 10 deg, rounds 1, 2, 3, 4 and 5" in text
-    assert "notices 1 mm, sensor noise 2 mm; passes only by its seed" in text
     assert "the robot refuses every magnitude that was tried" in text
-    assert "210 of 210 possible runs were needed. None of 5 runs without a fault failed." in text
-
-
-def test_ladders_without_violations_have_a_careful_bound(tmp_path: Path) -> None:
-    sites = [
-        samples.site("mission.py", line, "arm.move_by", Role.PROGRAM, occurrence=line) for line in range(1, 9)
-    ]
-    found = thresholds_of(journals.results(tmp_path, *(Rungs(["SSSCCCC"], site=site) for site in sites)))
-    assert found.most_violated == pytest.approx(3 / 8)
-
-
-def test_what_did_better_than_the_original_is_told(tmp_path: Path) -> None:
-    figure = Figure("cell:Cell.cycle_time", 12.5, 11.25, "less", samples.TEST)
-    found = thresholds_of(journals.results(tmp_path, Rungs(["SSSCCCC"], figures={(0, 2.0): figure})))
-    assert "Cell.cycle_time 11.25 instead of 12.5 (2 mm, round 1)" in text_of(found)
-
-
-@pytest.mark.parametrize("sort", SORTS)
-def test_each_order_has_all_ladders(tmp_path: Path, sort: str) -> None:
-    found = thresholds_of(journals.results(tmp_path, *LADDERS, vocabulary=NOISY), sort)
-    assert len(found.ladders) == len(LADDERS) - 1
 
 
 def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
@@ -124,45 +91,15 @@ def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
     refused = by_name["arm.move_by dx −", "mm"]
     assert (refused["all_from"], refused["refused_from"]) == (None, 50.0)
     assert by_name["arm.move_by dx −", "deg"]["judged"] is False
-    assert data["floors"][-1]["below_noise"] is True
 
 
-def test_the_document_tells_of_every_key(thresholds: Thresholds, tmp_path: Path) -> None:
+def test_the_document_tells_of_every_key(thresholds: Thresholds) -> None:
     document = (Path(__file__).parents[3] / "docs" / "thresholds.md").read_text(encoding="utf-8")
-    results = journals.results(tmp_path / "again", *LADDERS, vocabulary=NOISY)
-    for data in (data_of(thresholds), data_of(compare(results, results))):
-        missing = [key for key in keys_of(json.loads(dumps(data))) if f"`{key}`" not in document]
-        assert missing == []
+    missing = [key for key in keys_of(json.loads(dumps(data_of(thresholds)))) if f"`{key}`" not in document]
+    assert missing == []
 
 
 def keys_of(data: object) -> set[str]:
     if isinstance(data, dict):
         return {*data, *(key for value in data.values() for key in keys_of(value))}
     return {key for value in data for key in keys_of(value)} if isinstance(data, list) else set()
-
-
-def test_suggested_demands_are_toml_that_the_campaign_meets(thresholds: Thresholds) -> None:
-    text = suggested_toml(thresholds.ladders, table="tool.mutabot.demand")
-    found = tomllib.loads(text)["tool"]["mutabot"]["demand"]
-    assert [(one["site"], one["quantity"], one["notice"]) for one in found] == [
-        (samples.MOVE.id, "dx", "50 mm"),
-        (samples.BACK.id, "dx", "20 deg"),
-        (samples.READ.id, ".x", "1 mm"),
-    ]
-
-
-def test_where_no_demand_is_met_a_comment_says_so(tmp_path: Path) -> None:
-    found = thresholds_of(journals.results(tmp_path, Rungs(["SSSSSSS"])))
-    text = suggested_toml(found.ladders, table="demand")
-    assert "# no demand" in text
-    assert tomllib.loads(text) == {}
-
-
-def test_a_comparison_tells_before_and_now(tmp_path: Path) -> None:
-    old = journals.results(tmp_path / "old", Rungs(["SSSSCCC"] * 2), Rungs(["SSSSCCC"] * 2, direction="-"))
-    new = journals.results(tmp_path / "new", Rungs(["SSSCCCC"] * 2), Rungs(["SSSSCCC"] * 2, direction="-"))
-    out = io.StringIO()
-    print_compared(make_console(out, width=80), compare(old, new))
-    assert "1 improved, 1 unchanged" in out.getvalue()
-    assert re.search(r"····███ +···████ +improved", out.getvalue())
-    assert "0.50 ± " in out.getvalue()

@@ -7,19 +7,12 @@ from random import Random
 from statistics import NormalDist
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from mutabot.model.graded import MagnitudeResult, bracket_of
 from mutabot.results.ladders import (
-    binomial_at_most,
-    exact,
-    lower_limit,
     median_between,
     ranks,
-    rounds_for,
     share_noticed,
-    upper_limit,
 )
 
 LADDER = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
@@ -52,25 +45,6 @@ def test_one_round_gives_no_interval() -> None:
 @pytest.mark.parametrize(("rounds", "share"), [(3, 0.37), (5, 0.55), (10, 0.74), (29, 0.90), (59, 0.95)])
 def test_what_all_rounds_notice_shows_a_share(rounds: int, share: float) -> None:
     assert share_noticed(rounds) == pytest.approx(share, abs=0.005)
-    assert share_noticed(rounds_for(share)) >= share > share_noticed(rounds_for(share) - 1)
-
-
-@given(st.integers(1, 60), st.data())
-def test_exact_limits_leave_half_of_the_rest_on_each_side(of: int, data: st.DataObject) -> None:
-    count = data.draw(st.integers(0, of))
-    found = exact(count, of)
-    assert found is not None
-    assert 0.0 <= found.low <= count / of <= found.high <= 1.0
-    if count:
-        assert 1.0 - binomial_at_most(count - 1, of, found.low) == pytest.approx(0.025, rel=1e-6)
-    if count < of:
-        assert binomial_at_most(count, of, found.high) == pytest.approx(0.025, rel=1e-6)
-
-
-def test_five_of_five_show_what_wilks_says() -> None:
-    assert lower_limit(5, 5) == pytest.approx(share_noticed(5))
-    assert upper_limit(0, 5) == pytest.approx(1.0 - share_noticed(5))
-    assert exact(0, 0) is None
 
 
 @pytest.mark.parametrize("rounds", [3, 5, 10, 20])

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.results.thresholds import amount, line_of, rounds_left_out, violations_in_words
+from mutabot.results.thresholds import amount, line_of, violations_in_words
 from results.thresholds import journals
 
 
@@ -49,12 +49,6 @@ from results.thresholds import journals
 )
 def test_the_line_of_a_ladder(tmp_path: Path, rounds: list[str], line: str) -> None:
     assert line_of(journals.ladder(tmp_path, *rounds)) == line
-
-
-def test_rounds_that_fail_without_a_fault_do_not_count(tmp_path: Path) -> None:
-    found = journals.ladder(tmp_path, "SSSSCCC", "CCCCCCC", "SSSSCCC", zero="SCS")
-    assert line_of(found) == "noticed from 20 mm, not at 10 mm (all 2 rounds)"
-    assert list(rounds_left_out(found)) == ["round 2 fails without a fault"]
 
 
 @pytest.mark.parametrize(

@@ -199,8 +199,6 @@ def _kept(note: Any) -> Any:
 
 #: operations and simulated seconds that a test may use beyond its multiple of the baseline
 SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
-#: why a mutant needs a process of its own from the start
-IN_PLACE = "is in place from the start of each test"
 
 
 @frozen
@@ -302,13 +300,13 @@ class Baseline(Original):
         ends = ((test, self.ends[round, test].exclusive) for test in self.tests[round])
         return next(((test, why) for test, why in ends if why is not None), None)
 
+    def is_apart(self, mutant: Mutant) -> bool:
+        """Whether a mutant needs a process of its own: it is in place from the start of each test."""
+        return bool(self.faults.in_process(mutant))
+
     def is_early(self, mutant: Mutant) -> bool:
         """Whether a mutant may act before any test begins."""
         return Place.of(mutant) in self.early
-
-    def why_apart(self, mutant: Mutant) -> str | None:
-        """Why a mutant needs a process of its own from the start, whatever its tests; None if it does not."""
-        return IN_PLACE if self.faults.in_process(mutant) else None
 
     def take_in(self, planned: Mapping[str, Planned]) -> None:
         """The mutants that each provider makes of it, and the places that it has told of."""

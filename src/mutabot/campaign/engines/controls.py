@@ -89,7 +89,7 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     Only a test that passes on the original must fail by the fatal one. ``forked``: for processes that are
     forked at the place. What is forked before any test has an identity of its own.
     """
-    planned = {Place.of(one) for one in mutants if not forked or baseline.why_apart(one) is None}
+    planned = {Place.of(one) for one in mutants if not forked or not baseline.is_apart(one)}
     chosen: dict[tuple[str, bool], tuple[tuple[int, bool, float], Place, str]] = {}
     for (round, place), tests in baseline.reaching.items():
         ends = [baseline.ends[round, test] for test in tests]

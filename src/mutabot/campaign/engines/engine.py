@@ -7,13 +7,13 @@ judges what ``branch`` cannot.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from itertools import takewhile
 
 from mutabot.campaign.campaign import Campaign, OutcomeWriter
 from mutabot.campaign.request import BRANCH, REPLAY
+from mutabot.errors import in_short
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 
@@ -138,7 +138,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Un
         campaign.progress.stage("controls", len(controls))
         for outcome in ForkParents(campaign, left).run([one.run for one in controls.values()]):
             ended += len(list(settled(campaign, BRANCH, controls[outcome.mutant], outcome, is_step=True)))
-        apart = [one for one in mutants if campaign.baseline.why_apart(one) is not None]
+        apart = [one for one in mutants if campaign.baseline.is_apart(one)]
         rest = mutants if left.runs else apart
     if REPLAY in campaign.request.engines and rest:
         ended += len(list(run_controls(campaign, rest)))
@@ -150,12 +150,12 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
     tests: dict[str, list[str]] = {}
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)
-    for reason, (first, *others) in tests.items():
-        more = f" and {len(others)} more" if others else ""
-        apart = f"{reason}; mutants there run in processes of their own"
-        where = f"no branches in {first}{more}: {apart}"
-        campaign.progress.note(where if first else f"no branches while the program is imported: {apart}")
-    for why, number in Counter(left.why_apart.values()).items():
-        campaign.progress.note(f"{number} mutants: each {why}, in a process of its own")
+    for reason, names in tests.items():
+        during = "no branches while the program is imported"
+        where = f"no branches in {in_short(names, 1)}" if names[0] else during
+        campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
+    if left.apart:
+        text = "each is in place from the start of each test, in a process of its own"
+        campaign.progress.note(f"{len(left.apart)} mutants: {text}")
     for note in left.notes:
         campaign.progress.note(note)

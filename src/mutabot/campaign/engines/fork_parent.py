@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.baseline.baseline import observation, place_of
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.comparison import Observation
 from mutabot.campaign.request import BRANCH
 from mutabot.campaign.verdict import Death, Run, judged, not_judged, refuse_others
 from mutabot.execution.task import Result, Task, at, death, how_ended
@@ -34,7 +33,7 @@ from mutabot.model.events import (
 from mutabot.model.job import Branching
 from mutabot.model.mutant import Place
 
-from .isolated_run import MutantRun, job_of, not_run, startup_limit, wall_limit, without_tests
+from .isolated_run import MutantRun, job_of, not_run, startup_limit, wall_limits, without_tests
 
 #: seconds without any word from a fork parent, beyond what its tests and forks may take
 _PATIENCE = 60.0
@@ -52,20 +51,20 @@ class Unhandled:
 
     Attributes:
         runs: mutants and rounds.
-        why_apart: why mutants need a process of their own, whatever their tests, by their ids.
+        apart: ids of mutants that need a process of their own, whatever their tests.
         reasons: test to why mutants cannot be forked in it.
         notes: what else went wrong, in words.
     """
 
     runs: list[MutantRun] = field(default_factory=list)
-    why_apart: dict[str, str] = field(default_factory=dict)
+    apart: set[str] = field(default_factory=set)
     reasons: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
     def why(self, mutant: Mutant) -> str:
         """Why a mutant is left, in words."""
-        if mutant.id in self.why_apart:
-            return f"it {self.why_apart[mutant.id]}"
+        if mutant.id in self.apart:
+            return "it is in place from the start of each test"
         return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
 
 
@@ -95,12 +94,11 @@ class ForkParents:
                 continue
             if round not in parents:  # also if nothing is forked in it: it is the second run
                 parents[round] = _ForkParent(self, round)
-            why = baseline.why_apart(mutant)
-            if why is None:
-                parents[round].add(mutant)
-            else:
+            if baseline.is_apart(mutant):
                 self.left.runs.append((mutant, round))
-                self.left.why_apart[mutant.id] = why
+                self.left.apart.add(mutant.id)
+            else:
+                parents[round].add(mutant)
         # the text of all rounds alike, so that one fork server can serve them
         text = baseline.faults.instrumentation(
             {one.id: one for parent in parents.values() for one in parent.mutants}.values()
@@ -129,13 +127,12 @@ class _ForkedRun:
 
     Attributes:
         run: what the judge gets.
-        ends, observations: its tests that have ended.
+        ends: its tests that have ended.
         forked: number of the test in which it was forked, as far as it has told; -1: before any.
     """
 
     run: Run
     ends: dict[str, TestEnd] = field(default_factory=dict)
-    observations: dict[str, Observation] = field(default_factory=dict)
     forked: int | None = None
 
 
@@ -186,7 +183,7 @@ class _ForkParent:
     def task(self, key: int, text: Instrumentation | None) -> Task:
         """The task that runs the fork parent."""
         campaign, baseline, mutants = self._campaign, self._baseline, self.mutants
-        walls = {test: wall_limit(campaign, self._round, test) for test in self._tests}
+        walls = wall_limits(campaign, self._round, self._tests)
         choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
         at_start: dict[str, tuple[str, ...]] = {}  # where tests have processes below them
         for mutant in mutants:
@@ -288,7 +285,7 @@ class _ForkParent:
             fork.run.shared = (fork.run.shared or 0.0) + event.shared
         if event.end.outcome != "failed":
             places = {seen.index: place_of(seen, self._sources) for seen in event.sites}
-            fork.observations[test] = observation(event.end, places)
+            fork.run.observations[test] = observation(event.end, places)
         yield from self._settle(event.mutant)
 
     def _test_ended(self, end: TestEnd) -> Iterator[Outcome]:
@@ -307,7 +304,7 @@ class _ForkParent:
         self._own_ends.append(own)
         for mutant in undiverged.keys() & self._open.keys():
             self._open[mutant].ends.setdefault(end.test, replace(own, hits=undiverged[mutant]))
-            self._open[mutant].observations.setdefault(end.test, found)
+            self._open[mutant].run.observations.setdefault(end.test, found)
         for mutant in self._waiting.pop(len(self._own_ends) - 1, set()) & self._open.keys():
             yield from self._settle(mutant)
 
@@ -333,7 +330,6 @@ class _ForkParent:
         run = fork.run
         ends = {end.test: end for end in self._own_ends[:shared]} | fork.ends
         run.ends = [ends[test] for test in self._tests if test in ends]
-        run.observations = fork.observations
         run.wall = sum(end.wall for end in run.ends)
         if run.exit_code is not None:
             text = not_run({*self._tests} - run.left_out, run.ends, run.exit_code)

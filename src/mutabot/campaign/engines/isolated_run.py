@@ -87,7 +87,7 @@ def task(
         instrumentation=faults.instrumentation([mutant], active=True),
         faults=faults.in_process(mutant),
     )  # fmt: skip
-    walls = {test: wall_limit(campaign, round, test) for test in tests}
+    walls = wall_limits(campaign, round, tests)
     least, startup = request.configuration.timeout_seconds, startup_limit(campaign)
     return Task((mutant, round), job, walls, least, startup, alone=campaign.baseline.is_exclusive(round))
 
@@ -117,10 +117,10 @@ def startup_limit(campaign: Campaign) -> float:
     return max(least, WALL_FACTOR * campaign.baseline.startup)
 
 
-def wall_limit(campaign: Campaign, round: int, test: str) -> float:
-    """Seconds of wall clock that a test may take: the safety net behind the other limits."""
-    least = campaign.request.configuration.timeout_seconds
-    return max(least, WALL_FACTOR * campaign.baseline.ends[round, test].wall)
+def wall_limits(campaign: Campaign, round: int, tests: Iterable[str]) -> dict[str, float]:
+    """Seconds of wall clock that each test may take: the safety net behind the other limits."""
+    least, ends = campaign.request.configuration.timeout_seconds, campaign.baseline.ends
+    return {test: max(least, WALL_FACTOR * ends[round, test].wall) for test in tests}
 
 
 def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:

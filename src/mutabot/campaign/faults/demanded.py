@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from mutabot.faults import Planted, Project
 from mutabot.frozen import frozen
-from mutabot.model import Kind, Mutant, Vocabulary
+from mutabot.model import Mutant, Vocabulary
 from mutabot.model.graded import Demand, is_same, wanted_magnitudes
 
 
@@ -80,18 +80,13 @@ def demanded_of(
     ladders: Sequence[FaultLadder], demands: Sequence[Demand], vocabulary: Vocabulary
 ) -> dict[str, tuple[float, ...]]:
     """The demanded magnitudes of each ladder, by its id."""
-    first = {one.id: one.mutants[0] for one in ladders if demands}
-    return {name: wanted_magnitudes(demands, one, _kind_of(one, vocabulary)) for name, one in first.items()}
-
-
-def _kind_of(mutant: Mutant, vocabulary: Vocabulary) -> Kind | None:
-    operation = vocabulary.operation(mutant.operation)
-    if operation is None:
-        return None
-    pattern = operation.pattern(mutant.pattern)
-    meant = pattern if pattern is not None else operation
-    quantities = (*meant.arguments, *meant.result)
-    return next((one.kind for one in quantities if one.name == mutant.quantity), None)
+    found = {}
+    for ladder in ladders if demands else ():
+        first = ladder.mutants[0]
+        quantity = vocabulary.quantity(first.operation, first.pattern, first.quantity)
+        kind = quantity.kind if quantity is not None else None
+        found[ladder.id] = wanted_magnitudes(demands, first, kind)
+    return found
 
 
 def _at(mutant: Mutant, size: float) -> Mutant:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 from mutabot.errors import ExtensionError, unknown_name_text
 from mutabot.families import OF_CALLS, ROBOT
@@ -51,7 +51,7 @@ def family_of(mutant: str) -> str:
     operator = mutant.rpartition(":")[2].partition("=")[0].partition("@")[0]
     if operator in operators_on_calls():
         return operator_on_calls(operator).family
-    return next((family for name, family in _of_packages() if name == operator), ROBOT)
+    return operators_of_packages().get(operator, ROBOT)
 
 
 def rules_of(families: Collection[str]) -> list[Rule]:
@@ -61,11 +61,6 @@ def rules_of(families: Collection[str]) -> list[Rule]:
     return [rule for one in (*_OWN, *brought) for rule in one.rules()]
 
 
-def operators_of_packages() -> Iterator[str]:
-    """The names of the operators of the packages' providers. To look at these may take its time."""
-    return (name for name, _ in _of_packages())
-
-
-def _of_packages() -> Iterator[tuple[str, str]]:
-    """The same, with their families."""
-    return ((rule.name, rule.family) for one in brought_providers() for rule in one.rules())
+def operators_of_packages() -> dict[str, str]:
+    """The operators of the packages' providers, with their families. To look at these may take its time."""
+    return {rule.name: rule.family for one in brought_providers() for rule in one.rules()}

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.request import Progress, Request
+from mutabot.errors import in_short
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import MovedOutcome
 from mutabot.model import Mutant, Verdict
@@ -19,12 +20,6 @@ from .keys import Dependencies, Parts, Tree, Was
 Pair = tuple[str, int]
 #: names that are given before it is said how many more there are
 _SHOWN = 3
-
-
-def in_short(names: Sequence[str]) -> str:
-    """The first of these, and how many more there are."""
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return ", ".join(names[:_SHOWN]) + more
 
 
 class Earlier:
@@ -71,14 +66,6 @@ class Earlier:
             return False
         return self.was(self.kept[row.mutant, row.round].key).tree.said != self._now.tree.said
 
-    def is_site_changed(self, pair: Pair, mutant: Mutant) -> bool:
-        """Whether what stands where a mutant acts says something else, or nobody knows."""
-        span = mutant.site.span
-        files = self.was(self.kept[pair].key).tree.file(span.file), self._now.tree.file(span.file)
-        name = span.function.partition(".<locals>")[0]
-        then, now = (one.said.get(name, one.said[""]) if one is not None else None for one in files)
-        return then is None or then != now
-
     def _parts_of(self, digest: str) -> Parts | None:
         if digest not in self._parts:
             self._parts[digest] = self._journal.parts(digest)
@@ -103,9 +90,8 @@ class Reused:
         done: mutants, by id, and rounds whose outcomes are taken over.
         why: of the others that there are outcomes of, why these do not hold.
         unsound: of which there are outcomes that say nothing.
-        first: of which there are none.
+        first: how many there are none of.
         before: what the others were that do not hold.
-        sites: mutants at which something else stands than when they were run.
         unasked: how many that are taken over are survivors that some tests do not reach, while something has
             changed that only these could notice.
         sources: what the journals hold.
@@ -114,9 +100,8 @@ class Reused:
     done: set[Pair] = field(default_factory=set)
     why: dict[Pair, str] = field(default_factory=dict)
     unsound: set[Pair] = field(default_factory=set)
-    first: list[Pair] = field(default_factory=list)
+    first: int = 0
     before: dict[Pair, Verdict] = field(default_factory=dict)
-    sites: set[str] = field(default_factory=set)
     unasked: int = 0
     sources: Sequence[Earlier] = ()
 
@@ -137,7 +122,7 @@ def reuse(
     sources = [Earlier(dependencies, one) for one in (journal, *others)]
     found = Reused(sources=sources)
     if not any(one.kept for one in sources):
-        found.first = [(mutant.id, round) for round in range(rounds) for mutant in mutants]
+        found.first = rounds * len(mutants)
         return found
     pairs = [(mutant, round) for round in range(rounds) for mutant in mutants]
     taken = [_taken(found, mutant, round) for mutant, round in pairs]
@@ -174,12 +159,10 @@ def _taken(found: Reused, mutant: Mutant, round: int) -> MovedOutcome | None:
         elif first is None:
             first = why
             found.before[pair] = outcome.verdict
-            if earlier.is_site_changed(pair, mutant):
-                found.sites.add(mutant.id)
     if first is not None:
         found.why[pair] = first
     elif pair not in found.unsound:
-        found.first.append(pair)
+        found.first += 1
     return None
 
 
@@ -204,7 +187,7 @@ def note_outdated(journal: Journal, request: Request, dependencies: Dependencies
 def text_of(found: Reused) -> str:
     """What was taken over, and why the rest was not, in words."""
     reused = len(found.done)
-    planned = len(found.done) + len(found.why) + len(found.unsound - found.why.keys()) + len(found.first)
+    planned = len(found.done) + len(found.why) + len(found.unsound - found.why.keys()) + found.first
     if reused == planned:
         return f"reused all {planned} outcomes: nothing that they depend on has changed"
     parts = [f"reused {reused} of {planned} outcomes"]
@@ -212,10 +195,9 @@ def text_of(found: Reused) -> str:
     unsound = len(found.unsound - found.why.keys())
     if unsound:
         parts.append(f"{unsound} run again: they ended in an error or unstable")
-    first = len(found.first)
-    if first:
+    if found.first:
         is_all = not (reused or found.why or unsound)
-        parts.append(f"{first} run for the first time" if is_all else f"{first} not run before")
+        parts.append(f"{found.first} {'run for the first time' if is_all else 'not run before'}")
     return "; ".join(parts)
 
 

@@ -14,7 +14,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, Tree, Was, tool_table
-from mutabot.campaign.reuse.reuse import GONE, Pair, Reused, in_short
+from mutabot.campaign.reuse.reuse import GONE, Pair, Reused
 from mutabot.campaign.reuse.snapshot import (
     WRITTEN,
     State,
@@ -24,7 +24,7 @@ from mutabot.campaign.reuse.snapshot import (
     own_files,
     read,
 )
-from mutabot.errors import JournalError, UsageError
+from mutabot.errors import JournalError, UsageError, in_short
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader

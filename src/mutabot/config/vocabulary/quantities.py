@@ -15,7 +15,7 @@ from .rules import default_unit, default_values, faults, slice_of, split_axes, s
 from .schema import QuantityTable
 
 #: keys that a quantity has as its table has them
-_ALIKE = ("kind", "frame", "mode", "noise", "order", "relative", "repeatability", "missing", "tcp")
+_ALIKE = ("kind", "frame", "mode", "noise", "order", "relative", "missing", "tcp")
 
 
 def read_quantities(

@@ -236,13 +236,11 @@ def _of_reading(table: QuantityTable, is_written: bool) -> list[Rule]:
     ways = f'write "none", "nan" or an exception (module:Name), not {shown(missing)}'
     is_odd = missing is not None and missing not in ("none", "nan") and not is_target(missing)
     rules: list[Rule] = [("missing", missing is not None and is_written, never), ("missing", is_odd, ways)]
-    for key in ("noise", "repeatability"):
-        deviation = getattr(table, key)
-        is_reading = kind in MEASURED & READ
-        only = f"{a} has no {key}; only a measured reading has"
-        positive = f"must be more than 0 (a standard deviation), got {deviation}"
-        rules.append((key, deviation is not None and not is_reading, only))
-        rules.append((key, deviation is not None and deviation <= 0, positive))
+    is_reading, noise = kind in MEASURED & READ, table.noise
+    positive = f"must be more than 0 (a standard deviation), got {noise}"
+    only = f"{a} has no noise; only a measured reading has"
+    rules.append(("noise", noise is not None and not is_reading, only))
+    rules.append(("noise", noise is not None and noise <= 0, positive))
     return rules
 
 

@@ -102,7 +102,6 @@ class QuantityTable(Table):
     order: str | None = None
     relative: bool = False
     ladder: Any = None
-    repeatability: float | None = None
     missing: str | None = None
     tcp: float | None = None
 
@@ -190,7 +189,6 @@ class ProbeTable(Table):
     call: Target
     tolerance: Annotated[float, Field(ge=0)] = 1e-6
     result: dict[str, Any] | None = None
-    better: Literal["less", "more"] | None = None
 
 
 class VocabularyTable(Table):

@@ -9,7 +9,7 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.quantity import Value
 from mutabot.model.units import convert
-from mutabot.operators.examples import COMMANDS, PARAMETERS, UNITS, changed, reading, unchanged, writing
+from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.operator import Context, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, like, map_numbers, middle_of, within
 
@@ -40,10 +40,11 @@ class _OtherUnit(ValueOperator):
     Class attributes:
         units: the other unit, by a quantity's own.
         ways: which of the two mistakes.
+
+    Stands for: A number in another unit: {units}.
     """
 
     family = CATALOGUE
-    stands_for = f"A number in another unit: {UNITS}."
     units: ClassVar[Mapping[str, str]]
     ways: ClassVar[tuple[str, ...]] = (_TAKEN, _GIVEN)
 
@@ -78,7 +79,6 @@ class CentimetreForMetre(_OtherUnit):
     """
 
     name = "cm-for-m"
-    rank = 300
     units = _both_ways({"m": "cm", "m/s": "cm/s"})
     examples = (
         changed(_MOVE_TO, 0.5, 0.005, "taken-cm"),
@@ -96,7 +96,6 @@ class MillimetreForMetre(_OtherUnit):
     """
 
     name = "mm-for-m"
-    rank = 301
     units = _both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
     examples = (
         changed(_MOVE_BY, 0.5, 0.0005, "taken-mm"),
@@ -113,7 +112,6 @@ class InchForMillimetre(_OtherUnit):
     """
 
     name = "inch-for-mm"
-    rank = 302
     units = _both_ways({"mm": "inch"})
     examples = (
         changed(_MOVE_IN_MM, 10, 254, "taken-inch"),
@@ -132,7 +130,6 @@ class DegreeForRadian(_OtherUnit):
     """
 
     name = "deg-for-rad"
-    rank = 303
     units = _both_ways({"rad": "deg", "rad/s": "deg/s", "rad/s^2": "deg/s^2"})
     examples = (
         changed(_TURN, 3.0, 171.88733853924697, "taken-rad"),
@@ -150,7 +147,6 @@ class MillisecondForSecond(_OtherUnit):
     """
 
     name = "ms-for-s"
-    rank = 304
     units: ClassVar[Mapping[str, str]] = {"s": "ms"}
     ways = (_TAKEN,)
     of_read = False
@@ -173,10 +169,11 @@ class _Factor(ValueOperator):
 
     Class attributes:
         is_limited: whether it does.
+
+    Stands for: A wrong parameter: {parameters}.
     """
 
     family = CATALOGUE
-    stands_for = f"A wrong parameter: {PARAMETERS}."
     of_read = False
     variants: ClassVar[Mapping[str, float]] = {"x0.5": 0.5, "x2": 2.0}
     is_limited: ClassVar[bool] = True
@@ -193,7 +190,6 @@ class SpeedOverride(_Factor):
     """
 
     name = "speed-override"
-    rank = 350
     kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
     examples = (
         changed(_SPEED, 0.5, 0.25, "x0.5"),
@@ -209,7 +205,6 @@ class ForceOverride(_Factor):
     """
 
     name = "force-override"
-    rank = 351
     kinds = frozenset({Kind.FORCE, Kind.TORQUE})
     examples = (
         changed(_PRESS, 40.0, 20.0, "x0.5"),
@@ -225,7 +220,6 @@ class WeakGrip(_Factor):
     """
 
     name = "weak-grip"
-    rank = 352
     variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
     examples = (
         changed(_GRIP, 160, 48, "x0.3"),
@@ -247,7 +241,6 @@ class WrongPayload(_Factor):
     """
 
     name = "wrong-payload"
-    rank = 353
     kinds = frozenset({Kind.MASS})
     variants: ClassVar[Mapping[str, float]] = {"none": 0.0, "double": 2.0}
     is_limited = False
@@ -264,12 +257,12 @@ class PartialOpening(ValueOperator):
     closed.
 
     Where: openings with a range or clip; those of two values take no other.
+
+    Stands for: Commands that are not carried out in full, as by a gripper that jams: {commands}.
     """
 
     name = "partial-opening"
     family = CATALOGUE
-    rank = 354
-    stands_for = f"Commands that are not carried out in full, as by a gripper that jams: {COMMANDS}."
     of_read = False
     examples = (
         changed(_OPEN, 80.0, 40.0),
@@ -294,12 +287,12 @@ class SilentLimit(ValueOperator):
     """A commanded value is limited to the middle 80 % of its range, without notice.
 
     Where: written numbers with a range or clip.
+
+    Stands for: A wrong parameter: {parameters}.
     """
 
     name = "silent-limit"
     family = CATALOGUE
-    rank = 355
-    stands_for = f"A wrong parameter: {PARAMETERS}."
     of_read = False
     examples = (
         changed(_LIMITED, 100, 90),

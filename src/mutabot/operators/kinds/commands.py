@@ -11,18 +11,8 @@ from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Rep
 from mutabot.model.notation import Notation
 from mutabot.model.quantity import WHOLE, Value, are_same
 from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.examples import (
-    CLOSE,
-    COMMANDS,
-    GRIP,
-    MOVE_BY,
-    MOVE_TO,
-    TIMING,
-    changed,
-    unchanged,
-    writing,
-)
-from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged
+from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, whole, writing
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import ValueOperator, given, like, map_numbers
 
 _HOME = Operation("robot:Arm.home")
@@ -37,13 +27,13 @@ class Skip(CommandOperator):
     """A command is not carried out; the program goes on as if it had been.
 
     Where: commands whose answer to doing nothing is known.
+
+    Published: 7. do command x → do nothing
     """
 
     name = "skip"
     needs = frozenset({Need.IDLE})
     does_nothing = True
-    rank = 30
-    published = (Published(7, "do command x", "do nothing"),)
     fault = "do nothing"
     examples = (
         Example(Subject(GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
@@ -58,20 +48,13 @@ class Repeat(CommandOperator):
     """A command is carried out twice; the program sees the second answer.
 
     Where: any command.
+
+    Published: 8. do command x → do command x twice
     """
 
     name = "repeat"
-    rank = 40
-    published = (Published(8, "do command x", "do command x twice"),)
     fault = "do it twice"
-    examples = (
-        Example(
-            Subject(MOVE_BY),
-            {"dx": 0.1},
-            performed=({"dx": 0.1}, {"dx": 0.1}),
-            note="do command x: do command x twice",
-        ),
-    )
+    examples = (whole(MOVE_BY, 0.1, 0.1, 0.1, note="do command x: do command x twice"),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         await proceed(call)
@@ -82,11 +65,11 @@ class Opposite(CommandOperator):
     """A two-state command does the opposite: open for close, off for on, release for grasp.
 
     Where: written openings and outputs with two ends, and commands with an opposite.
+
+    Published: 11. do command x → do the opposite, such as release for grasp
     """
 
     name = "opposite"
-    rank = 50
-    published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
     examples = (
         changed(GRIP, 1, 0, note="grasp: release"),
         changed(_LAMP, False, True),
@@ -152,9 +135,13 @@ _WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 60.
 
 
 class _Timing(CommandOperator):
+    """Does something at another time, or in another order.
+
+    Stands for: Something too early, too late or in the wrong order: {timing}.
+    """
+
     family = CATALOGUE
     needs = frozenset({Need.PROGRAM})
-    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
 
 
 class SwapNext(_Timing):
@@ -165,7 +152,6 @@ class SwapNext(_Timing):
     """
 
     name = "swap-next"
-    rank = 330
     needs = frozenset({Need.IDLE, Need.PROGRAM})
     fault = "only after the next command"
     examples = (Example(Subject(MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),)
@@ -183,17 +169,11 @@ class PreviousTarget(_Timing):
     """
 
     name = "previous-target"
-    rank = 331
     fault = "the motion of the call before it again"
     examples = (
-        Example(
-            Subject(MOVE_TO),
-            {"x": 0.4, "y": 0.1},
-            previous={"x": 0.2, "y": 0.0},
-            performed=({"x": 0.2, "y": 0.0},),
-        ),
-        Example(Subject(MOVE_TO), {"x": 0.4}, away="there is none before it"),
-        Example(Subject(MOVE_TO), {"x": 0.4}, previous={"x": 0.4}, away="it went there before"),
+        whole(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.2, "y": 0.0}, previous={"x": 0.2, "y": 0.0}),
+        whole(MOVE_TO, 0.4, away="there is none before it"),
+        whole(MOVE_TO, 0.4, previous={"x": 0.4}, away="it went there before"),
     )
 
     def fits(self, whole: Subject) -> bool:
@@ -214,12 +194,12 @@ class HalfWait(ValueOperator):
     """A wait is half as long: the next command comes before what was waited for is over.
 
     Where: written quantities of kind duration.
+
+    Stands for: Something too early, too late or in the wrong order: {timing}.
     """
 
     name = "half-wait"
     family = CATALOGUE
-    rank = 332
-    stands_for = _Timing.stands_for
     kinds = frozenset({Kind.DURATION})
     of_read = False
     examples = (
@@ -235,7 +215,6 @@ class NoWait(HalfWait):
     """A wait is left out: the next command comes at once."""
 
     name = "no-wait"
-    rank = 333
     examples = (
         changed(_WAIT, 0.8, 0.0),
         unchanged(_WAIT, 0.0, "there is nothing to shorten"),
@@ -245,32 +224,36 @@ class NoWait(HalfWait):
         return map_numbers(value, lambda number: like(number, 0.0))
 
 
-class LateGrip(_Timing):
+class _Grip(_Timing):
+    """Does something with a command to a gripper."""
+
+    where = _GRIPPING
+
+    def fits(self, whole: Subject) -> bool:
+        has_opening = any(one.kind is Kind.OPENING for one in whole.written)
+        return whole.is_command and (has_opening or (whole.opposite is not None and not whole.written))
+
+
+class LateGrip(_Grip):
     """A gripper command is carried out 0.5 s late, and the program waits for it."""
 
     name = "late-grip"
-    rank = 336
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     where = f"{_GRIPPING}; the vocabulary says how time passes: wait"
     fault = f"{_LATE:g} s late"
     examples = (Example(Subject(GRIP), {"position": 1}, waited=_LATE, performed=({"position": 1},)),)
-
-    def fits(self, whole: Subject) -> bool:
-        return _is_gripping(whole)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         await call.wait(_LATE)
         return await proceed(call)
 
 
-class EarlyRelease(_Timing):
+class EarlyRelease(_Grip):
     """A gripper command is taken back right after the program's next command: what was gripped is let go too
     early. If no command follows, nothing happens.
     """
 
     name = "early-release"
-    rank = 337
-    where = _GRIPPING
     fault = "and back after the next command"
     examples = (
         Example(Subject(GRIP), {"position": 1}, performed=({"position": 1},), afterwards=({"position": 0},)),
@@ -278,20 +261,11 @@ class EarlyRelease(_Timing):
         Example(Subject(GRIP), {"position": 0.5}, away="half open has no opposite"),
     )
 
-    def fits(self, whole: Subject) -> bool:
-        return _is_gripping(whole)
-
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         back = _undone(context.subject, call)
         reply = await proceed(call)
         call.defer(back)
         return reply
-
-
-def _is_gripping(whole: Subject) -> bool:
-    """Whether it is a command to a gripper."""
-    has_opening = any(one.kind is Kind.OPENING for one in whole.written)
-    return whole.is_command and (has_opening or (whole.opposite is not None and not whole.written))
 
 
 def _undone(subject: Subject, call: Call) -> Call:
@@ -304,15 +278,15 @@ def _undone(subject: Subject, call: Call) -> Call:
 
 
 class _Chance(CommandOperator):
-    """Acts on a command by chance; the variant says how likely that is."""
+    """Acts on a command by chance; the variant says how likely that is.
+
+    Stands for: A command that is lost, or comes twice: {commands}.
+    """
 
     family = CATALOGUE
-    stands_for = f"A command that is lost, or comes twice: {COMMANDS}."
+    by_chance = True
     needs = frozenset({Need.MEMORY, Need.PROGRAM})
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True
 
 
 class LostCommand(_Chance):
@@ -322,17 +296,11 @@ class LostCommand(_Chance):
     """
 
     name = "lost-command"
-    rank = 334
     needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
     fault = "do nothing, with a probability of {variant}"
     examples = (
-        Example(Subject(GRIP, variant="30%"), {"position": 1}, performed=()),
-        Example(
-            Subject(GRIP, variant="30%"),
-            {"position": 1},
-            earlier=({"position": 0},) * 3,
-            away="most commands are carried out",
-        ),
+        whole(GRIP, 1, variant="30%"),
+        whole(GRIP, 1, variant="30%", earlier=(0, 0, 0), away="most commands are carried out"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -347,16 +315,10 @@ class DoubleCommand(_Chance):
     """
 
     name = "double-command"
-    rank = 335
     fault = "do it twice, with a probability of {variant}"
     examples = (
-        Example(Subject(MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
-        Example(
-            Subject(MOVE_BY, variant="30%"),
-            {"dx": 0.1},
-            earlier=({"dx": 0.2},) * 3,
-            away="most commands are carried out once",
-        ),
+        whole(MOVE_BY, 0.1, 0.1, 0.1, variant="30%"),
+        whole(MOVE_BY, 0.1, variant="30%", earlier=(0.2,) * 3, away="most commands are carried out once"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -371,21 +333,19 @@ class UnreportedRefusal(CommandOperator):
 
     Where: commands whose answer to doing nothing is known, where the tests make the robot raise one of its
     refusals.
+
+    Stands for: Errors that are swallowed on their way: {commands}.
     """
 
     name = "unreported-refusal"
+    by_chance = True  # what the robot refuses only the run can tell
     family = CATALOGUE
-    rank = 338
     needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
-    stands_for = f"Errors that are swallowed on their way: {COMMANDS}."
     fault = "a refusal is not reported"
     examples = (
         Example(Subject(_REFUSED), {"dx": 9.0}, refused=True, performed=({"dx": 9.0},), received={}),
         Example(Subject(_REFUSED), {"dx": 0.1}, away="the robot does not refuse it"),
     )
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True  # what the robot refuses only the run can tell
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         try:

@@ -13,7 +13,7 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.quantity import Value, is_same
 from mutabot.model.units import Quaternion, convert, from_euler, inverse, product
-from mutabot.operators.examples import FRAMES, MOVE_TO, SIGNS, changed, reading, unchanged, writing
+from mutabot.operators.examples import MOVE_TO, changed, reading, unchanged, writing
 from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_PASSED,
@@ -53,15 +53,19 @@ _TIP = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, ran
 _MOVE_TIP = Operation("robot:Arm.move_to", (_TIP,))
 
 
+def _joints(quantities: tuple[Quantity, ...], *angles: float) -> dict[str, float]:
+    return {quantity.name: angle for quantity, angle in zip(quantities, angles, strict=True)}
+
+
 class AxisSwap(Exchange):
     """Two components of a motion are exchanged: what is meant along x goes along y.
 
     Where: commands that write two of the axes x, y, z of one translation or rotation.
+
+    Stands for: A wrong axis: {frames}.
     """
 
     name = "axis-swap"
-    rank = 310
-    stands_for = f"A wrong axis: {FRAMES}."
     examples = (
         changed(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
         unchanged(MOVE_TO, {"x": 0.2, "y": 0.2}, "both are the same", "y"),
@@ -79,27 +83,15 @@ class JointOrder(Exchange):
     """The angles of the first and the third joint are exchanged, as where joints are sorted by name.
 
     Where: written and read angles of the joints j1 and j3.
+
+    Stands for: Joints in another order, as in joint states that are sorted by name: {frames}.
     """
 
     name = "joint-order"
-    rank = 311
-    stands_for = f"Joints in another order, as in joint states that are sorted by name: {FRAMES}."
     examples = (
-        changed(
-            _SET_JOINTS,
-            {"joints[0]": 10, "joints[1]": 20, "joints[2]": 30},
-            {"joints[0]": 30, "joints[1]": 20, "joints[2]": 10},
-            "joints[2]",
-        ),
-        changed(
-            _READ_JOINTS,
-            {"[0]": 10.0, "[1]": 20.0, "[2]": 30.0},
-            {"[0]": 30.0, "[1]": 20.0, "[2]": 10.0},
-            "[2]",
-        ),
-        unchanged(
-            _SET_JOINTS, {"joints[0]": 0, "joints[1]": 20, "joints[2]": 0}, "both are the same", "joints[2]"
-        ),
+        changed(_SET_JOINTS, _joints(_SET, 10, 20, 30), _joints(_SET, 30, 20, 10), "joints[2]"),
+        changed(_READ_JOINTS, _joints(_READ, 10.0, 20.0, 30.0), _joints(_READ, 30.0, 20.0, 10.0), "[2]"),
+        unchanged(_SET_JOINTS, _joints(_SET, 0, 20, 0), "both are the same", "joints[2]"),
     )
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
@@ -115,12 +107,12 @@ class LeftHanded(ValuesOperator):
     """A pose is taken as given in a left-handed frame: y and the turns about x and z are negated.
 
     Where: written and read poses with y and an orientation beside it; for y alone it is a wrong sign.
+
+    Stands for: Frames of the other handedness, as of game engines: {frames}.
     """
 
     name = "left-handed"
     family = CATALOGUE
-    rank = 312
-    stands_for = f"Frames of the other handedness, as of game engines: {FRAMES}."
     examples = (
         changed(_POSE, {"y": 0.2, "yaw": 30.0}, {"y": -0.2, "yaw": -30.0}),
         changed(
@@ -178,13 +170,13 @@ class BaseForTool(ValuesOperator):
 
     Where: relative translations along x, y and z in a frame named base or tool, with a current that reads the
     three angles of the tool, about axes that stay, in the base's frame.
+
+    Stands for: A wrong or missing transform: {frames}.
     """
 
     name = "base-for-tool"
     family = CATALOGUE
     needs = frozenset({Need.PLACE})
-    rank = 313
-    stands_for = f"A wrong or missing transform: {FRAMES}."
     examples = (
         changed(
             _MOVE_BY,
@@ -259,10 +251,11 @@ class _WrongTcp(ValueOperator):
 
     Class attributes:
         sign: which way, as a share of the offset.
+
+    Stands for: A tool that is not set up, or set up in two places: {frames}.
     """
 
     family = CATALOGUE
-    stands_for = f"A tool that is not set up, or set up in two places: {FRAMES}."
     of_read = False
     sign: ClassVar[float]
 
@@ -278,7 +271,6 @@ class TcpMissing(_WrongTcp):
     """The offset of the tool centre point is missing: the flange goes where the tool's tip should."""
 
     name = "tcp-missing"
-    rank = 314
     sign = 1.0
     examples = (
         changed(_MOVE_TIP, 0.3, 0.18, note="12 cm of gripper that looks down"),
@@ -290,7 +282,6 @@ class TcpDoubled(_WrongTcp):
     """The offset of the tool centre point is counted twice: the tip stays back by as much."""
 
     name = "tcp-doubled"
-    rank = 315
     sign = -1.0
     examples = (
         changed(_MOVE_TIP, 0.3, 0.42, note="12 cm of gripper that looks down"),
@@ -302,12 +293,12 @@ class JointTurn(ValueOperator):
     """The target of a joint is off by a full turn: the tool ends alike, the way there does not.
 
     Where: absolute angles of joints: rotation with an axis j1 … and mode to.
+
+    Stands for: Angles that wrap around at ±180° or 360°: {frames}.
     """
 
     name = "joint-turn"
     family = CATALOGUE
-    rank = 316
-    stands_for = f"Angles that wrap around at ±180° or 360°: {FRAMES}."
     of_read = False
     variants: ClassVar[Mapping[str, float]] = {"+": 1.0, "-": -1.0}
     examples = (
@@ -355,11 +346,11 @@ class EulerOrder(_OtherNumbers):
     along.
 
     Where: written and read quantities of kind euler.
+
+    Stands for: Two conventions of Euler angles: {frames}.
     """
 
     name = "euler-order"
-    rank = 320
-    stands_for = f"Two conventions of Euler angles: {FRAMES}."
     kinds = frozenset({Kind.EULER})
     examples = (
         changed(_RPY, [45.0, 0.0, 90.0], [0.0, -45.0, 90.0]),
@@ -376,11 +367,11 @@ class QuaternionOrder(_OtherNumbers):
     """A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back.
 
     Where: written and read quantities of kind quaternion.
+
+    Stands for: Libraries that order quaternions in two ways: {frames}.
     """
 
     name = "quaternion-order"
-    rank = 321
-    stands_for = f"Libraries that order quaternions in two ways: {FRAMES}."
     kinds = frozenset({Kind.QUATERNION})
     examples = (
         changed(_ORIENT, [0.8, 0.6, 0.0, 0.0], [0.0, 0.8, 0.6, 0.0], note="0.8 is taken for x"),
@@ -397,11 +388,11 @@ class QuaternionSign(_OtherNumbers):
     """One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's.
 
     Where: written and read quantities of kind quaternion.
+
+    Stands for: A wrong sign: {signs}.
     """
 
     name = "quaternion-sign"
-    rank = 322
-    stands_for = f"A wrong sign: {SIGNS}."
     kinds = frozenset({Kind.QUATERNION})
     variants: ClassVar[dict[str, str]] = {part: part for part in "xyz"}
     examples = (

@@ -17,19 +17,9 @@ from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, 
 from mutabot.model.quantity import Value
 from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
 from mutabot.operators.command import CommandOperator
-from mutabot.operators.examples import (
-    LOCATE,
-    MOVE_TO,
-    PARAMETERS,
-    SENSORS,
-    TIMING,
-    changed,
-    reading,
-    unchanged,
-    writing,
-)
+from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, whole, writing
 from mutabot.operators.magnitudes import Magnitudes, ladder_in, own_ladder, per_second
-from mutabot.operators.operator import Context, Draws, Example, Need, Subject, quantity_of
+from mutabot.operators.operator import Context, Need, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, is_number, label
 
 #: components of a slice without an end that are tried: those of an arm with seven joints
@@ -144,6 +134,7 @@ _MOVE = writing("robot:Arm.move_by", "dy", Kind.TRANSLATION, axis="y", unit="m",
 _GO = replace(MOVE_TO, arguments=MOVE_TO.arguments[:1])
 _LIFT = Operation("robot:Arm.lift_to", (_Z,))
 _ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="deg")
+_MEANT = Subject(LOCATE)
 _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
 
 
@@ -151,11 +142,11 @@ class Offset(NumberOperator):
     """A commanded or read value is off by a fixed amount, at every call, in one direction.
 
     Where: every number that is commanded or read, bar waits.
+
+    Stands for: A tool, a fixture or a camera that stands off, or a wrong constant: {parameters}.
     """
 
     name = "offset"
-    stands_for = f"A tool, a fixture or a camera that stands off, or a wrong constant: {PARAMETERS}."
-    rank = 200
     examples = (
         changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm"), note="the box is put down 20 mm too far"),
         changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm"), note="the camera was bumped into"),
@@ -180,11 +171,11 @@ class Scale(NumberOperator):
     """A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration.
 
     Where: every number whose zero means nothing: amounts, positions, distances, no target angles.
+
+    Stands for: A wrong gain or calibration factor: {parameters}.
     """
 
     name = "scale"
-    stands_for = f"A wrong gain or calibration factor: {PARAMETERS}."
-    rank = 210
     examples = (
         changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
         changed(
@@ -215,11 +206,11 @@ class SensorNoise(NumberOperator):
     every σ: a larger one is the same noise, only larger.
 
     Where: every number that is read.
+
+    Stands for: A worse sensor than the program was written for: {sensors}.
     """
 
     name = "sensor-noise"
-    stands_for = f"A worse sensor than the program was written for: {SENSORS}."
-    rank = 220
     draws = True
     directions = ("",)
     of_written = False
@@ -229,7 +220,7 @@ class SensorNoise(NumberOperator):
             LOCATE,
             0.55,
             # the draw for the first call of the generator that the examples are run with
-            0.55 + 0.01 * Draws(Random(1)).of(1).gauss(0.0, 1.0),
+            0.55 + 0.01 * Context(_MEANT, Random(1), number=1).draw().gauss(0.0, 1.0),
             size=("", 10.0, "mm"),
             note="σ = 10 mm",
         ),
@@ -247,11 +238,11 @@ class Drift(NumberOperator):
     """A reading drifts: it is off by δ for every second of simulated time since the test began.
 
     Where: every number that is read, with a clock in the vocabulary.
+
+    Stands for: A sensor that warms up, or odometry that is summed: {sensors}.
     """
 
     name = "drift"
-    stands_for = f"A sensor that warms up, or odometry that is summed: {SENSORS}."
-    rank = 230
     needs = frozenset({Need.CLOCK})
     of_written = False
     examples = (
@@ -281,11 +272,11 @@ class Quantise(NumberOperator):
     converter.
 
     Where: every number that is commanded or read, bar orientations as a whole.
+
+    Stands for: A coarse encoder or converter: {sensors}.
     """
 
     name = "quantise"
-    stands_for = f"A coarse encoder or converter: {SENSORS}."
-    rank = 240
     directions = ("",)
     fault = "in steps of {}"
     examples = (
@@ -306,11 +297,11 @@ class Deadband(NumberOperator):
     move shorter than δ is none. As by a worn gear, or a filter against chatter.
 
     Where: every number that is commanded or read, bar waits and orientations as a whole.
+
+    Stands for: Backlash of a worn gear, or a filter against chatter: {sensors}.
     """
 
     name = "deadband"
-    stands_for = f"Backlash of a worn gear, or a filter against chatter: {SENSORS}."
-    rank = 250
     needs = frozenset({Need.MEMORY, Need.COPIES})
     directions = ("",)
     fault = "with a dead band of {}"
@@ -338,11 +329,11 @@ class Early(NumberOperator):
     """A wait is so much shorter, so that what comes next comes too early.
 
     Where: waits: arguments of kind `duration`.
+
+    Stands for: A wait that was measured on a faster machine: {timing}.
     """
 
     name = "early"
-    stands_for = f"A wait that was measured on a faster machine: {TIMING}."
-    rank = 270
     directions = ("-",)
     of_read = False
     examples = (
@@ -363,23 +354,17 @@ class Lag(CommandOperator):
     much before the program gets it. Needs a `wait` in the vocabulary, or a middleware.
 
     Where: every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware.
+
+    Stands for: A busy network or controller: {timing}.
     """
 
     name = "lag"
     family = GRADED
     has_sizes = True
-    stands_for = f"A busy network or controller: {TIMING}."
-    rank = 260
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     examples = (
-        Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({},), waited=0.2),
-        Example(
-            Subject(_FEEL, variant="50ms", magnitude=50.0, unit="ms"),
-            replied={"result": 0.3},
-            performed=({},),
-            waited=0.05,
-            note="what was seen then is told now",
-        ),
+        whole(_HOME, {}, {}, size=(200.0, "ms"), waited=0.2),
+        whole(_FEEL, 0.3, size=(50.0, "ms"), waited=0.05, note="what was seen then is told now"),
     )
 
     def fits(self, whole: Subject) -> bool:

@@ -10,6 +10,7 @@ from mutabot.model import Call, Mishap, Proceed, Reply
 from mutabot.model.operation import COMING, WRITTEN, Form
 from mutabot.model.quantity import Value
 from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
+from mutabot.operators.examples import whole
 from mutabot.operators.magnitudes import Magnitudes
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import CallOrReply
@@ -45,7 +46,6 @@ class Drop(MessageOperator):
     """
 
     name = "drop"
-    rank = 110
     needs = _EARLIER
     forms = _SENT | COMING | {Form.RESULT}
     variants: ClassVar[Mapping[str, str]] = {
@@ -55,17 +55,11 @@ class Drop(MessageOperator):
     }
     fault = "{which} {what} is lost"
     examples = (
-        Example(Subject(PUBLISH), {"x": 0.4}, performed=(), note="nobody hears of it"),
-        Example(
-            Subject(RECEIVE),
-            replied={"gap": 0.02},
-            performed=({},),
-            lost=True,
-            note="the callback is not called; who waits, waits for the next one",
-        ),
-        Example(Subject(CALL), lost=True, note="the service does nothing and never answers"),
-        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.4}, earlier=({"x": 0.2}, {"x": 0.3}), performed=()),
-        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.3}, earlier=({"x": 0.2},), away="only the second"),
+        whole(PUBLISH, 0.4, note="nobody hears of it"),
+        whole(RECEIVE, 0.02, lost=True, note="the callback is not called; who waits, waits for the next one"),
+        whole(CALL, {}, lost=True, note="the service does nothing and never answers"),
+        whole(PUBLISH, 0.4, variant=_THIRD, earlier=(0.2, 0.3)),
+        whole(PUBLISH, 0.3, variant=_THIRD, earlier=(0.2,), away="only the second"),
     )
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
@@ -95,19 +89,12 @@ class Duplicate(MessageOperator):
     """A message, request or goal arrives twice, a callback is called twice."""
 
     name = "duplicate"
-    rank = 120
     forms = _SENT | COMING
     fault = "each {what} arrives twice"
     examples = (
-        Example(Subject(PUBLISH), {"x": 0.4}, performed=({"x": 0.4}, {"x": 0.4})),
-        Example(
-            Subject(RECEIVE),
-            replied={"gap": 0.02},
-            performed=({},),
-            received={"gap": 0.02},
-            then=({"gap": 0.02},),
-        ),
-        Example(Subject(CALL), performed=({}, {}), note="the program sees the second answer"),
+        whole(PUBLISH, 0.4, 0.4, 0.4),
+        whole(RECEIVE, 0.02, 0.02, then=(0.02,)),
+        whole(CALL, {}, {}, {}, note="the program sees the second answer"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -121,40 +108,25 @@ class Stale(MessageOperator):
     """
 
     name = "stale"
-    rank = 130
+    calls = 2
     needs = _EARLIER
     forms = _SENT | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
     variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
     fault = "the {variant} {what} again instead of the new one"
     examples = (
-        Example(
-            Subject(RECEIVE, variant=_FIRST),
-            replied={"gap": 0.02},
-            earlier=({"gap": 0.5}, {"gap": 0.3}),
-            performed=({},),
-            received={"gap": 0.5},
-            note="a sensor that is stuck",
-        ),
-        Example(
-            Subject(PUBLISH, variant=_PREVIOUS),
-            {"x": 0.4},
-            earlier=({"x": 0.2}, {"x": 0.3}),
-            performed=({"x": 0.3},),
-            note="always one behind",
-        ),
-        Example(
-            Subject(CALL_TO, variant=_FIRST),
-            {"x": 0.4},
-            earlier=({"x": 0.2}, {"x": 0.3}),
-            performed=({"x": 0.2},),
+        whole(RECEIVE, 0.02, 0.5, variant=_FIRST, earlier=(0.5, 0.3), note="a sensor that is stuck"),
+        whole(PUBLISH, 0.4, 0.3, variant=_PREVIOUS, earlier=(0.2, 0.3), note="always one behind"),
+        whole(
+            CALL_TO,
+            0.4,
+            0.2,
+            variant=_FIRST,
+            earlier=(0.2, 0.3),
             note="the service is asked for the same over and over",
         ),
-        Example(Subject(PUBLISH, variant=_FIRST), {"x": 0.4}, away=_NONE_BEFORE),
-        Example(Subject(RECEIVE, variant=_PREVIOUS), replied={"gap": 0.02}, earlier=(), away=_NONE_BEFORE),
+        whole(PUBLISH, 0.4, variant=_FIRST, away=_NONE_BEFORE),
+        whole(RECEIVE, 0.02, variant=_PREVIOUS, away=_NONE_BEFORE),
     )
-
-    def least_calls(self, subject: Subject) -> int:
-        return 2
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         if form_of(call.operation) in _SENT:
@@ -175,19 +147,16 @@ class Delay(MessageOperator):
     """
 
     name = "delay"
-    rank = 140
     forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
     fault = "each {what} comes {variant} s late"
     examples = (
-        Example(
-            Subject(PUBLISH, variant="0.1", magnitude=0.1), {"x": 0.4}, performed=({"x": 0.4, "late": 0.1},)
-        ),
-        Example(Subject(CALL, variant="1", magnitude=1.0), performed=({"late": 1.0},)),
-        Example(
-            Subject(RECEIVE, variant="1", magnitude=1.0),
-            replied={"gap": 0.02},
-            performed=({},),
-            received={"gap": 0.02},
+        whole(PUBLISH, 0.4, {"x": 0.4, "late": 0.1}, size=(0.1, None)),
+        whole(CALL, {}, {"late": 1.0}, size=(1.0, None)),
+        whole(
+            RECEIVE,
+            0.02,
+            0.02,
+            size=(1.0, None),
             late=1.0,
             note="the callback is called later; messages that come meanwhile overtake it",
         ),
@@ -210,26 +179,16 @@ class Reorder(MessageOperator):
     """Messages change places, two by two: the second comes before the first. A last one alone is lost."""
 
     name = "reorder"
-    rank = 150
+    calls = 2
     needs = _EARLIER
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
     fault = "every other {what} comes after the next one"
     examples = (
-        Example(Subject(PUBLISH), {"x": 0.4}, earlier=({"x": 0.2},), performed=({"x": 0.4}, {"x": 0.2})),
-        Example(Subject(PUBLISH), {"x": 0.2}, performed=(), note="is held back for the next one"),
-        Example(
-            Subject(RECEIVE),
-            replied={"gap": 0.02},
-            earlier=({"gap": 0.5},),
-            performed=({},),
-            received={"gap": 0.02},
-            then=({"gap": 0.5},),
-        ),
-        Example(Subject(RECEIVE), replied={"gap": 0.5}, performed=({},), lost=True),
+        whole(PUBLISH, 0.4, 0.4, 0.2, earlier=(0.2,)),
+        whole(PUBLISH, 0.2, note="is held back for the next one"),
+        whole(RECEIVE, 0.02, 0.02, earlier=(0.5,), then=(0.5,)),
+        whole(RECEIVE, 0.5, lost=True),
     )
-
-    def least_calls(self, subject: Subject) -> int:
-        return 2
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         held = context.memory
@@ -278,7 +237,6 @@ class KillNode(_Mishap):
     """
 
     name = "kill-node"
-    rank = 410
     is_raced = True
     mishap = Mishap.KILLED
     forms = frozenset({*WRITTEN, *COMING})
@@ -295,7 +253,6 @@ class RestartNode(_Mishap):
     """
 
     name = "restart-node"
-    rank = 420
     is_raced = True
     mishap = Mishap.RESTARTED
     forms = frozenset({*WRITTEN, *COMING})
@@ -310,7 +267,6 @@ class CancelGoal(_Mishap):
     """Somebody cancels the action as soon as its goal is sent."""
 
     name = "cancel-goal"
-    rank = 430
     mishap = Mishap.CANCELLED
     forms = frozenset({Form.GOAL})
     fault = "each {what} is cancelled as soon as it is sent"
@@ -321,7 +277,6 @@ class JumpClock(_Mishap):
     """The node's clock jumps 10 s ahead, or 10 s back, before a tick of its timer or a turn of its rate."""
 
     name = "jump-clock"
-    rank = 450
     needs = frozenset({Need.MEMORY, Need.COPIES, Need.PROGRAM})
     mishap = Mishap.JUMPED
     forms = frozenset({Form.TICK, Form.SLEEP})
@@ -344,7 +299,6 @@ class LoseAnswer(MessageOperator):
     """
 
     name = "lose-answer"
-    rank = 440
     forms = frozenset({Form.CALL, Form.GOAL})
     fault = "the answer to each {what} is lost"
     examples = (Example(Subject(CALL), performed=({},), lost=True),)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.operator import Context, Need, Published, Subject, Unchanged, quantity_of
+from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_PASSED,
     NOT_TOLD,
@@ -56,16 +56,13 @@ class Reverse(ValueOperator):
     """A translation, rotation or speed goes the other way: one component is negated.
 
     Where: written translations, rotations, orientations as a whole, and speeds and ratios with a direction.
+
+    Published: 1. rotate left by θ → rotate right by θ; 2. rotate right by θ → rotate left by θ; 3.
+    translate forward by δ → translate backwards by δ; 4. translate backwards by δ → translate forward by
+    δ
     """
 
     name = "reverse"
-    rank = 10
-    published = (
-        Published(1, "rotate left by θ", "rotate right by θ"),
-        Published(2, "rotate right by θ", "rotate left by θ"),
-        Published(3, "translate forward by δ", "translate backwards by δ"),
-        Published(4, "translate backwards by δ", "translate forward by δ"),
-    )
     of_read = False
     examples = (
         changed(
@@ -141,15 +138,13 @@ class ByTo(ValuesOperator):
     """A relative amount is taken for an absolute target, and the other way round.
 
     Where: written translations and rotations whose operation has a current that tells them.
+
+    Published: 5. translate forward by δ → translate forward *to* δ; 6. translate backwards by δ →
+    translate backwards *to* δ
     """
 
     name = "by-to"
     needs = frozenset({Need.PLACE})
-    rank = 20
-    published = (
-        Published(5, "translate forward by δ", "translate forward *to* δ"),
-        Published(6, "translate backwards by δ", "translate backwards *to* δ"),
-    )
     examples = (
         changed(_BY, 0.5, 0.25, current={"dx": 0.25}, note="translate forward by δ: translate forward to δ"),
         changed(_BY, -0.5, -0.75, current={"dx": 0.25}),

@@ -14,8 +14,8 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import MEASURED, PLAIN, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
-from mutabot.operators.examples import LOCATE, SENSORS, TIMING, X, changed, reading, unchanged
-from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of
+from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged, whole
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_RETURNED,
     Exchange,
@@ -32,7 +32,6 @@ from mutabot.operators.value import (
     within,
 )
 
-_STANDS_FOR = f"A sensor that drops out or is misread: {SENSORS}."
 _NONE, _NAN = "none", "nan"
 _MEASURE = reading("laser:distance", Kind.DISTANCE, unit="m")
 _NEAR = reading("laser:near", Kind.DISTANCE, unit="m", range=(0.0, 2.0))
@@ -57,12 +56,12 @@ class Dropout(CommandOperator):
     it.
 
     Where: read quantities whose vocabulary says what a reading gives that is not there: missing.
+
+    Stands for: A sensor that drops out or is misread: {sensors}.
     """
 
     name = "dropout"
     family = CATALOGUE
-    rank = 340
-    stands_for = _STANDS_FOR
     examples = (
         changed(_OR_NAN, 0.2, math.nan),
         changed(_OR_NONE, "red", None),
@@ -106,10 +105,12 @@ class Dropout(CommandOperator):
 
 
 class _Reading(ValueOperator):
-    """Changes a reading by those before it at its place, or by chance."""
+    """Changes a reading by those before it at its place, or by chance.
+
+    Stands for: A sensor that drops out or is misread: {sensors}.
+    """
 
     family = CATALOGUE
-    stands_for = _STANDS_FOR
     needs = frozenset({Need.MEMORY})
     of_written = False
 
@@ -121,7 +122,6 @@ class OldReading(_Reading):
     """
 
     name = "old-reading"
-    rank = 341
     kinds = frozenset(Kind)
     variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
     examples = (
@@ -151,15 +151,12 @@ class StuckReading(_Reading):
     """
 
     name = "stuck-reading"
-    rank = 342
+    calls = 2
     kinds = frozenset(Kind)
     examples = (
         changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
         unchanged(_MEASURE, 0.2, "it is the first reading"),
     )
-
-    def least_calls(self, subject: Subject) -> int:
-        return 2
 
     def change(self, value: Value, context: Context) -> Value | None:
         if not context.memory:
@@ -184,7 +181,7 @@ class Spike(_Reading):
     """
 
     name = "spike"
-    rank = 343
+    by_chance = True
     kinds = MEASURED - WHOLE
     variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
     examples = (
@@ -192,9 +189,6 @@ class Spike(_Reading):
         changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,), note="the far end of its range"),
         unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
     )
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True
 
     def change(self, value: Value, context: Context) -> Value | None:
         context.by_chance()
@@ -217,7 +211,6 @@ class SaturatedReading(_Reading):
     """
 
     name = "saturated-reading"
-    rank = 344
     kinds = MEASURED - WHOLE
     examples = (
         changed(_NEAR, 1.9, 1.8),
@@ -243,11 +236,11 @@ class SwappedChannels(Exchange):
     """Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads.
 
     Where: calls that read two quantities of one kind and unit.
+
+    Stands for: A sensor that drops out or is misread: {sensors}.
     """
 
     name = "swapped-channels"
-    rank = 345
-    stands_for = _STANDS_FOR
     examples = (
         changed(_LOCATE, {".x": 0.4, ".y": 0.1}, {".x": 0.1, ".y": 0.4}, "y"),
         unchanged(_LOCATE, 0.4, "it reads no y this time", "y"),
@@ -266,12 +259,12 @@ class WrongObject(ValueOperator):
     """A reading is that of another object, camera or channel than the one that is asked for.
 
     Where: outputs with values that say what a call reads: written beside a result.
+
+    Stands for: A sensor that drops out or is misread: {sensors}.
     """
 
     name = "wrong-object"
     family = CATALOGUE
-    rank = 346
-    stands_for = _STANDS_FOR
     of_read = False
     examples = (
         changed(_FIND, "washer", "nut", replied={"result": 0.3}),
@@ -292,15 +285,12 @@ class ConfusedLabel(_Reading):
     """
 
     name = "confused-label"
-    rank = 347
+    by_chance = True
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
     examples = (
         changed(_SEE, "red", "blue", "30%"),
         unchanged(_SEE, "red", "most are read rightly", "30%", earlier=("red",) * 3),
     )
-
-    def is_chance(self, subject: Subject) -> bool:
-        return True
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1
@@ -317,23 +307,15 @@ class LateReading(CommandOperator):
     """The program gets a reading 0.5 s after it was taken; the world goes on meanwhile.
 
     Where: calls that read and command nothing; the vocabulary says how time passes: wait.
+
+    Stands for: Something too early, too late or in the wrong order: {timing}.
     """
 
     name = "late-reading"
     family = CATALOGUE
-    rank = 348
-    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     needs = frozenset({Need.WAIT})
     fault = f"read {_LATE:g} s before the program gets it"
-    examples = (
-        Example(
-            Subject(_MEASURE),
-            replied={"result": 0.2},
-            performed=({},),
-            received={"result": 0.2},
-            waited=_LATE,
-        ),
-    )
+    examples = (whole(_MEASURE, 0.2, 0.2, waited=_LATE),)
 
     def fits(self, whole: Subject) -> bool:
         return bool(whole.read) and not whole.is_command and not comes_by_itself(whole.operation)
@@ -368,12 +350,12 @@ class Negate(ValueOperator):
     """A position, distance or angle is read with the wrong sign.
 
     Where: read positions, distances, angles and orientations.
+
+    Published: 9. distance value is x → distance value is −x
     """
 
     name = "negate"
-    rank = 60
     kinds = MEASURED - PLAIN
-    published = (Published(9, "distance value is x", "distance value is −x"),)
     of_written = False
     examples = (
         changed(LOCATE, 0.55, -0.55, note="distance value is x: distance value is −x"),
@@ -400,16 +382,14 @@ class Noise(ValueOperator):
     A reading that is an integer stays one, so noise below half a unit leaves it as it is.
 
     Where: read positions, distances, angles and orientations.
+
+    Published: 10. distance value is x → distance value is x + noise; 13. a position or angle is read →
+    the reading has Gaussian noise
     """
 
     name = "noise"
-    rank = 70
     kinds = frozenset(DEFAULT_DEVIATION)
     draws = True
-    published = (
-        Published(10, "distance value is x", "distance value is x + noise"),
-        Published(13, "a position or angle is read", "the reading has Gaussian noise"),
-    )
     of_written = False
     examples = (
         changed(
@@ -446,11 +426,11 @@ class Misread(ValueOperator):
     """A label, such as a colour, or a flag is read as another one.
 
     Where: read labels and flags.
+
+    Published: 12. a colour is classified → an incorrect colour is returned
     """
 
     name = "misread"
-    rank = 80
-    published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
     of_written = False
     examples = (
         changed(_SEE, "red", "blue", note="an incorrect colour classification"),

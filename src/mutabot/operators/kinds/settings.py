@@ -55,7 +55,6 @@ class WrongFrame(FreeValueOperator):
     """
 
     name = "wrong-frame"
-    rank = 210
     kinds = frozenset({Kind.FRAME_ID})
     examples = (
         changed(_SEND, "base", "tool"),
@@ -81,7 +80,6 @@ class ShiftStamp(FreeValueOperator):
     """The header's stamp lies 5 s in the past or in the future."""
 
     name = "shift-stamp"
-    rank = 220
     kinds = frozenset({Kind.STAMP})
     #: seconds: more than programs that check the age of a message put up with. Less than 2 s is no difference
     #: between two numbers of seconds since 1970, as values are compared
@@ -110,7 +108,6 @@ class EmptyStamp(FreeValueOperator):
     """The header has no stamp: it says zero, as if nobody had filled it in."""
 
     name = "empty-stamp"
-    rank = 230
     kinds = frozenset({Kind.STAMP})
     examples = (
         changed(SEND_STAMP, 20.0, 0.0),
@@ -157,7 +154,6 @@ class WrongName(_Setting):
     """
 
     name = "wrong-name"
-    rank = 310
     setting = "name"
     variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
     examples = (
@@ -190,7 +186,6 @@ class ShortQueue(_Setting):
     """The queue of a publisher or subscription holds one message, so that the next one pushes it out."""
 
     name = "short-queue"
-    rank = 320
     setting = "depth"
     examples = (
         changed(SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"),
@@ -209,7 +204,6 @@ class FlipLatch(_Setting):
     """
 
     name = "flip-latch"
-    rank = 330
     setting = "latch"
     examples = (
         changed(ADVERTISE, True, False, quantity="latch"),
@@ -239,7 +233,6 @@ class WrongReliability(_OtherOfTwo):
     """
 
     name = "wrong-reliability"
-    rank = 340
     setting = "reliability"
     examples = (
         changed(ADVERTISE, "reliable", "best_effort", quantity="reliability"),
@@ -259,7 +252,6 @@ class WrongDurability(_OtherOfTwo):
     """
 
     name = "wrong-durability"
-    rank = 350
     setting = "durability"
     examples = (
         changed(ADVERTISE, "transient_local", "volatile", quantity="durability"),
@@ -279,7 +271,6 @@ class WrongDeadline(_Setting):
     """
 
     name = "wrong-deadline"
-    rank = 360
     setting = "deadline"
     #: seconds: more often than any of the programs this is for publishes
     variants: ClassVar[Mapping[str, float]] = {_TIGHT: 0.001, _NONE: 0.0}
@@ -299,7 +290,6 @@ class WrongPeriod(_Setting):
     """A timer or rate has twice the period, or half of it."""
 
     name = "wrong-period"
-    rank = 370
     setting = "period"
     variants: ClassVar[Mapping[str, float]] = {"x2": 2.0, "x0.5": 0.5}
     examples = (
@@ -314,24 +304,18 @@ class WrongPeriod(_Setting):
         return value * context.option
 
 
+_SET, _READ = Subject(SPEED, quantity=SPEED.result[0]), {"value": 0.25}
+
+
 class UseDefault(FreeValueOperator):
     """A parameter has the default that the program gives, instead of what was set."""
 
     name = "use-default"
-    rank = 380
     of_written = False
     examples = (
-        Example(
-            Subject(SPEED, quantity=SPEED.result[0]),
-            {"default": 1.0},
-            {"value": 0.25},
-            performed=({"default": 1.0},),
-            received={"value": 1.0},
-        ),
-        Example(Subject(SPEED, quantity=SPEED.result[0]), {}, {"value": 0.25}, away=_NO_DEFAULT),
-        Example(
-            Subject(SPEED, quantity=SPEED.result[0]), {"default": 0.25}, {"value": 0.25}, away=_IS_DEFAULT
-        ),
+        Example(_SET, {"default": 1.0}, _READ, performed=({"default": 1.0},), received={"value": 1.0}),
+        Example(_SET, {}, _READ, away=_NO_DEFAULT),
+        Example(_SET, {"default": 0.25}, _READ, away=_IS_DEFAULT),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:

@@ -1,1 +1,1 @@
-"""Formats of other tools, one file each, which sets ``FORMAT``; ``report/format.py`` is the contract."""
+"""Formats of other tools, one file each, with a function ``make``; ``report/format.py`` is the contract."""

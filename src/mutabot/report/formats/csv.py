@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
-from mutabot.report.format import Format, Material
+from mutabot.report.format import Material
 from mutabot.results.stored import COLUMNS, rows
 
 
@@ -16,6 +16,3 @@ def make(material: Material) -> str:
     writer.writerow(COLUMNS)
     writer.writerows(rows(material.campaign))
     return file.getvalue()
-
-
-FORMAT = Format("csv", make)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mutabot.report.format import Format, Material
+from mutabot.report.format import Material
 from mutabot.report.texts import survivor_text
 from mutabot.results.results import MutantResult
 
@@ -58,6 +58,3 @@ def _data(text: str) -> str:
 def _property(text: str) -> str:
     """A value before the message, which also ends at a comma or at two colons."""
     return _data(text).replace(":", "%3A").replace(",", "%2C")
-
-
-FORMAT = Format("github", make)

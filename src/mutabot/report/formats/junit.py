@@ -7,10 +7,9 @@ from dataclasses import replace
 from xml.etree import ElementTree as Xml
 
 from mutabot.model import Verdict
-from mutabot.report.format import Format, Material
+from mutabot.report.format import Material
 from mutabot.report.texts import one_line, reason_of, rounds_text, short_reason, status_of, why_alone
 from mutabot.results.results import MutantResult
-from mutabot.results.score import Group, groups_of
 
 #: state to the element that says so; states that are not here passed
 _ELEMENT: Mapping[Verdict | None, str] = {
@@ -37,7 +36,13 @@ def make(material: Material) -> str:
     for (file, family, role), results in suites.items():
         name = f"{material.path(file)} · {family} · {role}"
         suite = Xml.SubElement(root, "testsuite", {"name": name, **_counts(results)})
-        _properties(suite, material, results, groups.get((family, role)))
+        group = groups.get((family, role))
+        if group is not None:  # over all files, as in every other report
+            found = {"score": group.scores.mean, "check_score": group.scores.mean_check}
+            properties = Xml.SubElement(suite, "properties")
+            for name, share in found.items():
+                value = "" if share is None else f"{share:.4f}"
+                Xml.SubElement(properties, "property", {"name": name, "value": value})
         for result in results:
             _case(suite, result, material)
     Xml.indent(root)
@@ -57,31 +62,6 @@ def _counts(results: Sequence[MutantResult]) -> dict[str, str]:
 
 def _seconds(results: Iterable[MutantResult]) -> str:
     return f"{sum(outcome.wall for result in results for outcome in result.outcomes):.3f}"
-
-
-def _properties(
-    suite: Xml.Element, material: Material, results: Sequence[MutantResult], group: Group | None
-) -> None:
-    """The scores of the suite's own mutants, and those of its family and role over all files."""
-    outcomes = [outcome for result in results for outcome in result.outcomes]
-    own = groups_of([result.mutant for result in results], outcomes, material.campaign.rounds)
-    found: dict[str, object] = {"state": material.campaign.state, "rounds": material.campaign.rounds}
-    for start, one in (("", own[0]), (f"{own[0].family}.{own[0].role}.", group)):
-        if one is not None:
-            total = one.scores.total
-            found |= {
-                f"{start}score": _share(one.scores.mean),
-                f"{start}check_score": _share(one.scores.mean_check),
-                f"{start}killed": total.killed,
-                f"{start}valid": total.valid,
-            }
-    properties = Xml.SubElement(suite, "properties")
-    for name, value in found.items():
-        Xml.SubElement(properties, "property", {"name": name, "value": str(value)})
-
-
-def _share(share: float | None) -> str:
-    return "" if share is None else f"{share:.4f}"
 
 
 def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
@@ -111,6 +91,3 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     if element != "skipped":
         told.set("type", str(status).replace(" ", "-"))
     told.text = text
-
-
-FORMAT = Format("junit", make)

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from mutabot.model import Span
-from mutabot.report.changes import change_lines
-from mutabot.report.format import Format, Material
-from mutabot.report.sections import plural, section_lines, sections
+from mutabot.report.changes import changes
+from mutabot.report.format import Material
+from mutabot.report.sections import section_lines, sections, size_text
 from mutabot.report.texts import escaped
 
 #: rows of a table; GitHub takes no summary of more than a megabyte
@@ -22,9 +22,7 @@ def make(material: Material) -> str:
 
 def _lines(material: Material) -> Iterator[str]:
     campaign = material.campaign
-    kinds = [plural(len(campaign.mutants), "mutant")] if campaign.mutants or not campaign.ladders else []
-    kinds += [plural(campaign.ladders, "ladder")] if campaign.ladders else []
-    yield from (f"## Mutation testing: {' and '.join(kinds)} × {plural(campaign.rounds, 'round')}", "")
+    yield from (f"## Mutation testing: {size_text(campaign)}", "")
     if not campaign.is_complete or campaign.done < campaign.planned:
         yield from (
             f"> **This campaign is not complete** ({escaped(campaign.state)}): {campaign.known}.",
@@ -38,8 +36,7 @@ def _lines(material: Material) -> Iterator[str]:
 
     for section in sections(campaign, place):
         yield from section_lines(section, _ROWS)
-        if section.title == "Scores" and material.changes is not None:
-            yield from change_lines(material.changes, place)
-
-
-FORMAT = Format("markdown", make, tells_changes=True)
+        if section.title == "Scores" and material.older is not None:
+            yield from ("### Since the older campaign", "")
+            for changed in changes(material.older, campaign, place):
+                yield from section_lines(changed, _ROWS, level=4)

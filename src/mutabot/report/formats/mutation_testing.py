@@ -7,12 +7,12 @@ That schema has one status per mutant and no rounds: ``shaping.status`` says whi
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
-from mutabot.report.format import Format, Material, utf16
+from mutabot.report.format import Material, utf16
 from mutabot.report.texts import reason_of, status_of
 from mutabot.results.results import MutantResult, killers
 
@@ -41,28 +41,17 @@ def make(material: Material) -> str:
         {
             "schemaVersion": _SCHEMA_VERSION,
             "thresholds": _THRESHOLDS,
-            "framework": _framework(campaign.meta),
-            "config": _config(material),
+            "framework": {"name": "Mutabot", "version": str(campaign.meta.get("mutabot", ""))},
+            "config": {
+                **{key: campaign.meta.get(key) for key in ("families", "rounds", "seed", "engine")},
+                "state": campaign.state,
+                "outcomes": {"known": campaign.done, "planned": campaign.planned},
+                "leftOut": dict(Counter(item.reason for item in campaign.left_out)),
+            },
             "files": _files(material),
             "testFiles": _test_files(material),
         }
     )
-
-
-def _framework(meta: Mapping[str, Any]) -> dict[str, Any]:
-    versions = {str(name): str(version) for name, version in meta.get("versions", {}).items()}
-    return {"name": "Mutabot", "version": str(meta.get("mutabot", "")), "dependencies": versions}
-
-
-def _config(material: Material) -> dict[str, Any]:
-    campaign = material.campaign
-    return {
-        **{key: campaign.meta.get(key) for key in ("families", "rounds", "seed", "engine", "order")},
-        "state": campaign.state,
-        "outcomes": {"known": campaign.done, "planned": campaign.planned},
-        "scores": material.scores(),
-        "leftOut": dict(Counter(item.reason for item in campaign.left_out)),
-    }
 
 
 def _files(material: Material) -> dict[str, Any]:
@@ -79,8 +68,7 @@ def _files(material: Material) -> dict[str, Any]:
 
 def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
     mutant = result.mutant
-    killed_by = _unique(test for outcome in result.outcomes for test, _ in killers(outcome))
-    covered_by = _unique([*material.campaign.reached_by(mutant), *killed_by])
+    killed_by = dict.fromkeys(test for outcome in result.outcomes for test, _ in killers(outcome))
     return {
         "id": mutant.id,
         "mutatorName": mutant.operator,
@@ -89,8 +77,8 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
         "location": _location(mutant.site.span, material),
         "status": _STATUS[status_of(result)],
         "statusReason": reason_of(result),
-        "coveredBy": covered_by,
-        "killedBy": killed_by,
+        "coveredBy": [*dict.fromkeys([*material.campaign.reached_by(mutant), *killed_by])],
+        "killedBy": [*killed_by],
         "testsCompleted": max((outcome.tests for outcome in result.outcomes), default=0),
         "duration": 1000 * sum(outcome.wall for outcome in result.outcomes),
     }
@@ -100,8 +88,7 @@ def _replacement(mutant: Mutant, material: Material) -> str:
     """What would stand there: the new text if that is what the mutant is, else what it does, in words."""
     text = material.place(mutant.site.span).text
     before, arrow, after = mutant.description.partition(" → ")
-    is_text = arrow and before == text
-    return after if is_text else mutant.description
+    return after if arrow and before == text else mutant.description
 
 
 def _location(span: Span, material: Material) -> dict[str, Any]:
@@ -121,10 +108,3 @@ def _test_files(material: Material) -> dict[str, Any]:
         tests = found.setdefault(material.path(file), {"tests": []})["tests"]
         tests.append({"id": test, "name": name or test})
     return found
-
-
-def _unique(names: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(names))
-
-
-FORMAT = Format("mutation-testing", make)

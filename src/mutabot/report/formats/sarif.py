@@ -8,8 +8,8 @@ from urllib.parse import quote
 
 from mutabot.model import Mutant, Span
 from mutabot.report.document import dumps
-from mutabot.report.format import Format, Material, utf16
-from mutabot.report.texts import is_divergent, status_of, survivor_text
+from mutabot.report.format import Material, utf16
+from mutabot.report.texts import survivor_text
 from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -39,7 +39,6 @@ def make(material: Material) -> str:
                     "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
                     "invocations": [_invocation(material)],
                     "results": [_result(one, material, rules) for one in survivors],
-                    "properties": {"state": material.campaign.state, "scores": material.scores()},
                 }
             ],
         }
@@ -61,9 +60,7 @@ def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
     return {
         "id": name,
         "shortDescription": {"text": f"The tests let a mutant of {name} through"},
-        "fullDescription": {"text": _message(summary)},
         "help": {"text": _message(f"{summary}\n\n{_HELP}")},
-        "defaultConfiguration": {"level": "warning"},
         "properties": {"tags": ["mutation-testing", mutant.family]},
     }
 
@@ -87,17 +84,7 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
         "message": {"text": _message(survivor_text(result))},
         "locations": [_location(mutant.site.span, material)],
         "partialFingerprints": {_FINGERPRINT: mutant.id},
-        "properties": {
-            "mutant": mutant.id,
-            "number": mutant.number,
-            "family": mutant.family,
-            "role": mutant.site.role.value,
-            "status": str(status_of(result)),
-            "killed": result.kill_rate.killed,
-            "valid": result.kill_rate.valid,
-            "distance": result.distance,
-            "indistinguishable": result.indistinguishable,
-        },
+        "properties": {"mutant": mutant.id, "number": mutant.number},
     }
 
 
@@ -105,7 +92,8 @@ def _level(result: MutantResult) -> str:
     """How important a survivor is: whether the robot did something else, as far as that is known."""
     if result.indistinguishable:
         return "note"
-    return "error" if is_divergent(result) else "warning"
+    differs = any(one.divergence and not one.indistinguishable for one in result.survived)
+    return "error" if differs else "warning"
 
 
 def _location(span: Span, material: Material) -> dict[str, Any]:
@@ -127,6 +115,3 @@ def _location(span: Span, material: Material) -> dict[str, Any]:
 def _message(text: str) -> str:
     """Plain text for ``message.text``, in which braces stand for arguments and ``[…](…)`` for a link."""
     return text.replace("{", "{{").replace("}", "}}").replace("](", "] (")
-
-
-FORMAT = Format("sarif", make)

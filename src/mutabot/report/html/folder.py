@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 from collections.abc import Callable, Iterable, Mapping
 from importlib.resources import files
@@ -39,16 +38,11 @@ _LADDER = (
 )
 #: ladders that the page shows; `mutabot thresholds` prints all
 _LADDERS = 200
-_META = ("mutabot", "python", "versions", "seed", "engine", "families", "started", "seconds")
-_MARK_TEXT = (
-    "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
-)
-#: what a report consists of, beside clips/
-_PAGE, _ASSETS, _DATA, _CLIPS = "index.html", "assets", "data", "clips"
+_MARK_TEXT = "A report of mutabot: open index.html. `mutabot report --html` replaces it.\n"
+#: what a report consists of
+_PAGE, _ASSETS, _DATA = "index.html", "assets", "data"
 #: bytes that all data may take; recordings make room
 LIMIT = 23_000_000
-#: clips and pictures of a mutant are named by its number: 12.mp4, 12-side.png
-_CLIP = re.compile(r"(\d+)(?:[-_. ].*)?\.(mp4|webm|gif|png|jpe?g|svg|webp)", re.IGNORECASE)
 
 
 def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
@@ -66,11 +60,11 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
             "state attempt done planned rounds groups controls verification repeats drawing tests baseline "
             "reaching left_out operators flaky=flaky.tests confirmed=confirmation.text",
         ),
-        "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
+        "meta": campaign.meta,
         # thousands of rows do not repeat the names of their cells
         "columns": [*rows[0]] if rows else [],
         "mutants": [[*one.values()] for one in rows],
-        "unlooked": [one.text for one in unlooked(campaign.mutants)],
+        "unlooked": unlooked(campaign.mutants),
         "ladders": [
             {**data_of.facts(one, _LADDER), "text": line_of(one)}
             for one in thresholds_of(campaign).ladders[:_LADDERS]
@@ -133,7 +127,7 @@ def check_folder(folder: Path) -> None:
     """Raise UsageError for a folder that a report must not be written into."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"the report {folder} cannot be written: it is a file; --html takes a folder")
-    found = {one.name for one in folder.iterdir()} - {_CLIPS} if folder.is_dir() else set()
+    found = {one.name for one in folder.iterdir()} if folder.is_dir() else set()
     if found and REPORT_MARK not in found:
         raise UsageError(
             f"the report {folder} cannot be written: the folder holds other files, such as {min(found)}; "
@@ -155,7 +149,7 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
             shutil.rmtree(folder / name, ignore_errors=True)
         for path in (folder / _ASSETS, *(folder / _DATA / name for name in ("mutants", "originals"))):
             path.mkdir(parents=True)
-        without = _write_data(folder / _DATA, contents, _clips(folder / _CLIPS), limit)
+        without = _write_data(folder / _DATA, contents, limit)
         for one in files(__package__).joinpath(_ASSETS).iterdir():
             target = folder / one.name if one.name == _PAGE else folder / _ASSETS / one.name
             target.write_bytes(one.read_bytes())
@@ -165,7 +159,7 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
     return Written(folder / _PAGE, size, without)
 
 
-def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]], limit: int) -> int:
+def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     """Write all data; return how many recordings had no room."""
     campaign = contents.campaign
     sources = [[file, text] for file, text in campaign.sources.items()]
@@ -174,7 +168,7 @@ def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]]
     for result in campaign.mutants:
         number = result.mutant.number
         check = check_on_page(result, contents.suggestions)
-        page = {**mutant_page(result), "suggestion": check, "media": clips.get(number, [])}
+        page = {**mutant_page(result), "suggestion": check}
         file = folder / "mutants" / f"{number}.js"
         used += file.write_bytes(script(f"mutant {number}", page))
     recorded = Recorded(contents.evidence, contents.clean)
@@ -210,16 +204,6 @@ def _recordings(recorded: Recorded, results: Iterable[MutantResult], limit: int)
             if used > limit:
                 return found
             found.setdefault(number, []).append(one)
-    return found
-
-
-def _clips(folder: Path) -> dict[int, list[str]]:
-    """Clips and pictures that lie there already, by the number of the mutant that they are named for."""
-    found: dict[int, list[str]] = {}
-    for one in sorted(folder.iterdir()) if folder.is_dir() else ():
-        named = _CLIP.fullmatch(one.name)
-        if named is not None and one.is_file():
-            found.setdefault(int(named[1]), []).append(f"{_CLIPS}/{one.name}")
     return found
 
 

@@ -5,8 +5,7 @@ Tracks have fewer points: what a straight line in time keeps within half a milli
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import inf, isnan
@@ -29,19 +28,12 @@ _STEPS, _MISS_VALUE = 2000, 8.0
 Row = tuple[float, ...]
 
 
-def thinned(track: Track, times: Sequence[float], usual: Track | None, usual_times: Sequence[float]) -> Any:
-    """A track as data: times in ms and numbers in steps, each as the difference from the one before.
-
-    ``usual``: the same thing in the original. What both begin with is left to it: the data say ``from`` which
-    moment (ms) on they hold.
-    """
+def thinned(track: Track, times: Sequence[float]) -> Any:
+    """A track as data: times in ms and numbers in steps, each as the difference from the one before."""
     rows, when, gaps = _rows(track, times)
     if not rows:
         return None
     scales, misses = _scales(track.kind, rows)
-    start = _same_until(track, times, usual, usual_times)
-    first = max(0, bisect_left(when, start) - 1) if start > 0 else 0
-    rows, when = rows[first:], when[first:]
     steps = [tuple(value / scale for value, scale in zip(row, scales, strict=True)) for row in rows]
     kept = kept_points(when, steps, misses)
     channels = [[round(steps[index][axis]) for index in kept] for axis in range(len(scales))]
@@ -50,7 +42,6 @@ def thinned(track: Track, times: Sequence[float], usual: Track | None, usual_tim
         "kind": track.kind.value,
         "unit": track.unit,
         **({"size": list(track.size)} if track.size is not None else {}),
-        **({"from": round(1000 * when[0])} if first else {}),
         **({"gaps": gaps} if gaps else {}),
         "scales": scales,
         "t": _differences([round(1000 * when[index]) for index in kept]),
@@ -67,24 +58,20 @@ def kept_points(times: Sequence[float], rows: Sequence[Row], misses: Sequence[fl
     kept: list[int] = [0]
     low, high = [-inf] * len(misses), [inf] * len(misses)
     for index in range(1, len(rows)):
-        slopes, room = _slopes(times, rows, kept[-1], index), _room(times, misses, kept[-1], index)
+        slopes, span = _slopes(times, rows, kept[-1], index)
         if not all(least <= one <= most for least, one, most in zip(low, slopes, high, strict=True)):
             kept.append(index - 1)
-            slopes, room = _slopes(times, rows, index - 1, index), _room(times, misses, index - 1, index)
+            slopes, span = _slopes(times, rows, index - 1, index)
             low, high = [-inf] * len(misses), [inf] * len(misses)
-        low = [max(least, one - miss) for least, one, miss in zip(low, slopes, room, strict=True)]
-        high = [min(most, one + miss) for most, one, miss in zip(high, slopes, room, strict=True)]
+        low = [max(least, one - miss / span) for least, one, miss in zip(low, slopes, misses, strict=True)]
+        high = [min(most, one + miss / span) for most, one, miss in zip(high, slopes, misses, strict=True)]
     return kept if len(rows) < 2 else [*kept, len(rows) - 1]
 
 
-def _slopes(times: Sequence[float], rows: Sequence[Row], first: int, last: int) -> list[float]:
+def _slopes(times: Sequence[float], rows: Sequence[Row], first: int, last: int) -> tuple[list[float], float]:
+    """The slope of each axis between two points, and the time between them."""
     span = max(times[last] - times[first], 1e-9)
-    return [(one - other) / span for one, other in zip(rows[last], rows[first], strict=True)]
-
-
-def _room(times: Sequence[float], misses: Sequence[float], first: int, last: int) -> list[float]:
-    span = max(times[last] - times[first], 1e-9)
-    return [miss / span for miss in misses]
+    return [(one - other) / span for one, other in zip(rows[last], rows[first], strict=True)], span
 
 
 def _rows(track: Track, times: Sequence[float]) -> tuple[list[Row], list[float], list[list[int]]]:
@@ -123,22 +110,6 @@ def _scales(kind: TrackKind, rows: Sequence[Row]) -> tuple[list[float], list[flo
         return [float(f"{reach / _STEPS:.3g}")], [_MISS_VALUE]
     turns = kind.width - 3
     return [_LENGTH] * 3 + [_TURN] * turns, [_MISS_LENGTH] * 3 + [_MISS_TURN] * turns
-
-
-def _same_until(
-    track: Track, times: Sequence[float], usual: Track | None, usual_times: Sequence[float]
-) -> float:
-    """Until when, s, a track is the original's to the last bit."""
-    if usual is None or usual.kind is not track.kind:
-        return 0.0
-    width = track.kind.width
-    until = 0.0
-    for count, (one, other) in enumerate(zip(times, usual_times, strict=False)):
-        here = slice(count * width, (count + 1) * width)
-        if one != other or track.values[here].tobytes() != usual.values[here].tobytes():
-            break
-        until = one
-    return until
 
 
 def _differences(numbers: Sequence[int]) -> list[int]:
@@ -188,7 +159,7 @@ class Recorded:
                     "round": round,
                     "test": self.clean(test),
                     "original": self._original(round, test, original),
-                    **_data(mutant, original),
+                    **_data(mutant),
                 }
 
     def count(self, result: MutantResult) -> int:
@@ -209,21 +180,15 @@ class Recorded:
             return None
         key = (round, test)
         if key not in self.originals:
-            self.originals[key] = {"round": round, "test": self.clean(test), **_data(recording, None)}
+            self.originals[key] = {"round": round, "test": self.clean(test), **_data(recording)}
         return [*self.originals].index(key)
 
 
-def _data(recording: Recording, usual: Recording | None) -> dict[str, Any]:
-    others: Mapping[str, Any] = usual.tracks if usual is not None else {}
-    times = usual.times if usual is not None else ()
-    tracks = (
-        thinned(track, recording.times, others.get(name), times) for name, track in recording.tracks.items()
-    )
-    calls = _shared(recording.calls, usual.calls) if usual is not None else 0
+def _data(recording: Recording) -> dict[str, Any]:
+    tracks = (thinned(track, recording.times) for track in recording.tracks.values())
     return {
         "tracks": [one for one in tracks if one],
-        "callsFrom": calls,
-        "calls": [_call(one) for one in recording.calls[calls:]],
+        "calls": [_call(one) for one in recording.calls],
         "moments": [[one.time, one.what, one.text] for one in recording.moments],
         "blocks": [[one.name, one.centre, one.size, one.colour] for one in recording.blocks],
         "end": recording.times[-1] if recording.times else None,
@@ -244,9 +209,3 @@ def _short(value: Any) -> Any:
         return value
     text = value if isinstance(value, str) else value_text(value)
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
-
-
-def _shared(calls: Sequence[Told], usual: Sequence[Told]) -> int:
-    """How many calls both begin with."""
-    pairs = enumerate(zip(calls, usual, strict=False))
-    return next((count for count, (one, other) in pairs if one != other), min(len(calls), len(usual)))

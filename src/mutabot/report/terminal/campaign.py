@@ -9,7 +9,7 @@ from rich.console import Console, RenderableType
 from rich.text import Text
 
 from mutabot.model import Outcome
-from mutabot.report.sections import Section, plural, sections
+from mutabot.report.sections import Section, plural, sections, size_text
 from mutabot.results.results import Results
 
 from .console import below, legend, make_table, mark_of, marks_in, plain, print_section, short_place
@@ -47,9 +47,7 @@ def print_summary(console: Console, results: Results) -> None:
 
 def title(results: Results) -> str:
     """Return how many mutants and rounds there are, and how the campaign ended."""
-    kinds = [plural(len(results.mutants), "mutant")] if results.mutants or not results.ladders else []
-    kinds += [plural(results.ladders, "ladder")] if results.ladders else []
-    text = f"{' and '.join(kinds)} × {plural(results.rounds, 'round')}: {results.state}"
+    text = f"{size_text(results)}: {results.state}"
     return text if results.done == results.planned else f"{text}, {results.known}"
 
 

@@ -17,8 +17,8 @@ from rich.text import Text
 from mutabot.frozen import frozen
 from mutabot.model import By, Outcome, Span, Verdict
 from mutabot.report.sections import Section
+from mutabot.report.texts import ESCAPES
 
-_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
@@ -46,7 +46,7 @@ def make_console(file: IO[str] | None = None, *, width: int | None = None, stder
 
 def plain(text: str) -> str:
     """Return a program's text without what would confuse the terminal."""
-    return _CONTROLS.sub("", _ESCAPES.sub("", text)).expandtabs(4)
+    return _CONTROLS.sub("", ESCAPES.sub("", text)).expandtabs(4)
 
 
 def heading(text: str) -> Text:

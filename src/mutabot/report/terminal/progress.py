@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Self
 
-from rich.console import Console, RenderableType
-from rich.constrain import Constrain
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TaskID,
-    TextColumn,
-    TimeRemainingColumn,
-)
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 from rich.table import Column
 
 from mutabot.report.terminal.console import plain
@@ -75,19 +67,13 @@ def make_progress(console: Console) -> Bar | Lines:
     return Bar(console) if console.is_terminal else Lines(console)
 
 
-class _Progress(Progress):
-    room = 0
-
-    def get_renderables(self) -> Iterable[RenderableType]:
-        yield Constrain(self.make_tasks_table(self.tasks), self.room)
-
-
 class Bar:
     """A bar per stage on a terminal, each on one line: texts are cut before the bar is."""
 
     def __init__(self, console: Console) -> None:
-        room = max(10, min(40, console.width - _SPARE - _BAR - _OTHERS))
-        self._progress = _Progress(
+        console.width -= _SPARE
+        room = max(10, min(40, console.width - _BAR - _OTHERS))
+        self._progress = Progress(
             TextColumn("{task.description}", markup=False, table_column=Column(max_width=room, no_wrap=True)),
             BarColumn(bar_width=_BAR, table_column=_column(_BAR)),
             MofNCompleteColumn(table_column=_column(9)),
@@ -96,7 +82,6 @@ class Bar:
             console=console,
             expand=True,
         )
-        self._progress.room = console.width - _SPARE
         self._task: TaskID | None = None
 
     def stage(self, text: str, total: int | None = None) -> None:

@@ -50,7 +50,7 @@
   function draw(holder, one, page, stops) {
     holder.replaceChildren(
       h("div", { class: "columns first" }, excerpt(one, page), facts(one, page)),
-      media(page), robot(one, page, stops), looked(one, page), suggestion(page), rounds(one, page));
+      robot(one, page, stops), looked(one, page), suggestion(page), rounds(one, page));
   }
 
   /** How many characters stand before a column, which counts bytes of UTF-8 from 1. */
@@ -87,15 +87,6 @@
     return h("section", { "aria-labelledby": "facts" }, h("h2", { id: "facts" }, "What it is"), h("dl", { class: "facts" }, rows.filter(Boolean).map(([name, value]) => [h("dt", null, name), h("dd", null, value)])));
   }
 
-  function media(page) {
-    if (!page.media.length) return "";
-    return h("section", { "aria-labelledby": "clips" }, h("h2", { id: "clips" }, "Clips and pictures"), h("div", { class: "media" }, page.media.map((file) => {
-      const name = file.replace(/^.*\//, "");
-      const path = file.split("/").map(encodeURIComponent).join("/");
-      return h("figure", null, /\.(mp4|webm)$/i.test(file) ? h("video", { src: path, controls: true, preload: "metadata", "aria-label": `Clip ${name}` }) : h("img", { src: path, alt: `Picture ${name}`, loading: "lazy" }), h("figcaption", null, name));
-    })));
-  }
-
   // What the robot did
 
   function robot(one, page, stops) {
@@ -119,9 +110,9 @@
       stop = [];
       const found = page.recordings[index];
       try {
-        const usual = found.original === null ? null : mutabot.recordings.recording(await mutabot.load(`original ${found.original}`, `data/originals/${found.original}.js`), null);
+        const usual = found.original === null ? null : mutabot.recordings.recording(await mutabot.load(`original ${found.original}`, `data/originals/${found.original}.js`));
         if (!section.isConnected) return;
-        pair(holder, one, page, found, usual, mutabot.recordings.recording(found, usual), stop);
+        pair(holder, one, page, found, usual, mutabot.recordings.recording(found), stop);
       } catch (error) { holder.replaceChildren(empty("The recording cannot be shown.", error.message)); }
     }
     show(0);

@@ -8,24 +8,18 @@
     return found;
   }
 
-  /** A track with times in s and rows of numbers; what it has in common with the original is taken from there. */
-  function track(data, usual) {
-    let times = summed(data.t).map((time) => time / 1000);
+  /** A track with times in s and rows of numbers. */
+  function track(data) {
+    const times = summed(data.t).map((time) => time / 1000);
     const channels = data.v.map((one, axis) => summed(one).map((value) => value * data.scales[axis]));
-    let rows = times.map((_, index) => channels.map((one) => one[index]));
-    if (data.from !== undefined && usual) {
-      const until = usual.times.filter((time) => time < data.from / 1000 - 1e-9).length;
-      times = [...usual.times.slice(0, until), ...times];
-      rows = [...usual.rows.slice(0, until), ...rows];
-    }
+    const rows = times.map((_, index) => channels.map((one) => one[index]));
     const gaps = (data.gaps || []).map(([from, to]) => [from / 1000, to / 1000]);
     return { name: data.name, kind: data.kind, unit: data.unit, size: data.size, times, rows, gaps };
   }
 
-  function recording(data, usual) {
-    const tracks = new Map(data.tracks.map((one) => [one.name, track(one, usual && usual.tracks.get(one.name))]));
-    const calls = [...(usual ? usual.calls.slice(0, data.callsFrom) : []), ...data.calls.map(call)];
-    return { ...data, tracks, calls };
+  function recording(data) {
+    const tracks = new Map(data.tracks.map((one) => [one.name, track(one)]));
+    return { ...data, tracks, calls: data.calls.map(call) };
   }
   const call = ([began, ended, operation, place, pattern, written, read, role]) => ({ began, ended, operation, place, pattern, written, read, role });
 
