@@ -9,7 +9,6 @@ import pytest
 from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
-from mutabot.suggest.bands import band_of
 from mutabot.suggest.checks import ProposedCheck
 from mutabot.suggest.place import OTHER, place_of
 from mutabot.suggest.project import ProjectFiles, diff_of
@@ -40,11 +39,7 @@ def checks(project: ProjectFiles, style: str) -> list[ProposedCheck]:
     assert place is not None
     assert place.style == style
     at_end = "self.arm.z" if style == "unittest" else "arm.z"
-    return [
-        ProposedCheck(
-            place, ReadExpression(at_end, PROBE, 0.01), 0.4, 3, band_of([0.4, 0.401, 0.399], 0.01), 0.02
-        )
-    ]
+    return [ProposedCheck(place, ReadExpression(at_end, PROBE, 0.01), 0.4, 3, 0.002, 0.02)]
 
 
 def test_added_checks_pass_on_the_original_and_notice_a_fault(project: ProjectFiles) -> None:

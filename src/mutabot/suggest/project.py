@@ -105,11 +105,11 @@ class ImportedName:
 
     Attributes:
         text: the name.
-        needs: the import that the file lacks, or None.
+        needs: the import that the file lacks, if it does.
     """
 
     text: str
-    needs: str | None = None
+    needs: tuple[str, ...] = ()
 
 
 def name_in(module: ast.Module, wanted: str, attribute: str, taken: Iterable[str] = ()) -> ImportedName:
@@ -126,8 +126,8 @@ def name_in(module: ast.Module, wanted: str, attribute: str, taken: Iterable[str
                     return ImportedName(f"{alias.asname or alias.name}.{attribute}")
     bound |= top_names(module)
     if attribute not in bound:
-        return ImportedName(attribute, f"from {wanted} import {attribute}")
-    return ImportedName(f"{wanted}.{attribute}", f"import {wanted}")
+        return ImportedName(attribute, (f"from {wanted} import {attribute}",))
+    return ImportedName(f"{wanted}.{attribute}", (f"import {wanted}",))
 
 
 def top_names(module: ast.Module) -> set[str]:

@@ -13,9 +13,8 @@ from mutabot.journal.journal import JournalReader
 from mutabot.model import By, Verdict
 from mutabot.model.events import TestEnd
 
-from .checks import ProposedCheck
-from .edits import edited
-from .place import PlaceInTest
+from .checks import ProposedCheck, Trials
+from .place import PlaceInTest, edited
 from .project import ProjectFiles, copy_of
 
 
@@ -28,14 +27,14 @@ class Proof:
         project: into whose tests checks are put.
         progress: is told.
         failed: checks that failed, with the reason.
-        kills: of each check that was run on the survivors: mutant id to the rounds in which it killed.
+        kills: of each check that was run on the survivors: the mutants and rounds that it killed.
     """
 
     request: Request
     project: ProjectFiles
     progress: Progress
     failed: dict[ProposedCheck, str] = field(default_factory=dict)
-    kills: dict[ProposedCheck, dict[str, tuple[int, ...]]] = field(default_factory=dict)
+    kills: dict[ProposedCheck, Trials] = field(default_factory=dict)
 
     def on_original(self, checks: Sequence[ProposedCheck], rounds: Sequence[int]) -> list[ProposedCheck]:
         """Those of these checks with which the original passes in all of these rounds."""
@@ -97,16 +96,14 @@ class Proof:
             path = run_campaign(replace(these, only=only, every_test=True, repeats=False), self.progress)
             with JournalReader.open(path) as journal:
                 outcomes = journal.outcomes()
-        by_test: dict[str, dict[str, list[int]]] = {}
+        killed: dict[str, set[tuple[str, int]]] = {}
         for outcome in outcomes:
-            noticed = outcome.verdict is Verdict.KILLED
-            by_check = {_own_name(kill.test) for kill in outcome.kills if noticed and kill.by is By.CHECK}
-            for test in by_check:
-                by_test.setdefault(test, {}).setdefault(outcome.mutant, []).append(outcome.round)
+            for kill in outcome.kills if outcome.verdict is Verdict.KILLED else ():
+                if kill.by is By.CHECK:
+                    killed.setdefault(_own_name(kill.test), set()).add((outcome.mutant, outcome.round))
         for one in checks:
-            found = by_test.get(_own_name(one.place.node), {})
-            self.kills[one] = {mutant: tuple(sorted(rounds)) for mutant, rounds in found.items()}
-            if not found:
+            self.kills[one] = frozenset(killed.get(_own_name(one.place.node), ()))
+            if not self.kills[one]:
                 self.failed[one] = "kills no survivor when it is run"
 
 

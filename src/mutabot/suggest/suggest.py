@@ -15,50 +15,40 @@ from mutabot.model import Mutant
 from mutabot.results.results import MutantResult, Results
 from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
 
-from .bands import decimal, is_number, unseen
-from .checks import ProposedCheck, candidates, known
-from .measure import Measured, measure
-from .place import OTHER, PlaceInTest, place_of
+from .checks import ProposedCheck, Trials, candidates, unseen
+from .place import OTHER, place_of
 from .project import ProjectFiles, diff_of
 from .prove import Proof, texts_with
+from .readings import Measured, is_number, known, measure
 
 #: how often checks are chosen anew because one of them failed its proof
 _ATTEMPTS = 5
 
 
-@frozen
-class Survivors:
-    """The survivors of a campaign.
+def _sorted_out(
+    chosen: Sequence[MutantResult],
+) -> tuple[dict[str, tuple[Mutant, list[int]]], list[Unsolved], list[str]]:
+    """The survivors that may look other than the original, the others, and the tests where the first acted.
 
-    Attributes:
-        to_kill: those that look other than the original, or may, with the rounds in which they survived.
-        never: those that no observation at the ends or moments of these tests can kill.
-        tests: the tests in which any of the first acted, by node id.
+    The first by id, with the rounds in which they survived. No check at the ends of these tests can kill the
+    others.
     """
-
-    to_kill: tuple[tuple[MutantResult, tuple[int, ...]], ...]
-    never: tuple[Unsolved, ...]
-    tests: tuple[str, ...]
-
-
-def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
-    """Sort out survivors."""
-    to_kill, never = [], []
+    to_kill: dict[str, tuple[Mutant, list[int]]] = {}
+    never: list[Unsolved] = []
     tests: dict[str, None] = {}
     for one in chosen:
         different = [out for out in one.survived if out.indistinguishable is not True]
+        reason = "no test reaches it; add a test that does"
         if different:
-            to_kill.append((one, tuple(out.round for out in different)))
+            to_kill[one.mutant.id] = one.mutant, [out.round for out in different]
             tests.update({looked.test: None for out in different for looked in out.looked if looked.acted})
-        elif one.survived:
+            continue
+        if one.survived:
             compared = one.survived[0].compared
             extent = f" in {compared.text}" if compared is not None else " that was compared"
             reason = f"nothing differs{extent} (indistinguishable)"
-            never.append(Unsolved(one.mutant.id, reason, never=True))
-        else:
-            reason = "no test reaches it; add a test that does"
-            never.append(Unsolved(one.mutant.id, reason, never=True))
-    return Survivors(tuple(to_kill), tuple(never), tuple(tests))
+        never.append(Unsolved(one.mutant.id, reason, never=True))
+    return to_kill, never, list(tests)
 
 
 def why_unsolved(
@@ -69,15 +59,13 @@ def why_unsolved(
     refused: Mapping[str, str],
 ) -> Unsolved:
     """The reason, with what differs most and how far the original itself spreads."""
-    failed = [one for one in found if one in proof.failed and mutant.id in one.noticed]
+    failed = [one for one in found if one in proof.failed and mutant.id in dict(one.trials)]
     if failed:
         return Unsolved(mutant.id, f"a check that would notice it failed its proof: {failed[0].statement}")
     if mutant.id in refused:
         return Unsolved(mutant.id, refused[mutant.id])
-    nearest = max(_differences(mutant, measured), default=None)
-    return Unsolved(
-        mutant.id, nearest[1] if nearest else "nothing differs in what its tests can read at their ends"
-    )
+    nothing = "nothing differs in what its tests can read at their ends"
+    return Unsolved(mutant.id, max(_differences(mutant, measured), default=(0.0, nothing))[1])
 
 
 def _differences(mutant: Mutant, measured: Measured) -> list[tuple[float, str]]:
@@ -102,7 +90,7 @@ def _differences(mutant: Mutant, measured: Measured) -> list[tuple[float, str]]:
 
 
 def _short(value: float) -> str:
-    return decimal(float(f"{value:.3g}"))
+    return repr(float(f"{value:.3g}"))
 
 
 @frozen
@@ -142,63 +130,46 @@ def suggest(
 
     Raises NothingToDoError if there is nothing to kill or nothing to look at, and what a campaign raises.
     """
-    survivors = survivors_of(chosen)
-    if not request.vocabulary.probes:
-        progress.note(
-            "the vocabulary has no [[probe]]: checks can use only the oracle's readings and the tests' values"
-        )
-    elif not survivors.to_kill:
-        progress.note("nothing differs in any survivor; another [[probe]] may show a difference")
-    if not survivors.to_kill:
-        return _told(Suggestions(unsolved=survivors.never), chosen, request, seeds)
-    quiet = Quiet(progress)
-    project = ProjectFiles(request)
-    places, without = _places(project, survivors.tests)
-    if not places:
-        shown = next(iter(without), "no test")
-        raise NothingToDoError(
-            f"no check can be added to the tests of these survivors, such as {shown}: they are "
-            "neither functions of pytest, nor methods of unittest, nor made by another tool"
-        )
-    calibrated = request.rounds + seeds
-    measured = measure(
-        replace(request, rounds=calibrated), project, places,
-        [(one.mutant, rounds) for one, rounds in survivors.to_kill], quiet,
-    )  # fmt: skip
-    found, refused = candidates(project, measured)
-    proof = Proof(request, project, quiet)
-    fresh = range(calibrated, calibrated + seeds)
-    chosen_checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
-    texts = texts_with(project, [one for one in chosen_checks if one.place.style != OTHER])
-    suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
-    killed = {mutant for one in suggestions for mutant in one.kills}
-    left = [one.mutant for one, _ in survivors.to_kill if one.mutant.id not in killed]
-    unsolved = [*(why_unsolved(one, measured, found, proof, refused) for one in left), *survivors.never]
-    dropped = tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items())
-    whole = Suggestions(suggestions, diff_of(request.root, texts), tuple(unsolved), dropped)
-    return _told(whole, chosen, request, seeds)
-
-
-def _told(whole: Suggestions, chosen: Sequence[MutantResult], request: Request, seeds: int) -> Suggestions:
-    return replace(
-        whole,
+    to_kill, never, tests = _sorted_out(chosen)
+    nothing = Suggestions(
+        unsolved=tuple(never),
         numbers={one.mutant.id: one.mutant.number for one in chosen},
         descriptions={one.mutant.id: one.mutant.description for one in chosen},
         rounds=request.rounds,
         seeds=seeds,
     )
-
-
-def _places(project: ProjectFiles, tests: Sequence[str]) -> tuple[dict[str, PlaceInTest], list[str]]:
-    found: dict[str, PlaceInTest] = {}
-    without: list[str] = []
-    for test in tests:
-        place = place_of(project, test)
-        if place is None:
-            without.append(test)
-        else:
-            found[test] = place
-    return found, without
+    if not request.vocabulary.probes:
+        progress.note(
+            "the vocabulary has no [[probe]]: checks can use only the oracle's readings and the tests' values"
+        )
+    elif not to_kill:
+        progress.note("nothing differs in any survivor; another [[probe]] may show a difference")
+    if not to_kill:
+        return nothing
+    quiet = Quiet(progress)
+    project = ProjectFiles(request)
+    places = {test: place for test in tests if (place := place_of(project, test)) is not None}
+    if not places:
+        raise NothingToDoError(
+            f"no check can be added to the tests of these survivors, such as {next(iter(tests), 'no test')}: "
+            "they are neither functions of pytest, nor methods of unittest, nor made by another tool"
+        )
+    calibrated = request.rounds + seeds
+    measured = measure(replace(request, rounds=calibrated), project, places, list(to_kill.values()), quiet)
+    found, refused = candidates(project, measured)
+    proof = Proof(request, project, quiet)
+    fresh = range(calibrated, calibrated + seeds)
+    checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
+    texts = texts_with(project, [one for one in checks if one.place.style != OTHER])
+    killed = {mutant for one in checks for mutant, _ in proof.kills[one]}
+    left = [mutant for name, (mutant, _) in to_kill.items() if name not in killed]
+    return replace(
+        nothing,
+        suggestions=tuple(_suggestion(one, proof.kills[one], seeds) for one in checks),
+        diff=diff_of(request.root, texts),
+        unsolved=(*(why_unsolved(one, measured, found, proof, refused) for one in left), *never),
+        dropped=tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items()),
+    )
 
 
 def _proven(
@@ -213,38 +184,34 @@ def _proven(
             break
         proof.on_survivors(proof.on_original(chosen, rounds), mutants)
     chosen = [one for one in chosen if one in proof.kills and one not in proof.failed]
-    return sorted(chosen, key=lambda one: -len(_kills(one, proof.kills)))
+    return sorted(chosen, key=lambda one: -len(proof.kills[one]))
 
 
-def chosen_of(
-    checks: Sequence[ProposedCheck], kills: Mapping[ProposedCheck, Mapping[str, Sequence[int]]]
-) -> list[ProposedCheck]:
-    """For all that any check kills, the one that a person would rather write; none that others replace."""
-    left = frozenset().union(*(_kills(one, kills) for one in checks))
+def chosen_of(checks: Sequence[ProposedCheck], kills: Mapping[ProposedCheck, Trials]) -> list[ProposedCheck]:
+    """For all that any check kills, the one that a person would rather write; none that others replace.
+
+    ``kills``: what checks that were run killed; of the others counts what they would by what was measured.
+    """
+    trials = {one: kills.get(one, one.trials) for one in checks}
+    left = frozenset().union(*trials.values())
     chosen: list[ProposedCheck] = []
-    for one in sorted(checks, key=lambda one: (one.worth, len(_kills(one, kills))), reverse=True):
-        if _kills(one, kills) & left:
+    for one in sorted(checks, key=lambda one: (one.worth, len(trials[one])), reverse=True):
+        if trials[one] & left:
             chosen.append(one)
-            left -= _kills(one, kills)
+            left -= trials[one]
     for one in list(chosen):
         others = [other for other in chosen if other is not one]
-        if _kills(one, kills) <= frozenset().union(*(_kills(other, kills) for other in others)):
+        if trials[one] <= frozenset().union(*(trials[other] for other in others)):
             chosen = others
     return chosen
 
 
-def _kills(
-    check: ProposedCheck, kills: Mapping[ProposedCheck, Mapping[str, Sequence[int]]]
-) -> frozenset[tuple[str, int]]:
-    """What a check kills, as far as it was run; else what it would by what was measured."""
-    if check not in kills:
-        return check.trials
-    return frozenset((mutant, round) for mutant, rounds in kills[check].items() for round in rounds)
-
-
-def _suggestion(check: ProposedCheck, kills: Mapping[str, tuple[int, ...]], seeds: int) -> Suggestion:
+def _suggestion(check: ProposedCheck, trials: Trials, seeds: int) -> Suggestion:
     added = check.addition()
     is_other = check.place.style == OTHER
+    kills: dict[str, tuple[int, ...]] = {}
+    for mutant, round in sorted(trials):
+        kills[mutant] = (*kills.get(mutant, ()), round)
     return Suggestion(
         test=check.place.node,
         style=check.place.style,
@@ -252,7 +219,7 @@ def _suggestion(check: ProposedCheck, kills: Mapping[str, tuple[int, ...]], seed
         statement=check.statement,
         by_hand="\n".join([*dict.fromkeys(added.imports), *added.lines]) if is_other else "",
         tolerance=check.tolerance,
-        spread=check.band.spread if check.band is not None else None,
+        spread=check.spread,
         runs=check.runs,
         fresh=seeds,
         unseen=unseen(seeds),
