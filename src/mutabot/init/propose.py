@@ -15,7 +15,7 @@ from mutabot.model import ANY, Vocabulary
 from mutabot.model.watched import WatchedCallable
 
 from .commands import commands_of, tells_commands
-from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached
+from .layout import Layout, compared_with, imported_modules, look
 from .messages import MessageEntry, entries
 from .observe import LIMIT, observe
 from .operations import Proposal, proposals
@@ -99,7 +99,6 @@ class _Look:
         found: proposed operations that no shipped vocabulary has.
         others: calls of which nothing shows what they mean.
         oracle: files on the tests' side that read from the robot.
-        unreached: calls of the program's text that no test makes.
     """
 
     def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
@@ -121,9 +120,6 @@ class _Look:
                 one.is_plain = not one.call.problem and not one.call.is_property
             self.found = [one for one in self.others if one.is_plain]
             self.others = [one for one in self.others if not one.is_plain]
-        self.unreached: list[Unreached] = [
-            *unreached(self.layout, self._reached()),
-        ]
 
     @property
     def vocabulary(self) -> list[str]:
@@ -134,7 +130,7 @@ class _Look:
     @property
     def needs_vocabulary(self) -> bool:
         """Whether there is anything to say that no shipped vocabulary says."""
-        return bool(self.found or self.named or self.others or self.unreached or not self.known)
+        return bool(self.found or self.named or self.others or not self.known)
 
     def text(self) -> str:
         """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
@@ -151,7 +147,7 @@ class _Look:
         return self._text()
 
     def _text(self) -> str:
-        return vocabulary_text(self.found, self.others, self.program, self.unreached, self.named)
+        return vocabulary_text(self.found, self.others, self.program, self.named)
 
     def _new(self, calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
         """Calls to be described here: those of shipped vocabularies only where the program tells more."""
@@ -177,10 +173,6 @@ class _Look:
         ]
         files += [file for entry in self.named if entry.of_tests for file in entry.files]
         self.oracle = [file for file in dict.fromkeys(files) if file not in self.program]
-
-    def _reached(self) -> list[tuple[str, int, str]]:
-        places = [(where.rpartition(":"), call.name) for call in self.seen.calls for where in call.sites]
-        return [*((file, int(line), name) for (file, _, line), name in places), *self.seen.reached]
 
 
 def propose(
@@ -319,8 +311,7 @@ def _counted(found: _Look) -> str:
 
 
 def _about_vocabulary(found: _Look, questions: int) -> str:
-    commented = len(found.others) + len(found.unreached)
-    also = f"; {_number(commented, 'more call')} as comments" if commented else ""
+    also = f"; {_number(len(found.others), 'more call')} as comments" if found.others else ""
     count = sum(entry.is_taken for entry in found.named) + len(found.found)
     if count:
         asked = f" and {_number(questions, 'question')}" if questions else ""

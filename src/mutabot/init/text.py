@@ -11,14 +11,13 @@ from mutabot.model import ANY
 from mutabot.model.watched import WatchedPart
 
 from .guess import Guess
-from .layout import Unreached
 from .messages import DescribedPart, MessageEntry
 from .operations import Proposal
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: the longest text that is shown as an example, and values of each part
 _LONGEST, _EXAMPLES = 60, 4
-_MOST_UNREACHED, _MOST_UNTOLD = 40, 16
+_MOST_UNTOLD = 16
 _DONE = {
     "topic": "message", "service": "call", "action": "goal, feedback or result", "parameter": "reading",
     "timer": "tick", "rate": "turn", "tf": "reading",
@@ -29,7 +28,6 @@ def vocabulary_text(
     found: Sequence[Proposal],
     others: Sequence[Proposal],
     program: Sequence[str],
-    unreached: Sequence[Unreached] = (),
     named: Sequence[MessageEntry] = (),
 ) -> str:
     """The vocabulary file."""
@@ -46,9 +44,6 @@ def vocabulary_text(
             "# signs away and say what its arguments or its result mean.\n\n"
             + "\n\n".join(_commented(operation_text(proposal)) for proposal in others)
         )
-    if unreached:
-        lines = [f"#   {one.file}:{one.line}  {one.callee}" for one in unreached[:_MOST_UNREACHED]]
-        blocks.append("# No test reaches these calls, so they cannot be mutated:\n" + "\n".join(lines))
     return "\n\n".join(blocks) + "\n"
 
 

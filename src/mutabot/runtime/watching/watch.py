@@ -178,7 +178,6 @@ class Watch:
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._known: dict[tuple[Any, str], Callee | None] = {}
         self._patches: dict[tuple[str, str], type | None] = {}
-        self._reached: dict[tuple[int, str], None] = {}
         self._names: NamesSeen | None = None
         self._files: dict[str, tuple[str, bool] | None] = {}
 
@@ -194,7 +193,6 @@ class Watch:
     def method(self, value: Any, name: str, place: int) -> Any:
         """``value.name`` is about to be called."""
         found = getattr(value, name)
-        self._reached[place, name] = None
         if isinstance(found, type):
             return found
         callee = self._method(value, name)
@@ -204,7 +202,6 @@ class Watch:
 
     def named(self, function: Any, place: int) -> Any:
         """A function is about to be called by its name."""
-        self._reached[place, ""] = None
         if isinstance(function, type):
             return function
         return self._wrapped(function, self._of(function_of(function), place), place)
@@ -220,10 +217,9 @@ class Watch:
         return found
 
     def data(self) -> WatchedCalls:
-        """What was seen: callables, what was done under names, and all places that were come by."""
+        """What was seen: callables, and what was done under names."""
         uses = list(self._names.uses.values()) if self._names is not None else []
-        reached = [(*self._places[place], name) for place, name in list(self._reached)]
-        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses, reached)
+        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses)
 
     def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
         """File, line and side of a frame or the nearest one around it, or of what is called back."""
