@@ -7,28 +7,25 @@ and for setting up the publisher, an action for its goal, feedback, result and c
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mutabot.model.operation import WRITTEN, Form
 
-#: the keys that name an operation on a middleware, each with the forms that it stands for, the main one
-#: first; a topic's depend on its ``direction``
-FORMS: Mapping[str, tuple[Form, ...]] = {
-    "topic": (),
-    "service": (Form.CALL, Form.CLIENT),
-    "action": (Form.GOAL, Form.FEEDBACK, Form.RESULT, Form.CANCEL, Form.CLIENT),
-    "parameter": (Form.PARAMETER,),
-    "timer": (Form.TICK, Form.TIMER),
-    "rate": (Form.SLEEP, Form.RATE),
-    "tf": (Form.TRANSFORM,),
-}
-DIRECTIONS: Mapping[str, tuple[Form, ...]] = {
-    "publish": (Form.PUBLISH, Form.ADVERTISE),
-    "receive": (Form.RECEIVE, Form.SUBSCRIBE),
+#: the keys that name an operation on a middleware, a topic's with its ``direction``, each with the forms that
+#: it stands for, the main one first
+FORMS: Mapping[tuple[str, str | None], tuple[Form, ...]] = {
+    ("topic", "publish"): (Form.PUBLISH, Form.ADVERTISE),
+    ("topic", "receive"): (Form.RECEIVE, Form.SUBSCRIBE),
+    ("service", None): (Form.CALL, Form.CLIENT),
+    ("action", None): (Form.GOAL, Form.FEEDBACK, Form.RESULT, Form.CANCEL, Form.CLIENT),
+    ("parameter", None): (Form.PARAMETER,),
+    ("timer", None): (Form.TICK, Form.TIMER),
+    ("rate", None): (Form.SLEEP, Form.RATE),
+    ("tf", None): (Form.TRANSFORM,),
 }
 #: all keys that name an operation
-NAMING = ("call", "method", *FORMS)
+NAMING = ("call", "method", *dict.fromkeys(key for key, _ in FORMS))
 
 
 @dataclass(frozen=True)
@@ -37,53 +34,37 @@ class Sides:
 
     Attributes:
         written, read: the keys of their tables; None where there are none.
-        words: what messages call what is written, and what is read.
         root: the argument that holds the message that is written; None if arguments are written by name.
         is_message: whether the keys of the tables are bare paths to fields, such as ``pose.position.x``.
     """
 
     written: str | None = "arguments"
     read: str | None = "result"
-    words: tuple[str, str] = ("arguments", "result")
     root: str | None = None
     is_message: bool = False
 
 
-def _fields(form: Form, written: str | None, read: str | None, *words: str) -> tuple[Form, Sides]:
-    said, heard = words or (written or "", read or "")
-    return form, Sides(written, read, (said, heard), WRITTEN.get(form), is_message=True)
-
-
 #: of callables
 CALLABLE = Sides()
-_TOPIC = ("what is published", "what is received")
-_ACTION = ("goal", "feedback or result")
-_READ = ("what is sent", "what is read")
 #: of what is done under a name; nothing is described of the forms that are missing
 SIDES: Mapping[Form, Sides] = {
-    Form.PARAMETER: Sides(None, "value", _READ),
-    **dict(
-        (
-            _fields(Form.PUBLISH, "fields", None, *_TOPIC),
-            _fields(Form.RECEIVE, None, "fields", *_TOPIC),
-            _fields(Form.CALL, "request", "response"),
-            _fields(Form.GOAL, "goal", None, *_ACTION),
-            _fields(Form.FEEDBACK, None, "feedback", *_ACTION),
-            _fields(Form.RESULT, None, "result", *_ACTION),
-            _fields(Form.TRANSFORM, None, "fields", *_READ),
-        )
-    ),
+    form: Sides(written, read, WRITTEN.get(form), is_message=form is not Form.PARAMETER)
+    for form, written, read in (
+        (Form.PUBLISH, "fields", None),
+        (Form.RECEIVE, None, "fields"),
+        (Form.CALL, "request", "response"),
+        (Form.GOAL, "goal", None),
+        (Form.FEEDBACK, None, "feedback"),
+        (Form.RESULT, None, "result"),
+        (Form.PARAMETER, None, "value"),
+        (Form.TRANSFORM, None, "fields"),
+    )
 }
 _TYPE = re.compile(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)")
 _ARROW = re.compile(r"\s*(?:→|->)\s*")
 _GRAPH_NAME = re.compile(r"[\w/*~]+")
 #: names that are not resolved by namespaces
 _PLAIN = {"parameter": re.compile(r"[\w/*~.\-]+"), "timer": re.compile(r"[\w*.<>]+")}
-
-
-def forms_of(key: str, direction: str | None) -> Sequence[Form]:
-    """The forms that an entry stands for."""
-    return DIRECTIONS[direction or ""] if key == "topic" else FORMS[key]
 
 
 def name_of(key: str, text: str) -> str:

@@ -11,7 +11,7 @@ from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Prob
 from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.signature import parse_signature
 
-from .names import CALLABLE, NAMING, SIDES, Sides, forms_of, name_of, type_of
+from .names import CALLABLE, FORMS, NAMING, SIDES, Sides, name_of, type_of
 from .patterns import read_patterns
 from .quantities import bare_path, in_message, read_quantities
 from .schema import (
@@ -56,12 +56,10 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
         return [_read_callable(place, table)]
     if keys[0] == "topic" and "direction" not in raw:
         place.error('a topic needs direction = "publish" or "receive"')
-    named = _read_name(place, table, keys[0])
-    if named is None:
-        return []
-    forms = forms_of(keys[0], table.direction)
-    _check_keys(place, table, keys[0], forms)
-    names = [replace(named, form=form) for form in forms]
+    forms = FORMS.get((keys[0], table.direction if keys[0] == "topic" else None), ())
+    names = _read_names(place, table, keys[0], forms)
+    if names:
+        _check_keys(place, table, keys[0], forms)
     return [_read_operation(place, table, one.target, one, is_main=one is names[0]) for one in names]
 
 
@@ -93,16 +91,15 @@ def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Se
         (place / other).error(text)
 
 
-def _read_name(place: DocumentPlace, table: OperationTable, key: str) -> Named | None:
-    """The name on a middleware, with the first of its forms; None if it has mistakes, which are noted."""
+def _read_names(place: DocumentPlace, table: OperationTable, key: str, forms: Sequence[Form]) -> list[Named]:
+    """The name on a middleware in each of its forms; none if it has mistakes, which are noted."""
     mistakes = len(place.errors)
     name = (place / key).attempt(name_of, key, getattr(table, key))
     node = (place / "node").attempt(name_of, "node", table.node) if table.node is not None else None
     kind = (place / "type").attempt(type_of, table.type) if table.type is not None else None
-    without_forms = key == "topic" and table.direction is None
-    if name is None or without_forms or len(place.errors) > mistakes:
-        return None
-    return Named(forms_of(key, table.direction)[0], name, node, kind)
+    if name is None or len(place.errors) > mistakes:
+        return []
+    return [Named(form, name, node, kind) for form in forms]
 
 
 def _read_callable(place: DocumentPlace, table: OperationTable) -> Operation:

@@ -256,7 +256,9 @@ def _note_faults(
 
 
 def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]:
-    kind, (written, read) = table.kind, sides.words
+    kind = table.kind
+    written = "what is sent" if sides.written in (None, "fields") else sides.written
+    read = "what is received" if sides.read in (None, "fields") else sides.read
     known = "settings are known from what is set up; no vocabulary describes them"
     if is_written:
         text = f"{_a(kind)} is read from the robot, so it belongs to {read}, not to {written}"
