@@ -89,6 +89,8 @@ def main() -> int:
         needs = [need for *_, more in PROJECTS.values() for need in more]
         ours = _environment(venvs / "mutabot", [str(HERE.parent), PYTEST, *needs])
         theirs = _environment(venvs / "irradiate", [IRRADIATE, PYTEST, *needs])
+        here = [ours, "-m", "pip", "install", "-q", "--no-deps", "--force-reinstall", str(HERE.parent)]
+        subprocess.run(here, check=True)  # an environment that was kept has an older one
         for name in given.names:
             project = _project(name, Path(folder, name))
             suite, done = min((_cpu([theirs, "-m", "pytest", "-q"], project) for _ in range(3)), key=_seconds)
@@ -190,21 +192,22 @@ def _irradiate(python: str, project: Path, mutants: int) -> tuple[Figures, list[
         raise SystemExit(
             f"irradiate: exit code {done.returncode}: {done.stdout[-2000:]}{done.stderr[-2000:]}"
         )
-    # it names files from the folder of the package, which may be no package itself
+    # it names files from the folder of the package, and has no text of them if that is not the project's own
     files = [str(path.relative_to(project)) for path in (project / program).rglob("*.py")]
     place = {str(Path(file).relative_to(Path(program).parent)): file for file in files}
     judged = [
-        Judged(one["id"], one["status"], _written_by_location(place.get(file, file), text["source"], one))
-        for file, text in json.loads(report.read_text())["files"].items()
-        for one in text["mutants"]
+        Judged(one["id"], one["status"], _written_by_location(project, place.get(file, file), one))
+        for file, found in json.loads(report.read_text())["files"].items()
+        for one in found["mutants"]
     ]
     return _figures(cpu, judged), judged
 
 
-def _written_by_location(file: str, source: str, mutant: dict[str, Any]) -> Callable[[], tuple[str, bytes]]:
+def _written_by_location(project: Path, file: str, mutant: dict[str, Any]) -> Callable[[], tuple[str, bytes]]:
     """A mutant as the report format of Stryker tells it: all counted from 1, the end behind the last."""
 
     def write() -> tuple[str, bytes]:
+        source = (project / file).read_text(encoding="utf-8")
         lines = source.splitlines(keepends=True)
         first, last = mutant["location"]["start"], mutant["location"]["end"]
         start = sum(map(len, lines[: first["line"] - 1])) + first["column"] - 1

@@ -107,15 +107,12 @@ class Feed:
 
     def _now(self, tape: Tape) -> float | None:
         """The simulator's own time, s; None, and a problem, if it tells none."""
-        try:  # at every step: tape.reading, which says the same, would cost more than the rest
+        with tape.reading("the simulated time cannot be read"):
             now = float(self._time())
-            why = "" if isfinite(now) else f"{now} is no time"
-        except Exception as error:
-            now, why = 0.0, f"{type(error).__name__}: {error}"
-        if why:
-            tape.problem(f"the simulated time cannot be read: {why}")
-            return None
-        return now
+            if isfinite(now):
+                return now
+            tape.problem(f"the simulated time cannot be read: {now} is no time")
+        return None
 
     def _tick(self, tape: Tape) -> None:
         now = self._now(tape)

@@ -108,19 +108,19 @@ from dataclasses import replace
 from mutabot.model.events import BranchEnd, SessionEnd
 from mutabot.model.events import TestEnd
 from mutabot_dask import far
-from mutabot_dask.unit import Answer, Unit
+from mutabot_dask.unit import UnitAnswer, WorkUnit
 from mutabot.execution.task import Result
 
 honest = far.run_unit
 
 def run_unit(data):
-    unit = Unit.of(data)
+    unit = WorkUnit.of(data)
     if unit.task.job.mutant.operator not in ("reverse", "skip"):
         return honest(data)  # a control
     (test, *_), mutant = unit.task.job.tests, unit.task.job.mutant
     killed = TestEnd(test, "failed", hits=1, acted=1)
     forged = BranchEnd(replace(mutant, operator="noise").id, killed)
-    answer = Answer.of_result((killed, forged, SessionEnd(1)), Result(unit.task))
+    answer = UnitAnswer.of_result((killed, forged, SessionEnd(1)), Result(unit.task))
     return replace(answer, ticket=unit.ticket).data("/", "/")
 
 far.run_unit = run_unit

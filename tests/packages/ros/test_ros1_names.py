@@ -154,5 +154,5 @@ def test_a_vocabulary_of_names_is_enough_for_nodes_in_processes_of_their_own(tmp
     assert mutants["main:goals.publish#1:data:reverse"].description == (
         "publish /arm/goal of /miss*: data (x) 0.75 m → as far to the other side of where it is"
     )
-    unused = "no test called the service /griper/open; seen: client /gripper/close"
+    unused = "no test called the service /griper/open; seen: call /gripper/close"
     assert any(unused in line for line in quiet.lines)

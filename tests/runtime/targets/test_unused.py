@@ -31,6 +31,16 @@ def said(wanted: str, *used: str) -> list[str]:
         ),
         (
             "call /home",
+            ["call /hme", "client /hme"],
+            "no test called the service /home; seen: call /hme",
+        ),
+        (
+            "call /home",
+            ["client /hme", "call /hme"],
+            "no test called the service /home; seen: call /hme",
+        ),
+        (
+            "call /home",
             [],
             "no test called the service /home; nothing of that kind was seen under any name; "
             "middlewares that are known here: bus",

@@ -24,7 +24,7 @@ from mutabot.model.codec import from_data, to_data
 from .engine import run_trials
 
 #: seconds of tests below which nothing is left out
-LEAST = 60.0
+LEAST = 30.0
 
 
 def earlier_decision(journal: Journal) -> Confirmation | None:

@@ -32,8 +32,6 @@ from mutabot.runtime.program_text.standing import WRAPPERS, Candidate, Standing,
 #: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
 #: which is None if nobody knows any more
 _MARK = "_mutabot_handed"
-#: what wrapt calls how a wrapper binds
-_BINDING = "_self_binding"
 
 
 class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
@@ -114,14 +112,12 @@ class Handing:
     ) -> Handed:
         """What looks like one callable and calls ``found``, which may be the same, as an operation."""
         calls = partial(self._call, one, place, receiver, found)
-        # a mock made after a wrapped function says that it is a wrapper, and wrapt asks it how it binds;
-        # if the mock refuses to say, no wrapper can be made on Python 3.13
-        own = vars(looks) if mock_of(looks) is looks else {}
-        own[_BINDING] = "callable"
-        try:
-            made: Handed = Handed(looks, calls)
-        finally:
-            del own[_BINDING]
+        says_it_is_one = mock_of(looks) is looks and isinstance(looks, WRAPPERS)
+        # such a mock was made after a wrapped function. wrapt would ask it how it binds, which it refuses to
+        # say, and then no wrapper can be made on Python 3.13: so wrapt first sees another callable
+        made: Handed = Handed(calls if says_it_is_one else looks, calls)
+        if says_it_is_one:
+            made.__wrapped__ = looks
         return made
 
     def _call(

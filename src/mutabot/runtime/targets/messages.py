@@ -186,7 +186,9 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
 
 def _instead(named: Named, used: Collection[Named]) -> str:
     """Say what was used or set up for the same, nearest first."""
-    alike = {one.name: one.target for one in used if one.form in (named.form, _SET_UP.get(named.form))}
+    wanted = (_SET_UP.get(named.form), named.form)  # of one name, what was done is told, not what was set up
+    told = sorted((wanted.index(one.form), one.target, one.name) for one in used if one.form in wanted)
+    alike = {name: target for _, target, name in told}
     if not alike:
         known = f"; middlewares that are known here: {', '.join(brought('middlewares')) or 'none'}"
         return f"nothing of that kind was seen under any name{'' if used else known}"

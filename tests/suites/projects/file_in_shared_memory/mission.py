@@ -1,6 +1,4 @@
-from pathlib import Path
-
-POSITION = Path("/dev/shm/corpus_axis_position")
+from robot import POSITION
 
 
 def calibrate(axis):
