@@ -10,10 +10,9 @@ from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.suggest.checks import ProposedCheck
-from mutabot.suggest.place import OTHER, place_of
-from mutabot.suggest.project import ProjectFiles, diff_of
-from mutabot.suggest.prove import texts_with
+from mutabot.suggest.project import OTHER, ProjectFiles, place_of
 from mutabot.suggest.readings import PROBE, ReadExpression
+from mutabot.suggest.suggest import texts_with
 
 from .projects import STYLES, make, passes, patched
 
@@ -45,7 +44,7 @@ def checks(project: ProjectFiles, style: str) -> list[ProposedCheck]:
 def test_added_checks_pass_on_the_original_and_notice_a_fault(project: ProjectFiles) -> None:
     found = [one for style in STYLES.values() for one in checks(project, style)]
     texts = texts_with(project, found)
-    patched(project.root, diff_of(project.root, texts))
+    patched(project.root, project.diff(texts))
     assert {file: (project.root / file).read_text() for file in texts} == texts
     assert passes(project.root) == (0, len(NODES) + 3)
 

@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.model import Mutant, Role, Site, Span
 from mutabot.suggest.checks import candidates
-from mutabot.suggest.place import PlaceInTest
+from mutabot.suggest.project import PlaceInTest
 from mutabot.suggest.readings import PROBE, Measured, ReadExpression
 from mutabot.suggest.suggest import why_unsolved
 

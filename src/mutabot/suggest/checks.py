@@ -14,8 +14,7 @@ from typing import Any
 
 from mutabot.frozen import frozen
 
-from .place import Addition, PlaceInTest, equal, within
-from .project import ProjectFiles
+from .project import Addition, PlaceInTest, ProjectFiles, equal, within
 from .readings import Measured, Read, ReadExpression, is_number, known
 
 CONFIDENCE = 0.95

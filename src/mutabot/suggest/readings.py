@@ -24,8 +24,7 @@ from mutabot.model import Mutant, Operation, Probe
 from mutabot.model.events import TestEnd
 from mutabot.model.quantity import step_of
 
-from .place import Addition, PlaceInTest, edited
-from .project import ProjectFiles, copy_of, name_in
+from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
@@ -67,8 +66,8 @@ def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpressio
     for target, endings, tolerance in calls:
         where, _, attribute = target.partition(":")
         if attribute and endings:
-            name = name_in(module, where, attribute, place.names)
-            found += [ReadExpression(name.text + ending, PROBE, tolerance, name.needs) for ending in endings]
+            name, needs = name_in(module, where, attribute, place.names)
+            found += [ReadExpression(name + ending, PROBE, tolerance, needs) for ending in endings]
     return list({one.text: one for one in reversed(found)}.values())[::-1]
 
 
@@ -98,8 +97,8 @@ def _by_oracle(
             strict = any(default is None for default in given.kw_defaults)
             if strict or not set(needed) <= set(place.names) or node.decorator_list:
                 continue
-            name = name_in(module, project.import_name(file), node.name, place.names)
-            yield ReadExpression(f"{name.text}({', '.join(needed)})", ORACLE, tolerance, name.needs)
+            name, needs = name_in(module, project.import_name(file), node.name, place.names)
+            yield ReadExpression(f"{name}({', '.join(needed)})", ORACLE, tolerance, needs)
 
 
 def _only_reads(operation: Operation) -> bool:
