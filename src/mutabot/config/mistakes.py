@@ -24,36 +24,34 @@ T = TypeVar("T")
 #: more than these are not listed one by one
 MOST_REPORTED = 10
 
-#: what people call it -> what it is called here
-ALSO_KNOWN_AS: Mapping[str, Mapping[str, str]] = {
+#: what it is called here, and what people call it
+_OTHER_NAMES: Mapping[str, Mapping[str, str]] = {
     "unit": {
-        **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-        **dict.fromkeys(("millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
-        **dict.fromkeys(("centimeter", "centimeters", "centimetre", "centimetres"), "cm"),
-        **dict.fromkeys(("degree", "degrees", "°"), "deg"),
-        **dict.fromkeys(("radian", "radians"), "rad"),
-        **dict.fromkeys(("sec", "second", "seconds"), "s"),
-        **dict.fromkeys(("msec", "millisecond", "milliseconds"), "ms"),
-        **dict.fromkeys(("%", "per cent"), "percent"),
-        **dict.fromkeys(("ratio", "1"), "fraction"),
+        "m": "meter, meters, metre, metres",
+        "mm": "millimeter, millimeters, millimetre, millimetres",
+        "cm": "centimeter, centimeters, centimetre, centimetres",
+        "deg": "degree, degrees, °",
+        "rad": "radian, radians",
+        "s": "sec, second, seconds",
+        "ms": "msec, millisecond, milliseconds",
+        "percent": "%, per cent",
+        "fraction": "ratio, 1",
     },
     "kind": {
-        **dict.fromkeys(("color", "colour", "text", "string", "enum"), "label"),
-        **dict.fromkeys(("bool", "boolean"), "flag"),
-        **dict.fromkeys(("gripper", "grip"), "opening"),
-        **dict.fromkeys(("joint", "joint angle"), "angle"),
-        **dict.fromkeys(("time", "wait"), "duration"),
-        **dict.fromkeys(("range", "length"), "distance"),
+        "label": "color, colour, text, string, enum",
+        "flag": "bool, boolean",
+        "opening": "gripper, grip",
+        "angle": "joint, joint angle",
+        "duration": "time, wait",
+        "distance": "range, length",
     },
-    "mode": {
-        **dict.fromkeys(("relative", "rel", "incremental"), "by"),
-        **dict.fromkeys(("absolute", "abs"), "to"),
-    },
-    "axis": {"roll": "x", "pitch": "y", "yaw": "z"},
+    "mode": {"by": "relative, rel, incremental", "to": "absolute, abs"},
+    "axis": {"x": "roll", "y": "pitch", "z": "yaw"},
     "key": {
-        **dict.fromkeys(("transform", "frame"), "tf"),
-        **dict.fromkeys(("publisher", "subscriber"), "topic"),
-        **{"param": "parameter", "srv": "service"},
+        "tf": "transform, frame",
+        "topic": "publisher, subscriber",
+        "parameter": "param",
+        "service": "srv",
     },
 }
 
@@ -108,7 +106,8 @@ class DocumentPlace:
     def unknown(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Note a name that does not exist."""
         document, known = self.document, list(known)
-        alias = ALSO_KNOWN_AS.get(kind, {}).get(name.casefold())
+        names = _OTHER_NAMES.get(kind, {}).items()
+        alias = next((one for one, others in names if name.casefold() in others.split(", ")), None)
         where: dict[str, Any] = {
             "file": document.file,
             "key": document.key(self.path),
