@@ -498,7 +498,7 @@ def test_tests_that_cannot_run_are_told_precisely_and_files_are_written(project:
     assert "No module named 'simulator_that_is_missing'" in told
     assert "python -m pytest tests" in told
     assert load_configuration(project).program == ("mission.py",)
-    assert "without an operation: no call was seen" in told
+    assert "without an operation" in told
 
 
 def test_failing_tests_are_told_and_what_they_called_counts(project: Path) -> None:
@@ -724,8 +724,9 @@ def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: P
     assert set(operations) == {"*:*.move_by", "robot:Lamp.set_output", "*:*.rotate"}
     assert str(operations["*:*.move_by"].signature) == "(dx, speed=0.1)"
     assert [one.name for one in operations["*:*.rotate"].arguments] == ["yaw_deg"]
-    assert "seen on mocks or fakes, proposed as what they stand for: robot:Lamp.set_output" in lines
-    assert "seen on mocks or fakes, proposed for any object that has them: move_by, rotate" in lines
+    (mocked,) = (line for line in lines if line.startswith("seen on mocks or fakes"))
+    assert set(mocked.rpartition(": ")[2].split(", ")) == {"robot:Lamp.set_output", "move_by", "rotate"}
+    assert mocked.startswith("seen on mocks or fakes, proposed as what they stand for, or by name")
 
 
 @pytest.mark.parametrize(

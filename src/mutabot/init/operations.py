@@ -31,6 +31,7 @@ class Proposal:
         current, opposite: targets of other operations, or None.
         reads_by_name: whether the text only says what to read.
         is_plain: whether it is proposed although nothing tells what it means.
+        is_taken: whether it is proposed.
     """
 
     call: WatchedCallable
@@ -42,6 +43,7 @@ class Proposal:
     opposite: str | None = None
     reads_by_name: bool = False
     is_plain: bool = False
+    is_taken: bool = False
 
     @property
     def target(self) -> str:
@@ -70,19 +72,15 @@ class Proposal:
         return sure or is_written or bool(self.patterns) or self.is_plain or _is_command(self.call)
 
 
-def proposals(
-    calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()
-) -> tuple[list[Proposal], list[Proposal]]:
-    """Proposed operations, and those of which nothing shows what they mean to the robot.
-
-    ``groups``: constants that the program compares one and the same thing with.
-    """
-    all_ = [_proposal(call, groups) for call in calls if not _is_housekeeping(call)]
-    found = {one.target: one for one in all_ if one.is_operation}
-    for proposal in found.values():
-        _find_current(proposal, found)
-        _find_opposite(proposal, found)
-    return list(found.values()), [one for one in all_ if one.target not in found]
+def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
+    """What becomes of calls; ``groups``: constants that the program compares one and the same thing with."""
+    found = [_proposal(call, groups) for call in calls if not _is_housekeeping(call)]
+    taken = {one.target: one for one in found if one.is_operation}
+    for proposal in taken.values():
+        proposal.is_taken = True
+        _find_current(proposal, taken)
+        _find_opposite(proposal, taken)
+    return found
 
 
 def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposal:
