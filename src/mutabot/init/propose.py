@@ -14,11 +14,10 @@ from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY, Vocabulary
 from mutabot.model.watched import WatchedCallable
 
-from .commands import commands_of, tells_commands
 from .layout import Layout, compared_with, imported_modules, look
 from .messages import MessageEntry, entries
 from .observe import LIMIT, observe
-from .operations import Proposal, proposals
+from .operations import Proposal, commands_of, proposals, tells_commands
 from .text import counted, questions_in, value_text, vocabulary_text
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
