@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.config.vocabulary.names import FORMS, SIDES, Sides
+from mutabot.config.vocabulary.schema import FORMS, SIDES, Sides
 from mutabot.model.operation import Form
 from mutabot.model.watched import Use, Values, WatchedPart
 

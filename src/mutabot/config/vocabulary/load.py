@@ -16,8 +16,8 @@ from mutabot.model import Clock, Kind, Operation, Probe, Quantity, Vocabulary, W
 from mutabot.model.quantity import READING_OF, is_reading_of
 
 from .operations import read_clock, read_operations, read_probe, read_wait
+from .patterns import together
 from .schema import VocabularyTable
-from .when import together
 
 #: lists of targets at the top of a file
 _TARGETS = ("refusals", "checks", "failures")

@@ -11,20 +11,24 @@ from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Prob
 from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.signature import parse_signature
 
-from .names import CALLABLE, FORMS, NAMING, SIDES, Sides, name_of, type_of
-from .patterns import read_patterns
+from .patterns import in_cases, in_each_mode, name_of_cases, read_patterns, read_when
 from .quantities import bare_path, in_message, read_quantities
 from .schema import (
+    CALLABLE,
+    FORMS,
+    NAMING,
+    SIDES,
     ClockTable,
     OperationTable,
     ProbeTable,
     RefusedTable,
+    Sides,
     WaitTable,
     is_name,
+    name_of,
     read_idle,
+    type_of,
 )
-from .when import in_cases, in_each_mode, read_when
-from .when import name_of as name_of_cases
 
 #: keys with quantities
 _TABLES = {key for one in (CALLABLE, *SIDES.values()) for key in (one.written, one.read) if key}

@@ -16,8 +16,7 @@ from mutabot.model.path import Step
 from mutabot.model.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
 from mutabot.model.units import QUATERNION_ORDERS, UNITS, Dimension, dimension_of, is_euler_order
 
-from .names import CALLABLE, Sides
-from .schema import QuantityTable, is_target
+from .schema import CALLABLE, QuantityTable, Sides, is_target
 
 #: every axis a quantity may have
 AXES = ("x", "y", "z", *(f"j{number}" for number in range(1, 13)))
@@ -259,18 +258,13 @@ def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]
     kind = table.kind
     written = "what is sent" if sides.written in (None, "fields") else sides.written
     read = "what is received" if sides.read in (None, "fields") else sides.read
-    known = "settings are known from what is set up; no vocabulary describes them"
+    text = f"{_a(kind)} is sent to the robot, so it belongs to {written}, not to {read}"
     if is_written:
         text = f"{_a(kind)} is read from the robot, so it belongs to {read}, not to {written}"
-        return [
-            ("kind", kind is Kind.SETTING, known),
-            ("kind", kind not in WRITTEN, text + _AS_ARGUMENT.get(kind, "")),
-        ]
-    text = f"{_a(kind)} is sent to the robot, so it belongs to {written}, not to {read}"
-    return [
-        ("kind", kind is Kind.SETTING, known),
-        ("kind", kind not in READ, text + _AS_RESULT.get(kind, "")),
-    ]
+    text += (_AS_ARGUMENT if is_written else _AS_RESULT).get(kind, "")
+    known = "settings are known from what is set up; no vocabulary describes them"
+    is_wrong = kind not in (WRITTEN if is_written else READ)
+    return [("kind", kind is Kind.SETTING, known), ("kind", is_wrong, text)]
 
 
 def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
