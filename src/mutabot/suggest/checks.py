@@ -167,13 +167,13 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
         readings = [known(measured, place, text) for text in runs[0] if all(text in read for read in runs)]
         given = [one for one in readings if _is_given(one.text, originals, mutants)]
         compared, stated = _stated(project.module(place.file))
-        for reading in readings:
-            for check in _of(place, reading, given, runs, mutants, stated):
-                why = _why_not(check, compared)
-                if why is None:
-                    found.append(check)
-                else:
-                    refused.update((mutant, why) for mutant, _ in check.trials)
+        seen = _ReadAtEnd(place, runs, mutants, given, stated)
+        for check in (check for reading in readings for check in seen.checks(reading)):
+            why = _why_not(check, compared)
+            if why is None:
+                found.append(check)
+            else:
+                refused.update((mutant, why) for mutant, _ in check.trials)
     return found, refused
 
 
@@ -186,84 +186,77 @@ def _is_given(text: str, originals: Mapping[tuple[int, str], Read], mutants: Mut
     )
 
 
-def _of(
-    place: PlaceInTest,
-    reading: ReadExpression,
-    given: Sequence[ReadExpression],
-    runs: Sequence[Read],
-    mutants: Mutants,
-    stated: Mapping[str, float],
-) -> Iterator[ProposedCheck]:
-    """The checks of a reading: that it equals what the test was given, or a value."""
-    text, values = reading.text, [read[reading.text] for read in runs]
-    partners = [one for one in given if one.text != text and _last(one) == _last(reading)]
-    for other in [*partners[:_PARTNERS], None]:
-        others = [read[other.text] for read in runs] if other is not None else []
-        if not all(is_number(value) for value in (*values, *others)):
-            check = _equal(place, reading, other, values, others or values[:1] * len(values), mutants)
-        else:
-            check = _near(place, reading, other, runs, mutants, stated)
-        if check is not None and check.trials:
-            yield check
+@frozen
+class _ReadAtEnd:
+    """What was read at the end of a test.
 
+    Attributes:
+        place: the test.
+        runs: what the original read, in each run.
+        mutants: what mutants made it read.
+        given: the readings of what the test was given.
+        stated: the largest tolerance that the tests state, by the last name of what they look at.
+    """
 
-def _near(
-    place: PlaceInTest,
-    reading: ReadExpression,
-    other: ReadExpression | None,
-    runs: Sequence[Read],
-    mutants: Mutants,
-    stated: Mapping[str, float],
-) -> ProposedCheck | None:
-    """The check that a number is near another reading, or near a value."""
+    place: PlaceInTest
+    runs: Sequence[Read]
+    mutants: Mutants
+    given: Sequence[ReadExpression]
+    stated: Mapping[str, float]
 
-    def apart(read: Read) -> float:
-        value, beside = read.get(reading.text), read.get(other.text) if other is not None else 0.0
-        return value - beside if is_number(value) and is_number(beside) else math.nan
+    def checks(self, reading: ReadExpression) -> Iterator[ProposedCheck]:
+        """The checks of a reading: that it equals what the test was given, or a value."""
+        text = reading.text
+        partners = [one for one in self.given if one.text != text and _last(one) == _last(reading)]
+        for other in [*partners[:_PARTNERS], None]:
+            texts = [text] if other is None else [text, other.text]
+            are_numbers = all(is_number(read[one]) for read in self.runs for one in texts)
+            check = self._near(reading, other) if are_numbers else self._equal(reading, other)
+            if check is not None and check.trials:
+                yield check
 
-    floor = max(reading.tolerance, other.tolerance if other is not None else 0.0)
-    band = band_of([apart(read) for read in runs], floor)
-    sizes = _furthest(mutants, lambda read: abs(apart(read) - band.middle))
-    outside = [size for size in sizes.values() if size > band.tolerance]
-    if not outside:
-        return None
-    value, wide = readable(band, min(outside), stated.get(_last(reading), 0.0))
-    if other is not None and abs(band.middle) > wide - band.tolerance:
-        return None  # it is always as far from it, but not there
-    middle = 0.0 if other is not None else value
-    trials = _beyond(_furthest(mutants, lambda read: abs(apart(read) - middle)), wide)
-    expected = value if other is None else other
-    return ProposedCheck(place, reading, expected, len(runs), band.spread, wide, trials)
+    def _near(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
+        """The check that a number is near another reading, or near a value."""
 
+        def apart(read: Read) -> float:
+            value, beside = read.get(reading.text), read.get(other.text) if other is not None else 0.0
+            return value - beside if is_number(value) and is_number(beside) else math.nan
 
-def _equal(
-    place: PlaceInTest,
-    reading: ReadExpression,
-    other: ReadExpression | None,
-    values: Sequence[Any],
-    others: Sequence[Any],
-    mutants: Mutants,
-) -> ProposedCheck | None:
-    """The check that something equals another reading, or a value; None if it does not always do so."""
-    if list(map(repr, values)) != list(map(repr, others)):
-        return None
+        floor = max(reading.tolerance, other.tolerance if other is not None else 0.0)
+        band = band_of([apart(read) for read in self.runs], floor)
+        sizes = self._furthest(lambda read: abs(apart(read) - band.middle))
+        outside = [size for size in sizes.values() if size > band.tolerance]
+        if not outside:
+            return None
+        value, wide = readable(band, min(outside), self.stated.get(_last(reading), 0.0))
+        if other is not None and abs(band.middle) > wide - band.tolerance:
+            return None  # it is always as far from it, but not there
+        middle = 0.0 if other is not None else value
+        trials = _beyond(self._furthest(lambda read: abs(apart(read) - middle)), wide)
+        expected = value if other is None else other
+        return ProposedCheck(self.place, reading, expected, len(self.runs), band.spread, wide, trials)
 
-    def differs(read: Read) -> bool:
-        expected = read.get(other.text) if other is not None else values[0]
-        return reading.text in read and bool(read[reading.text] != expected)
+    def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
+        """The check that something equals another reading, or a value; None if it does not always do so."""
+        text, first = reading.text, self.runs[0][reading.text]
 
-    trials = _beyond(_furthest(mutants, differs), 0.0)
-    return ProposedCheck(place, reading, values[0] if other is None else other, len(values), trials=trials)
+        def expected(read: Read) -> Any:
+            return read.get(other.text) if other is not None else first
 
+        if any(repr(read[text]) != repr(expected(read)) for read in self.runs):
+            return None
+        differing = self._furthest(lambda read: text in read and bool(read[text] != expected(read)))
+        value = first if other is None else other
+        return ProposedCheck(self.place, reading, value, len(self.runs), trials=_beyond(differing, 0.0))
 
-def _furthest(mutants: Mutants, away: Callable[[Read], float]) -> dict[tuple[str, int], float]:
-    """By mutant and round, how far its readings are from what is expected at most."""
-    found: dict[tuple[str, int], float] = {}
-    for mutant, reads in mutants.items():
-        for (round, _), read in reads.items():
-            size, before = away(read), found.get((mutant, round), 0.0)
-            found[mutant, round] = size if size > before else before
-    return found
+    def _furthest(self, away: Callable[[Read], float]) -> dict[tuple[str, int], float]:
+        """By mutant and round, how far its readings are from what is expected at most."""
+        found: dict[tuple[str, int], float] = {}
+        for mutant, reads in self.mutants.items():
+            for (round, _), read in reads.items():
+                size, before = away(read), found.get((mutant, round), 0.0)
+                found[mutant, round] = size if size > before else before
+        return found
 
 
 def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:

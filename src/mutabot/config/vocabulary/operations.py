@@ -25,9 +25,7 @@ from .schema import (
     Sides,
     WaitTable,
     is_name,
-    name_of,
     read_idle,
-    type_of,
 )
 
 #: keys with quantities
@@ -61,7 +59,7 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
     if keys[0] == "topic" and "direction" not in raw:
         place.error('a topic needs direction = "publish" or "receive"')
     forms = FORMS.get((keys[0], table.direction if keys[0] == "topic" else None), ())
-    names = _read_names(place, table, keys[0], forms)
+    names = [Named(form, getattr(table, keys[0]), table.node, table.type) for form in forms]
     if names:
         _check_keys(place, table, keys[0], forms)
     return [_read_operation(place, table, one.target, one, is_main=one is names[0]) for one in names]
@@ -93,17 +91,6 @@ def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Se
         elif other in _ONLY:
             text += f", only {_ONLY[other]} has"
         (place / other).error(text)
-
-
-def _read_names(place: DocumentPlace, table: OperationTable, key: str, forms: Sequence[Form]) -> list[Named]:
-    """The name on a middleware in each of its forms; none if it has mistakes, which are noted."""
-    mistakes = len(place.errors)
-    name = (place / key).attempt(name_of, key, getattr(table, key))
-    node = (place / "node").attempt(name_of, "node", table.node) if table.node is not None else None
-    kind = (place / "type").attempt(type_of, table.type) if table.type is not None else None
-    if name is None or len(place.errors) > mistakes:
-        return []
-    return [Named(form, name, node, kind) for form in forms]
 
 
 def _read_callable(place: DocumentPlace, table: OperationTable) -> Operation:
@@ -332,12 +319,9 @@ def _read_refused_table(
     path = (place / "path").attempt(_path_in_answer, table.path) if table is not None else None
     if table is None or path is None:
         return None
-    topic = action
-    if table.topic is not None:
-        topic = (place / "topic").attempt(name_of, "topic", table.topic)
-    elif needs_topic:
+    if table.topic is None and needs_topic:
         place.error('what is published has no answer; name where it is said: topic = "/…"')
-    return Refused(str(path), tuple(table.values), topic)
+    return Refused(str(path), tuple(table.values), table.topic or action)
 
 
 def _path_in_answer(text: str) -> Path:

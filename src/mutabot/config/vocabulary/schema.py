@@ -13,6 +13,7 @@ import keyword
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field
@@ -121,8 +122,47 @@ def _check_scalar(value: Any) -> Any:
     return value
 
 
+def _check_signs(text: str, allowed: re.Pattern[str]) -> str:
+    if not text.strip():
+        raise ValueError("is empty")
+    if not allowed.fullmatch(text):
+        odd = next(sign for sign in text if not allowed.fullmatch(sign))
+        raise ValueError(f"{text!r}: a name has no {odd!r} in it")
+    return text
+
+
+def _check_resolved(text: str) -> str:
+    if not _check_signs(text, re.compile(r"[\w/*~]+")).startswith(("/", "*")):
+        right = f"{'*/' if text.startswith('~') else '/'}{text.lstrip('~/')}"
+        raise ValueError(
+            f"{text!r} is not resolved: names are compared after namespaces and remapping; write {right!r}"
+        )
+    return text
+
+
+def _frames(text: str) -> str:
+    """The two frames as operations carry them."""
+    parts = [part.strip().removeprefix("/") for part in re.split("→|->", text)]
+    if len(parts) != 2 or not all(parts):
+        raise ValueError(f"{text!r} names no two frames; expected 'base -> tool'")
+    return " → ".join(parts)
+
+
+def _type(text: str) -> str:
+    """``package/Name`` for ``package/msg/Name`` and the like."""
+    found = re.fullmatch(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)", text)
+    if found is None:
+        raise ValueError(f"{text!r} is no type; expected package/Name, such as geometry_msgs/PoseStamped")
+    return f"{found[1]}/{found[2]}"
+
+
 #: a callable or an exception, ``module:qualified.name``
 Target = Annotated[str, AfterValidator(check_target)]
+#: a name of topics, services, actions, nodes or rates
+_GraphName = Annotated[str, AfterValidator(_check_resolved)]
+#: names that are not resolved by namespaces
+_ParameterName = Annotated[str, AfterValidator(partial(_check_signs, allowed=re.compile(r"[\w/*~.\-]+")))]
+_TimerName = Annotated[str, AfterValidator(partial(_check_signs, allowed=re.compile(r"[\w*.<>]+")))]
 #: the units of time in ``model.units``
 TimeUnit = Literal["s", "ms", "us", "min"]
 #: what an argument or a part of an answer can be compared with
@@ -164,16 +204,16 @@ class OperationTable(Table):
 
     call: Target | None = None
     method: Annotated[str | None, AfterValidator(_check_method)] = None
-    topic: str | None = None
+    topic: _GraphName | None = None
     direction: Literal["publish", "receive"] | None = None
-    service: str | None = None
-    action: str | None = None
-    parameter: str | None = None
-    timer: str | None = None
-    rate: str | None = None
-    tf: str | None = None
-    type: str | None = None
-    node: str | None = None
+    service: _GraphName | None = None
+    action: _GraphName | None = None
+    parameter: _ParameterName | None = None
+    timer: _TimerName | None = None
+    rate: _GraphName | None = None
+    tf: Annotated[str, AfterValidator(_frames)] | None = None
+    type: Annotated[str, AfterValidator(_type)] | None = None
+    node: _GraphName | None = None
     command: bool | None = None
     current: str | None = None
     opposite: str | None = None
@@ -200,7 +240,7 @@ class RefusedTable(Table):
 
     path: str = ""
     values: Annotated[list[Scalar], Field(min_length=1)]
-    topic: str | None = None
+    topic: _GraphName | None = None
 
 
 class CaseTable(Table):
@@ -270,43 +310,3 @@ def _data(place: DocumentPlace, raw: Any) -> Any:
         wanted = 'a text, a number, true, false, an array or table of these, or { call = "module:name" }'
         place.error(f"must be {wanted}, not {shown(raw)}")
     return raw
-
-
-_TYPE = re.compile(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)")
-_ARROW = re.compile(r"\s*(?:→|->)\s*")
-_GRAPH_NAME = re.compile(r"[\w/*~]+")
-#: names that are not resolved by namespaces
-_PLAIN = {"parameter": re.compile(r"[\w/*~.\-]+"), "timer": re.compile(r"[\w*.<>]+")}
-
-
-def name_of(key: str, text: str) -> str:
-    """The name as operations carry it. Raises ValueError, saying what would be right."""
-    if key == "tf":
-        return _transform(text)
-    if not text.strip():
-        raise ValueError("is empty")
-    allowed = _PLAIN.get(key, _GRAPH_NAME)
-    if not allowed.fullmatch(text):
-        odd = next(sign for sign in text if not allowed.fullmatch(sign))
-        raise ValueError(f"{text!r}: a name has no {odd!r} in it")
-    if key not in _PLAIN and not text.startswith(("/", "*")):
-        right = f"{'*/' if text.startswith('~') else '/'}{text.lstrip('~/')}"
-        raise ValueError(
-            f"{text!r} is not resolved: names are compared after namespaces and remapping; write {right!r}"
-        )
-    return text
-
-
-def type_of(text: str) -> str:
-    """``package/Name`` for ``package/msg/Name`` and the like. Raises ValueError for anything else."""
-    found = _TYPE.fullmatch(text)
-    if found is None:
-        raise ValueError(f"{text!r} is no type; expected package/Name, such as geometry_msgs/PoseStamped")
-    return f"{found[1]}/{found[2]}"
-
-
-def _transform(text: str) -> str:
-    parts = [part.strip().removeprefix("/") for part in _ARROW.split(text)]
-    if len(parts) != 2 or not all(parts):
-        raise ValueError(f"{text!r} names no two frames; expected 'base -> tool'")
-    return " → ".join(parts)
