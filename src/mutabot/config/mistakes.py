@@ -94,6 +94,14 @@ class DocumentPlace:
     def __truediv__(self, key: str | int) -> DocumentPlace:
         return replace(self, path=(*self.path, key))
 
+    def each(self, raw: Any) -> list[tuple[DocumentPlace, Any]]:
+        """The items of a list with their places; a value that is no list stands for itself."""
+        return (
+            [(self / index, item) for index, item in enumerate(raw)]
+            if isinstance(raw, list)
+            else [(self, raw)]
+        )
+
     def source(self, name: str) -> str:
         """Where something is described: ``robot.toml:12 · robot:Arm.move_by``."""
         line = self.document.line(self.path)

@@ -79,8 +79,7 @@ class _Merged:
             return
         if not document.data and self.is_needed:
             place.error("is empty; a vocabulary names operations: [[operation]]")
-        for index, raw in enumerate(table.operation):
-            at = place / "operation" / index
+        for at, raw in (place / "operation").each(table.operation):
             for operation in read_operations(at, raw):
                 if self._counts(operation.target, is_shipped):
                     self._add_operation(at, operation)
@@ -92,8 +91,7 @@ class _Merged:
         if table.wait is not None:
             at = place / "wait"
             self._add_other(at, "wait", read_wait(at, table.wait), is_shipped)
-        for index, raw in enumerate(table.probe):
-            at = place / "probe" / index
+        for at, raw in (place / "probe").each(table.probe):
             probe = read_probe(at, raw)
             self._add_other(at, f"probe {probe.target if probe is not None else ''}", probe, is_shipped)
 

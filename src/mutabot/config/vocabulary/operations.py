@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from mutabot.config.mistakes import DocumentPlace, shown
+from mutabot.config.mistakes import DocumentPlace
 from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Probe, Quantity, Wait
 from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.signature import parse_signature
@@ -292,36 +292,22 @@ def _read_refused(place: DocumentPlace, raw: Any, named: Named | None) -> tuple[
     action = named.name if named is not None and named.form is Form.GOAL else None
     if raw is None:
         return ()
-    if isinstance(raw, list) and raw and all(isinstance(item, str) for item in raw):
-        if action is None:
-            place.error(f"only the goal of an action ends with a word; {_REFUSED}")
-        for index, word in enumerate(raw):
-            if action is not None and word not in ENDINGS:
-                (place / index).unknown("end of a goal", word, ENDINGS)
-        return (Refused("", tuple(raw), action),)
     if raw == []:
         place.error(f"must not be empty, {_REFUSED}")
-    tables = (
-        [(place / index, item) for index, item in enumerate(raw)] if isinstance(raw, list) else [(place, raw)]
-    )
-    needs_topic = named is not None and named.form is Form.PUBLISH
-    read = (_read_refused_table(at, item, action, needs_topic) for at, item in tables)
-    return tuple(one for one in read if one is not None)
-
-
-def _read_refused_table(
-    place: DocumentPlace, raw: Any, action: str | None, needs_topic: bool
-) -> Refused | None:
-    if not isinstance(raw, dict):
-        place.error(f"expected a table, got {shown(raw)}; {_REFUSED}")
-        return None
-    table = place.table(RefusedTable, raw)
-    path = (place / "path").attempt(_path_in_answer, table.path) if table is not None else None
-    if table is None or path is None:
-        return None
-    if table.topic is None and needs_topic:
-        place.error('what is published has no answer; name where it is said: topic = "/…"')
-    return Refused(str(path), tuple(table.values), table.topic or action)
+    if action is not None and isinstance(raw, list) and all(isinstance(item, str) for item in raw):
+        for at, word in place.each(raw):
+            if word not in ENDINGS:
+                at.unknown("end of a goal", word, ENDINGS)
+        return (Refused("", tuple(raw), action),)
+    found = []
+    for at, item in place.each(raw):
+        table = at.table(RefusedTable, item)
+        path = (at / "path").attempt(_path_in_answer, table.path) if table is not None else None
+        if table is not None and path is not None:
+            found.append(Refused(str(path), tuple(table.values), table.topic or action))
+            if table.topic is None and named is not None and named.form is Form.PUBLISH:
+                at.error('what is published has no answer; name where it is said: topic = "/…"')
+    return tuple(found)
 
 
 def _path_in_answer(text: str) -> Path:

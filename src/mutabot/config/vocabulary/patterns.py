@@ -44,12 +44,12 @@ def read_patterns(
     """
     patterns: list[Pattern] = []
     seen: dict[tuple[str, ...], str] = {}
-    for index, item in enumerate(raw):
-        found = list(_read_pattern(place / index, item, source, common, sides))
+    for at, item in place.each(raw):
+        found = list(_read_pattern(at, item, source, common, sides))
         text = found[0].notation or "" if found else ""
         form = _form(Notation.compile(text)) if found else ()
         if form in seen:
-            (place / index / "text").error(f"takes the same commands as {seen[form]!r}")
+            (at / "text").error(f"takes the same commands as {seen[form]!r}")
         elif found:
             seen[form] = text
         patterns += found
@@ -254,38 +254,16 @@ def name_of_cases(cases: Sequence[Case]) -> str:
 
 def read_when(place: DocumentPlace, raw: Any) -> tuple[Case, ...]:
     """Read ``when``: a table, or a list of tables that all have to fit. Mistakes are noted."""
-    tables = (
-        [(place / index, item) for index, item in enumerate(raw)] if isinstance(raw, list) else [(place, raw)]
-    )
-    if not tables:
+    if raw == []:
         place.error(f"must not be empty; {_WHEN}")
     cases: dict[str, Case] = {}
-    for at, table in tables:
-        case = _read_case(at, table)
-        if case is not None and case.argument in cases:
-            at.error(f"{case.argument} has one value in a call, so it cannot stand here twice")
-        elif case is not None:
-            cases[case.argument] = case
+    for at, item in place.each(raw):
+        table = at.table(CaseTable, item)
+        if table is not None and table.argument in cases:
+            at.error(f"{table.argument} has one value in a call, so it cannot stand here twice")
+        elif table is not None:
+            cases[table.argument] = Case(table.argument, _text(table.value), "when")
     return tuple(cases.values())
-
-
-def _read_case(place: DocumentPlace, raw: Any) -> Case | None:
-    if not isinstance(raw, dict):
-        place.error(f"needs an argument and its value, {_WHEN}")
-        return None
-    table = place.table(CaseTable, raw)
-    if table is None or (place / "argument").attempt(_check_argument, table.argument) is None:
-        return None
-    return Case(table.argument, _text(table.value), "when")
-
-
-def _check_argument(text: str) -> Path:
-    path = Path.parse(text, rooted=True)
-    if text == "self":
-        raise ValueError('self is the object itself; name what lies in it, such as "self.name"')
-    if any(step.bounds is not None for step in path.steps):
-        raise ValueError(f"{text!r} is not one value")
-    return path
 
 
 def _text(value: str | bool | float) -> str:

@@ -20,7 +20,7 @@ from pydantic import AfterValidator, Field
 
 from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.config.table import Table
-from mutabot.model import Kind, Mode
+from mutabot.model import Kind, Mode, Path
 from mutabot.model.operation import WRITTEN, Form
 
 #: the keys that name an operation on a middleware, a topic's with its ``direction``, each with the forms that
@@ -156,6 +156,15 @@ def _type(text: str) -> str:
     return f"{found[1]}/{found[2]}"
 
 
+def _check_argument(text: str) -> str:
+    path = Path.parse(text, rooted=True)
+    if text == "self":
+        raise ValueError('self is the object itself; name what lies in it, such as "self.name"')
+    if any(step.bounds is not None for step in path.steps):
+        raise ValueError(f"{text!r} is not one value")
+    return text
+
+
 #: a callable or an exception, ``module:qualified.name``
 Target = Annotated[str, AfterValidator(check_target)]
 #: a name of topics, services, actions, nodes or rates
@@ -246,7 +255,7 @@ class RefusedTable(Table):
 class CaseTable(Table):
     """``when = { argument = "type", value = "gripper" }``"""
 
-    argument: str
+    argument: Annotated[str, AfterValidator(_check_argument)]
     value: Scalar
 
 
