@@ -14,8 +14,7 @@ from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, u
 from mutabot.limits import shortened
 from mutabot.model.events import Problem
 
-from .document import Document
-from .toml_lines import KeyPath
+from .document import Document, KeyPath
 
 M = TypeVar("M", bound=BaseModel)
 P = ParamSpec("P")
@@ -57,19 +56,17 @@ _OTHER_NAMES: Mapping[str, Mapping[str, str]] = {
 
 #: keys of the configuration that there were, and why there are none any more
 _GONE = dict.fromkeys(("order", "pairs"), "a mutant is one fault, no pair of them")
+#: what is expected, by how the kind of pydantic's mistake begins
 _EXPECTED = {
-    "string_type": "text",
-    "bool_type": "true or false",
-    "int_type": "a whole number",
-    "int_from_float": "a whole number",
-    "int_parsing": "a whole number",
-    "float_type": "a number",
-    "float_parsing": "a number",
-    "finite_number": "a finite number",
-    "list_type": "a list",
-    "tuple_type": "a list",
-    "dict_type": "a table",
-    "model_type": "a table",
+    "string": "text",
+    "bool": "true or false",
+    "int": "a whole number",
+    "float": "a number",
+    "finite": "a finite number",
+    "list": "a list",
+    "tuple": "a list",
+    "dict": "a table",
+    "model": "a table",
 }
 _BOUNDS = {
     "greater_than": ("gt", "more than"),
@@ -96,11 +93,9 @@ class DocumentPlace:
 
     def each(self, raw: Any) -> list[tuple[DocumentPlace, Any]]:
         """The items of a list with their places; a value that is no list stands for itself."""
-        return (
-            [(self / index, item) for index, item in enumerate(raw)]
-            if isinstance(raw, list)
-            else [(self, raw)]
-        )
+        if not isinstance(raw, list):
+            return [(self, raw)]
+        return [(self / index, item) for index, item in enumerate(raw)]
 
     def source(self, name: str) -> str:
         """Where something is described: ``robot.toml:12 · robot:Arm.move_by``."""
@@ -177,8 +172,8 @@ def explained(detail: ErrorDetails) -> str:
     kind, value = detail["type"], detail["input"]
     if kind in ("enum", "literal_error"):
         return f"expected text, got {shown(value)}; known: {detail['ctx']['expected']}"
-    if kind in _EXPECTED:
-        return f"expected {_EXPECTED[kind]}, got {shown(value)}{_list_hint(detail)}"
+    if (wanted := _EXPECTED.get(kind.partition("_")[0])) is not None:
+        return f"expected {wanted}, got {shown(value)}{_list_hint(detail)}"
     if kind in _BOUNDS:
         bound, words = _BOUNDS[kind]
         return f"must be {words} {detail['ctx'][bound]}, got {shown(value)}"

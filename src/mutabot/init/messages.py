@@ -91,7 +91,7 @@ class MessageEntry:
 def entries(found: Sequence[Use]) -> list[MessageEntry]:
     """An entry for each name that the program uses, and for the readings of the tests that mean something."""
     made: dict[tuple[str, str, str | None], MessageEntry] = {}
-    for use in found:
+    for use in sorted(found, key=lambda use: use.of_tests):
         is_own = use.name in _OF_MIDDLEWARE or use.name.startswith(_BEGINNINGS)
         if is_own or (use.of_tests and (use.form not in _READINGS or use.is_called_back)):
             continue
@@ -101,8 +101,6 @@ def entries(found: Sequence[Use]) -> list[MessageEntry]:
         entry = made.setdefault((key, use.name, direction), MessageEntry(key, use.name, direction))
         if entry.uses and use.of_tests and not entry.of_tests:
             continue  # what the program reads is told of the program alone
-        if entry.uses and entry.of_tests and not use.of_tests:
-            entry.uses, entry.parts = [], []
         entry.uses.append(use)
         entry.type = entry.type or _type(use)
         known = {(part.table, part.path) for part in entry.parts}
@@ -273,8 +271,8 @@ def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Mea
         is_joints = any(re.fullmatch(r"joints?|(?:move|servo)j", word) for word in words)
         is_rate = re.search(r"vel|speed|acc|effort|torque", own) is not None
         name = "joints" if is_joints and not is_rate else own
-        found = guess_elements(name, part.length, setting, written=is_written)
-        return {f"{part.path}{step}": _by_convention(guess, values) for step, guess in found.items()}
+        found = guess_elements(part, name, setting, written=is_written)
+        return {path: _by_convention(guess, values) for path, guess in found.items()}
     if all(isinstance(value, bool) for value in values):
         kind = "opening" if any(one in word for word in words for one in GRIPPER) else "output"
         table: Table = {"kind": kind, "values": [False, True]} if is_written else {"kind": "flag"}

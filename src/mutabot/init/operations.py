@@ -156,8 +156,7 @@ def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[t
     setting = _setting(call, part, call.annotations.get(name, "") if is_whole else "")
     own = part.name or name
     if part.length is not None:
-        found = guess_elements(own, part.length, setting, written=True, limits=part.limits)
-        yield from ((f"{part.path}{step}", guess) for step, guess in found.items())
+        yield from guess_elements(part, own, setting, written=True).items()
         return
     if not is_whole:
         mode = ("to",) if not {"by", "relative"} & set(setting.words) else ()
@@ -187,8 +186,7 @@ def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence
     if part.name:  # a field says itself what it is
         setting = NameContext((), setting.owner, part.doc + setting.doc, values=part.values)
     if part.length is not None:
-        found = guess_elements(own, part.length, setting, written=False)
-        return {f"{part.path}{step}": guess for step, guess in found.items()}
+        return guess_elements(part, own, setting, written=False)
     if part.path and not part.name:  # an element of a tuple: only the flags of a step are known
         return {part.path: Guess({"kind": "flag"})} if call.name == "step" and part.type == "bool" else {}
     if not part.path:

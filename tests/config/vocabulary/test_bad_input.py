@@ -274,7 +274,7 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     "several_axes_without_slice": ("arguments.to = { " + _BY.replace("'x'", "'xyz'") + " }", ["to[0:3]"]),
     "too_few_axes": (
         "result.'[0:3]' = { kind = 'position', axis = 'xy', unit = 'm' }",
-        ["[0:3]", "3 elements for 2 axes"],
+        ["[0:3]", "for each of the 2 axes"],
     ),
     "slice_over_both_ends": (
         "result.'[0:-1]' = { kind = 'position', axis = 'xy', unit = 'm' }",

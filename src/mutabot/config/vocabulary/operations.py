@@ -332,9 +332,7 @@ def read_clock(place: DocumentPlace, raw: dict[str, Any]) -> Clock | None:
 def read_wait(place: DocumentPlace, raw: dict[str, Any]) -> Wait | None:
     """Read ``wait = { call = …, unit = … }``; None if it has mistakes, which are noted."""
     table = place.table(WaitTable, raw)
-    if table is None:
-        return None
-    return Wait(table.call, table.unit, place.source("wait"))
+    return Wait(table.call, table.unit, place.source("wait")) if table is not None else None
 
 
 def read_probe(place: DocumentPlace, raw: Any) -> Probe | None:

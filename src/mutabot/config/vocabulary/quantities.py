@@ -55,18 +55,15 @@ def _spread(path: Path, axes: tuple[str, ...]) -> list[Path]:
             f'such as "{path}[0:{len(axes)}]"'
         )
     start, stop, stride = step.bounds[0] or 0, step.bounds[1], step.bounds[2] or 1
-    if stride < 1:
-        raise ValueError(f"the slice {step} must go forwards to be spread over several axes")
     if stop is None:  # counted from the end, a sequence ends at 0
         stop = 0 if start < 0 else start + len(axes) * stride
-    if start >= 0 > stop or start < 0 < stop:
-        raise ValueError(
-            f"the slice {step} must start and stop at the same end of the sequence to be spread over axes"
-        )
+    has_one_end = not (start >= 0 > stop or start < 0 < stop)
     indices = range(start, stop, stride)
-    if len(indices) != len(axes):
-        text = f"the slice {step} has {len(indices)} elements for {len(axes)} axes ({', '.join(axes)})"
-        raise ValueError(text)
+    if stride < 1 or not has_one_end or len(indices) != len(axes):
+        raise ValueError(
+            f"the slice {step} must have an element for each of the {len(axes)} axes ({', '.join(axes)}), "
+            "forwards, with start and stop counted from the same end of the sequence"
+        )
     return [replace(path, steps=(*path.steps[:-1], Step(item=index))) for index in indices]
 
 
@@ -136,7 +133,7 @@ def read_quantity(
     axes = _split_axes(table.axis) if table.axis is not None else None
     several = axes is not None and len(axes) > 1
     is_vector = _slice_of(path) is not None and not several
-    if _note_faults(place, table, sides, is_written=is_written, is_vector=is_vector):
+    if note_faults(place, table, sides, is_written=is_written, is_vector=is_vector):
         return
     if axes is None or not several:
         yield _quantity(table, path, table.axis, name)
@@ -226,7 +223,7 @@ _AS_RESULT = {
 Rule = tuple[str, object, str]
 
 
-def _note_faults(
+def note_faults(
     place: DocumentPlace, table: QuantityTable, sides: Sides, *, is_written: bool, is_vector: bool
 ) -> bool:
     """Note the rules that a quantity breaks, the first of each key; only its kind if that is wrong here.
