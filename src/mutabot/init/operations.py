@@ -6,7 +6,7 @@ A text, or a node, register or name, tells such commands apart: patterns, and wh
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -17,8 +17,9 @@ from .layout import with_compared
 from .words import COMMANDS, GRIPPER, HOUSEKEEPING, OPPOSITES, READERS, REPLIES, SETUP, TALK, words_of
 
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
-#: which reading tells where something is that a motion of this kind moves
-_READ = {"translation": ("position",), "rotation": ("orientation", "angle")}
+#: what tells where something is that a motion of this kind moves, and what kinds of readings tell that
+_MOVED = {"translation": "position", "rotation": "orientation"}
+_TOLD = {"position": "position", "orientation": "orientation", "angle": "orientation"}
 
 
 @dataclass
@@ -198,13 +199,7 @@ def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence
 
 def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
     """Look for the reading that tells where a moved thing is: of the same object, with all its axes."""
-    wanted = {
-        (kind, axis)
-        for guess in proposal.arguments.values()
-        for kind in _READ.get(guess.table["kind"], ())[:1]
-        for axis in _axes(guess)
-    }
-    owner = proposal.target.rpartition(".")[0]
+    wanted, owner = _with_axes(proposal.arguments, _MOVED), proposal.target.rpartition(".")[0]
     if not wanted or not owner:
         return
     for reading in found.values():
@@ -212,32 +207,42 @@ def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
         is_other = words & (GRIPPER | {"target", "goal", "speed", "limit"}) or reading.call.arguments
         if reading.target.rpartition(".")[0] != owner or not reading.is_reading or is_other:
             continue
-        read = {
-            ("position" if guess.table["kind"] == "position" else "orientation", axis)
-            for guess in reading.result.values()
-            if guess.table["kind"] in ("position", "orientation", "angle")
-            for axis in _axes(guess)
-        }
-        if wanted <= read and all(guess.is_sure for guess in reading.result.values()):
+        are_sure = all(guess.is_sure for guess in reading.result.values())
+        if are_sure and wanted <= _with_axes(reading.result, _TOLD):
             proposal.current = reading.target
             return
 
 
-def _axes(guess: Guess) -> list[str]:
-    axis = guess.table.get("axis", "")
-    return list(axis) if axis and set(axis) <= set("xyz") else [axis] if axis else []
+def _with_axes(guesses: Mapping[str, Guess], told: Mapping[str, str]) -> set[tuple[str, str]]:
+    """What is told of quantities, each with an axis."""
+    return {
+        (told[guess.table["kind"]], axis)
+        for guess in guesses.values()
+        if guess.table["kind"] in told
+        for axis in _axes(guess.table.get("axis", ""))
+    }
+
+
+def _axes(axis: str) -> list[str]:
+    return list(axis) if set(axis) <= set("xyz") else [axis]
 
 
 def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
-    head, mark, name = re.fullmatch(r"(?:(.*)([.:]))?(.*)", proposal.target).groups()  # type: ignore[union-attr]
+    owner, name = proposal.target.removesuffix(proposal.call.name), proposal.call.name
+    for other in _swapped(name):
+        candidate = found.get(f"{owner}{other}")
+        if candidate is not None and set(candidate.call.arguments) == set(proposal.call.arguments):
+            proposal.opposite = candidate.target
+            return
+
+
+def _swapped(text: str) -> Iterator[str]:
+    """The text with each of its words that has an opposite replaced by that."""
     for pair in OPPOSITES:
         for one, other in (pair, pair[::-1]):
-            candidate = found.get(f"{head}{mark}{re.sub(rf'(?<![a-z]){one}(?![a-z])', other, name)}")
-            if candidate is None or candidate is proposal:
-                continue
-            if set(candidate.call.arguments) == set(proposal.call.arguments):
-                proposal.opposite = candidate.target
-                return
+            swapped = re.sub(rf"(?<![a-z]){one}(?![a-z])", other, text)
+            if swapped != text:
+                yield swapped
 
 
 def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameContext:
@@ -280,7 +285,7 @@ def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
         if len(_FIELD.findall(notation)) == 1:
             words = words_of(_FIELD.sub("", notation))
             guess = guess_argument("value", NameContext(words, values=numbers))
-        opposite = _opposite(notation, list(notations))
+        opposite = next((one for one in _swapped(notation) if one in notations), None)
         if opposite is not None:
             guess.table["opposite"] = opposite
         found.append((notation, guess))
@@ -297,15 +302,6 @@ def _notation(text: str) -> str:
         return _NUMBER.sub(lambda _: "{" + _FIELDS.get(name, "value") + ":g}", literal)
     fields = iter(range(1, 100))
     return _NUMBER.sub(lambda _: f"{{value{next(fields)}:g}}", literal)
-
-
-def _opposite(notation: str, known: Sequence[str]) -> str | None:
-    for pair in OPPOSITES:
-        for one, other in (pair, pair[::-1]):
-            swapped = re.sub(rf"\b{one}\b", other, notation)
-            if swapped != notation and swapped in known:
-                return swapped
-    return None
 
 
 def tells_commands(call: WatchedCallable) -> bool:
