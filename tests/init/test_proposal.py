@@ -155,6 +155,18 @@ def test_the_proposal_loads_and_names_program_oracle_and_tests(proposed: tuple[P
     assert operations(proposed[0])
 
 
+def test_what_a_vocabulary_would_not_take_is_a_comment(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module, line = sys.modules["mutabot.init.propose"], 'call = "robot:Base.home"'
+    loads = module._loads
+    monkeypatch.setattr(module, "_loads", lambda text: line not in text.splitlines() and loads(text))
+    told = "\n".join(propose(project))
+    assert "with 11 operations and 1 question" in told
+    assert len(operations(project)) == 11
+    assert f"# {line}" in (project / "robot.toml").read_text(encoding="utf-8").splitlines()
+
+
 def test_every_way_to_reach_an_operation_is_followed(proposed: tuple[Path, str]) -> None:
     assert set(operations(proposed[0])) == {
         "robot:Base.home",  # inherited

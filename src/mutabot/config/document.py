@@ -49,7 +49,11 @@ class Document:
         """
         text = ""
         try:
-            text = _text_of(path)
+            raw = path.read_bytes()
+            if len(raw) > limits.FILE_BYTES:
+                problem = f"has {len(raw):,} bytes; at most {limits.FILE_BYTES:,} are read"
+                raise error_type(problem, file=file)
+            text = raw.decode("utf-8-sig").replace("\r\n", "\n")
             data = tomllib.loads(text)
         except (OSError, RecursionError, ValueError) as error:
             problem, line = _reason(error, text)
@@ -107,18 +111,6 @@ def _extremes(data: Any) -> Iterator[tuple[KeyPath, str]]:
             left += [((*place, key), item) for key, item in items]
 
 
-def _text_of(path: Path) -> str:
-    """The text of a file. Raises OSError or ValueError if it cannot be read."""
-    data = path.read_bytes()
-    if len(data) > limits.FILE_BYTES:
-        raise _TooLargeError(f"has {len(data):,} bytes; at most {limits.FILE_BYTES:,} are read")
-    return data.decode("utf-8-sig").replace("\r\n", "\n")
-
-
-class _TooLargeError(ValueError):
-    """A file is too large to be read."""
-
-
 def _reason(error: Exception, text: str) -> tuple[str, int | None]:
     """Why a file cannot be read, and the line that is to blame, where one is."""
     match error:
@@ -130,8 +122,6 @@ def _reason(error: Exception, text: str) -> tuple[str, int | None]:
             return f"is not UTF-8 text (byte {error.start + 1})", None
         case tomllib.TOMLDecodeError():
             return _syntax(str(error), text)
-        case _TooLargeError():
-            return str(error), None
         case RecursionError():
             return _TOO_DEEP, None
     return f"holds {_TOO_LARGE}", None  # the only other one: Python reads no number of thousands of digits

@@ -32,11 +32,9 @@ _READINGS = frozenset({Form.RECEIVE, Form.TRANSFORM})
 #: forms that entries are made of
 _DESCRIBED = frozenset({*SIDES, Form.TICK, Form.SLEEP})
 
-#: what the middleware itself does with names
-_OF_MIDDLEWARE = frozenset(
-    {"/use_sim_time", "use_sim_time", "start_type_description_service", "/rosout_disable_topics_generation"}
-)
-_BEGINNINGS = (
+#: how names begin with which the middleware itself does something
+_OF_MIDDLEWARE = (
+    "/use_sim_time", "use_sim_time", "start_type_description_service", "/rosout_disable_topics_generation",
     "/actionlib_client_", "/run_id", "/tcp_keepalive", "/enable_statistics", "/statistics_", "qos_overrides.",
 )  # fmt: skip
 
@@ -92,10 +90,9 @@ def entries(found: Sequence[Use]) -> list[MessageEntry]:
     """An entry for each name that the program uses, and for the readings of the tests that mean something."""
     made: dict[tuple[str, str, str | None], MessageEntry] = {}
     for use in sorted(found, key=lambda use: use.of_tests):
-        is_own = use.name in _OF_MIDDLEWARE or use.name.startswith(_BEGINNINGS)
-        if is_own or (use.of_tests and (use.form not in _READINGS or use.is_called_back)):
+        if use.form not in _DESCRIBED or use.name.startswith(_OF_MIDDLEWARE):
             continue
-        if use.form not in _DESCRIBED:
+        if use.of_tests and (use.form not in _READINGS or use.is_called_back):
             continue
         key, direction = next(key for key, forms in FORMS.items() if use.form in forms)
         entry = made.setdefault((key, use.name, direction), MessageEntry(key, use.name, direction))

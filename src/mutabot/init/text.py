@@ -103,9 +103,10 @@ def operation_text(proposal: Proposal) -> str:
     )
     lines += [f"{key} = {value_text(value)}" for key, value in references if value]
     lines += _arguments(proposal)
-    lines += _results(proposal)
     if proposal.message is not None:
-        lines += _pattern_lines(proposal)
+        return "\n".join([*lines, *_pattern_lines(proposal)])
+    for part in call.result.parts.values():
+        lines += _lines("result", part, proposal.result)
     return "\n".join(lines)
 
 
@@ -146,12 +147,6 @@ def _arguments(proposal: Proposal) -> Iterator[str]:
         parts = sorted(call.positional.parts.values(), key=lambda part: part.path)
         shown = ", ".join(short(part.values[0]) if part.values else part.type for part in parts)
         yield f'# signature = "(…)"  # nothing tells its arguments\' names; seen: ({shown})'
-
-
-def _results(proposal: Proposal) -> Iterator[str]:
-    if proposal.message is None:
-        for part in proposal.call.result.parts.values():
-            yield from _lines("result", part, proposal.result)
 
 
 def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator[str]:
