@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.suggest.bands import band_of, digits_of, readable, unseen
+from mutabot.suggest.checks import band_of, digits_of, readable, unseen
 from mutabot.suggest.suggest import chosen_of
 
 

@@ -9,12 +9,10 @@ import pytest
 from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
-from mutabot.suggest.bands import band_of
 from mutabot.suggest.checks import ProposedCheck
-from mutabot.suggest.place import OTHER, place_of
-from mutabot.suggest.project import ProjectFiles, diff_of
-from mutabot.suggest.prove import texts_with
+from mutabot.suggest.project import OTHER, ProjectFiles, place_of
 from mutabot.suggest.readings import PROBE, ReadExpression
+from mutabot.suggest.suggest import texts_with
 
 from .projects import STYLES, make, passes, patched
 
@@ -40,17 +38,13 @@ def checks(project: ProjectFiles, style: str) -> list[ProposedCheck]:
     assert place is not None
     assert place.style == style
     at_end = "self.arm.z" if style == "unittest" else "arm.z"
-    return [
-        ProposedCheck(
-            place, ReadExpression(at_end, PROBE, 0.01), 0.4, 3, band_of([0.4, 0.401, 0.399], 0.01), 0.02
-        )
-    ]
+    return [ProposedCheck(place, ReadExpression(at_end, PROBE, 0.01), 0.4, 3, 0.002, 0.02)]
 
 
 def test_added_checks_pass_on_the_original_and_notice_a_fault(project: ProjectFiles) -> None:
     found = [one for style in STYLES.values() for one in checks(project, style)]
     texts = texts_with(project, found)
-    patched(project.root, diff_of(project.root, texts))
+    patched(project.root, project.diff(texts))
     assert {file: (project.root / file).read_text() for file in texts} == texts
     assert passes(project.root) == (0, len(NODES) + 3)
 

@@ -9,9 +9,8 @@ import pytest
 
 from mutabot.model import Mutant, Role, Site, Span
 from mutabot.suggest.checks import candidates
-from mutabot.suggest.measure import Measured
-from mutabot.suggest.place import PlaceInTest
-from mutabot.suggest.readings import PROBE, ReadExpression
+from mutabot.suggest.project import PlaceInTest
+from mutabot.suggest.readings import PROBE, Measured, ReadExpression
 from mutabot.suggest.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)

@@ -210,7 +210,7 @@ def suggest(
     chosen = _chosen(results, only, skip)
     request = request_again(path.parent.parent, results, jobs)
     with progress_shown() as progress:
-        found = find_checks(request, results, chosen, progress, seeds=seeds)
+        found = find_checks(request, chosen, progress, seeds=seeds)
     keep_suggestions(path, results.meta, found)
     print_json(found) if json else print_suggestions(make_console(), found)
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import product
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any
@@ -33,39 +34,26 @@ _NO_VOCABULARY = (
 )
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
-_MEMORY = re.compile(r"\s*(\d{1,18}(?:\.\d{1,18})?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
+_AMOUNT = re.compile(r"\s*(\d{1,18}(?:\.\d{1,18})?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
 _PREFIXES = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
 #: signs of a path, and bytes of a name in it, that a file system takes
 _LONGEST_PATH, _LONGEST_NAME = 4000, 255
+#: bytes that Python and pytest need
 _LEAST_MEMORY = 100_000_000
 _WILD = re.compile(r"[*?\[]")
 
 
-def _amount(value: Any, what: str, write: str) -> Any:
+def _amount(value: Any, *, least: int, example: str) -> Any:
     """The bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
-    if not isinstance(value, str):
-        return value
-    match = _MEMORY.fullmatch(value)
-    if match is None:
-        raise ValueError(f"{shortened(value)!r} is no amount of {what}; write it like {write}")
-    unit = match[2].lower().removesuffix("b")
-    base = 1024 if unit.endswith("i") else 1000
-    return round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
-
-
-def parse_memory(value: Any) -> Any:
-    """Bytes of memory, which Python and pytest need some of."""
-    value = _amount(value, "memory", "'4 GB'")
-    if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
-        raise ValueError(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
-    return value
-
-
-def _parse_size(value: Any) -> Any:
-    """Bytes on a disk, of which there may be none at all."""
-    value = _amount(value, "room", "'200 MB', or 0 for none")
-    if isinstance(value, int) and not isinstance(value, bool) and value < 0:
-        raise ValueError(f"{value} bytes are less than nothing; write it like '200 MB', or 0 for none")
+    if isinstance(value, str):
+        match = _AMOUNT.fullmatch(value)
+        if match is None:
+            raise ValueError(f"{shortened(value)!r} is no number of bytes; write it like {example}")
+        unit = match[2].lower().removesuffix("b")
+        base = 1024 if unit.endswith("i") else 1000
+        value = round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
+    if isinstance(value, int) and not isinstance(value, bool) and value < least:
+        raise ValueError(f"{value} bytes are too little; write it like {example}")
     return value
 
 
@@ -101,6 +89,8 @@ _Family = Annotated[str, AfterValidator(_known_family), _FamilyNames()]
 _Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
 _Moment = Annotated[str, AfterValidator(_moment)]
 _Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]
+_Memory = BeforeValidator(partial(_amount, least=_LEAST_MEMORY, example="'4 GB'"))
+_Room = BeforeValidator(partial(_amount, least=0, example="'200 MB', or 0 for none"))
 _Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -184,14 +174,14 @@ class Settings(Table):
 
         private_files = false
     """
-    evidence: Annotated[int, Field(le=limits.BYTES), BeforeValidator(_parse_size)] = 200_000_000
+    evidence: Annotated[int, Field(le=limits.BYTES), _Room] = 200_000_000
     """How much is kept of what the robot did: where tool and objects were, what was
     commanded and read, of the original and of mutants that differ from it; see
     [evidence](evidence.md). If room is short, that of survivors stays. 0 records nothing.
 
         evidence = "1 GB"
     """
-    memory: Annotated[int, Field(le=limits.BYTES), BeforeValidator(parse_memory)] = 4_000_000_000
+    memory: Annotated[int, Field(le=limits.BYTES), _Memory] = 4_000_000_000
     """Address space of a process, as
     a text with a unit or in bytes.
 
@@ -391,11 +381,7 @@ class _Paths:
         """Files and folders, relative to the root, sorted; globs expanded."""
         found: set[str] = set()
         for index, name in enumerate(names):
-            at = place / index
-            if self._is_pattern(name):
-                found.update(at.attempt(self._sources_in, name) or ())
-            elif at.attempt(self._existing, name) is not None:
-                found.add(PurePosixPath(name).as_posix())
+            found.update((place / index).attempt(self._fitting, name, only_sources=True) or ())
         return tuple(sorted(found))
 
     def check(self, place: DocumentPlace, settings: Settings, *, has_tests: bool) -> None:
@@ -418,14 +404,7 @@ class _Paths:
     def check_patterns(self, place: DocumentPlace, names: tuple[str, ...]) -> None:
         """Note each path or pattern that fits nothing."""
         for index, name in enumerate(names):
-            read: Callable[[str], object] = self._matches if self._is_pattern(name) else self._existing
-            (place / index).attempt(read, name)
-
-    def _is_pattern(self, name: str) -> bool:
-        return bool(_WILD.search(name)) and not self._exists(name)
-
-    def _exists(self, name: str) -> bool:
-        return len(name) <= _LONGEST_PATH and "\0" not in name and (self.root / name).exists()
+            (place / index).attempt(self._fitting, name)
 
     def _inside(self, name: str) -> str:
         """Return a path in the project. Raises ValueError for any other."""
@@ -449,22 +428,21 @@ class _Paths:
         near = self._nearest(name)
         raise ValueError(f"there is no {name!r}{f'; did you mean {near!r}?' if near else ''}")
 
-    def _matches(self, pattern: str) -> list[Path]:
-        """What a pattern fits, relative to the root. Raises ValueError if that is nothing."""
-        self._inside(pattern)
-        try:
-            found = [match.relative_to(self.root) for match in self.root.glob(pattern)]
-        except (ValueError, NotImplementedError) as error:
-            raise ValueError(f"{pattern!r} is no pattern of paths: {error}") from None
-        if not found:
-            raise ValueError(f"{pattern!r} matches nothing")
-        return found
+    def _fitting(self, name: str, *, only_sources: bool = False) -> list[str]:
+        """What a path or pattern names, relative to the root. Raises ValueError if that is nothing.
 
-    def _sources_in(self, pattern: str) -> list[str]:
-        found = [path.as_posix() for path in self._matches(pattern) if _is_source(self.root, path)]
+        ``only_sources``: of what a pattern fits, only Python files and folders.
+        """
+        if not _WILD.search(self._inside(name)) or (self.root / name).exists():
+            return [PurePosixPath(self._existing(name)).as_posix()]
+        try:
+            found = [match.relative_to(self.root) for match in self.root.glob(name)]
+        except (ValueError, NotImplementedError) as error:
+            raise ValueError(f"{name!r} is no pattern of paths: {error}") from None
+        found = [path for path in found if not only_sources or _is_source(self.root, path)]
         if not found:
-            raise ValueError(f"{pattern!r} matches no Python file or folder")
-        return found
+            raise ValueError(f"{name!r} matches {'no Python file or folder' if only_sources else 'nothing'}")
+        return [path.as_posix() for path in found]
 
     def _nearest(self, name: str) -> str | None:
         folder = (self.root / name).parent

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import tomllib
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +14,8 @@ from typing import Any
 from mutabot import limits
 from mutabot.errors import ConfigurationError, VocabularyError
 
-from .toml_lines import KeyPath, key_lines
+#: the way to a value from the top of a document: keys of tables and indices of lists
+KeyPath = tuple[str | int, ...]
 
 _TOO_DEEP = f"is nested too deeply: at most {limits.DEPTH} lists and tables lie in each other"
 _TOO_LARGE = (
@@ -46,7 +49,11 @@ class Document:
         """
         text = ""
         try:
-            text = _text_of(path)
+            raw = path.read_bytes()
+            if len(raw) > limits.FILE_BYTES:
+                problem = f"has {len(raw):,} bytes; at most {limits.FILE_BYTES:,} are read"
+                raise error_type(problem, file=file)
+            text = raw.decode("utf-8-sig").replace("\r\n", "\n")
             data = tomllib.loads(text)
         except (OSError, RecursionError, ValueError) as error:
             problem, line = _reason(error, text)
@@ -104,18 +111,6 @@ def _extremes(data: Any) -> Iterator[tuple[KeyPath, str]]:
             left += [((*place, key), item) for key, item in items]
 
 
-def _text_of(path: Path) -> str:
-    """The text of a file. Raises OSError or ValueError if it cannot be read."""
-    data = path.read_bytes()
-    if len(data) > limits.FILE_BYTES:
-        raise _TooLargeError(f"has {len(data):,} bytes; at most {limits.FILE_BYTES:,} are read")
-    return data.decode("utf-8-sig").replace("\r\n", "\n")
-
-
-class _TooLargeError(ValueError):
-    """A file is too large to be read."""
-
-
 def _reason(error: Exception, text: str) -> tuple[str, int | None]:
     """Why a file cannot be read, and the line that is to blame, where one is."""
     match error:
@@ -127,8 +122,6 @@ def _reason(error: Exception, text: str) -> tuple[str, int | None]:
             return f"is not UTF-8 text (byte {error.start + 1})", None
         case tomllib.TOMLDecodeError():
             return _syntax(str(error), text)
-        case _TooLargeError():
-            return str(error), None
         case RecursionError():
             return _TOO_DEEP, None
     return f"holds {_TOO_LARGE}", None  # the only other one: Python reads no number of thousands of digits
@@ -163,3 +156,109 @@ def _label(node: Any) -> str | None:
     labels = (node[key] for key in _LABELS if key in node)
     label = next(labels, None)
     return label if isinstance(label, str) and label else None
+
+
+_IGNORED = r"(?:[ \t\n]|#[^\n]*)*"
+_BLANK = re.compile(_IGNORED)
+_OPENED = re.compile(r"(\[{0,2})[ \t]*")
+_CLOSED = re.compile(r"\]{1,2}")
+_KEY = re.compile(
+    r"""(?:(?P<bare>[A-Za-z0-9_-]+)|(?P<quoted>"(?:[^"\\\n]|\\.)*"|'[^'\n]*'))[ \t]*(?P<dot>(?:\.[ \t]*)?)"""
+)
+_EQUALS = re.compile(r"=[ \t]*")
+_PLAIN = re.compile(
+    r"""\"""(?:[^\\]|\\.)*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^,\]}#\n]+""", re.DOTALL
+)
+_COMMA = re.compile(f"{_IGNORED}(?:,{_IGNORED})?")
+_ENDS = {"[": "]", "{": "}"}
+
+
+def key_lines(text: str) -> dict[KeyPath, int]:
+    """The 1-based line of every key, table header and list item of a valid TOML text.
+
+    The standard library's reader does not tell. Where the scan loses its way, it ends with the lines it has.
+    """
+    scanner = _Scanner(text)
+    with contextlib.suppress(ValueError, IndexError, RecursionError):
+        scanner.document()
+    return scanner.lines
+
+
+class _Scanner:
+    def __init__(self, text: str) -> None:
+        self.text, self.position = text, 0
+        self.ends = [match.start() for match in re.finditer("\n", text)]
+        self.lines: dict[KeyPath, int] = {}
+        self.tables: dict[KeyPath, int] = {}  # arrays of tables: how many elements so far
+
+    def document(self) -> None:
+        table: KeyPath = ()
+        self.take(_BLANK)
+        while self.position < len(self.text):
+            start, opened = self.position, self.take(_OPENED)[1]
+            if opened:
+                table = self.header(start, is_list=opened == "[[")
+            else:
+                self.pair(table)
+            self.take(_BLANK)
+
+    def header(self, start: int, *, is_list: bool) -> KeyPath:
+        *outer, last = self.key()
+        self.take(_CLOSED)
+        place: KeyPath = ()
+        for key in outer:
+            place = self.with_index((*place, key))
+        place = (*place, last)
+        if is_list:
+            self.tables[place] = self.tables.get(place, 0) + 1
+        for one in (place, self.with_index(place)):
+            self.note(one, start)
+        return self.with_index(place)
+
+    def pair(self, table: KeyPath) -> None:
+        start = self.position
+        place = table + self.key()
+        for length in range(len(table) + 1, len(place) + 1):
+            self.note(place[:length], start)
+        self.take(_EQUALS)
+        self.value(place)
+
+    def value(self, place: KeyPath) -> None:
+        end = _ENDS.get(self.text[self.position])
+        if end is None:
+            self.take(_PLAIN)
+            return
+        self.position += 1
+        self.take(_BLANK)
+        index = 0
+        while self.text[self.position] != end:
+            if end == "}":
+                self.pair(place)
+            else:
+                self.note((*place, index), self.position)
+                self.value((*place, index))
+            index += 1
+            self.take(_COMMA)
+        self.position += 1
+
+    def key(self) -> KeyPath:
+        parts: list[str] = []
+        dot = "."
+        while dot:
+            found = self.take(_KEY)
+            parts.append(found["bare"] or tomllib.loads(f"key = {found['quoted']}")["key"])
+            dot = found["dot"]
+        return tuple(parts)
+
+    def with_index(self, place: KeyPath) -> KeyPath:
+        return (*place, self.tables[place] - 1) if place in self.tables else place
+
+    def note(self, place: KeyPath, position: int) -> None:
+        self.lines.setdefault(place, bisect_left(self.ends, position) + 1)
+
+    def take(self, pattern: re.Pattern[str]) -> re.Match[str]:
+        match = pattern.match(self.text, self.position)
+        if match is None:
+            raise ValueError("the scan does not understand the text")
+        self.position = match.end()
+        return match

@@ -14,8 +14,7 @@ from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, u
 from mutabot.limits import shortened
 from mutabot.model.events import Problem
 
-from .document import Document
-from .toml_lines import KeyPath
+from .document import Document, KeyPath
 
 M = TypeVar("M", bound=BaseModel)
 P = ParamSpec("P")
@@ -24,54 +23,50 @@ T = TypeVar("T")
 #: more than these are not listed one by one
 MOST_REPORTED = 10
 
-#: what people call it -> what it is called here
-ALSO_KNOWN_AS: Mapping[str, Mapping[str, str]] = {
+#: what it is called here, and what people call it
+_OTHER_NAMES: Mapping[str, Mapping[str, str]] = {
     "unit": {
-        **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-        **dict.fromkeys(("millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
-        **dict.fromkeys(("centimeter", "centimeters", "centimetre", "centimetres"), "cm"),
-        **dict.fromkeys(("degree", "degrees", "°"), "deg"),
-        **dict.fromkeys(("radian", "radians"), "rad"),
-        **dict.fromkeys(("sec", "second", "seconds"), "s"),
-        **dict.fromkeys(("msec", "millisecond", "milliseconds"), "ms"),
-        **dict.fromkeys(("%", "per cent"), "percent"),
-        **dict.fromkeys(("ratio", "1"), "fraction"),
+        "m": "meter, meters, metre, metres",
+        "mm": "millimeter, millimeters, millimetre, millimetres",
+        "cm": "centimeter, centimeters, centimetre, centimetres",
+        "deg": "degree, degrees, °",
+        "rad": "radian, radians",
+        "s": "sec, second, seconds",
+        "ms": "msec, millisecond, milliseconds",
+        "percent": "%, per cent",
+        "fraction": "ratio, 1",
     },
     "kind": {
-        **dict.fromkeys(("color", "colour", "text", "string", "enum"), "label"),
-        **dict.fromkeys(("bool", "boolean"), "flag"),
-        **dict.fromkeys(("gripper", "grip"), "opening"),
-        **dict.fromkeys(("joint", "joint angle"), "angle"),
-        **dict.fromkeys(("time", "wait"), "duration"),
-        **dict.fromkeys(("range", "length"), "distance"),
+        "label": "color, colour, text, string, enum",
+        "flag": "bool, boolean",
+        "opening": "gripper, grip",
+        "angle": "joint, joint angle",
+        "duration": "time, wait",
+        "distance": "range, length",
     },
-    "mode": {
-        **dict.fromkeys(("relative", "rel", "incremental"), "by"),
-        **dict.fromkeys(("absolute", "abs"), "to"),
-    },
-    "axis": {"roll": "x", "pitch": "y", "yaw": "z"},
+    "mode": {"by": "relative, rel, incremental", "to": "absolute, abs"},
+    "axis": {"x": "roll", "y": "pitch", "z": "yaw"},
     "key": {
-        **dict.fromkeys(("transform", "frame"), "tf"),
-        **dict.fromkeys(("publisher", "subscriber"), "topic"),
-        **{"param": "parameter", "srv": "service"},
+        "tf": "transform, frame",
+        "topic": "publisher, subscriber",
+        "parameter": "param",
+        "service": "srv",
     },
 }
 
 #: keys of the configuration that there were, and why there are none any more
 _GONE = dict.fromkeys(("order", "pairs"), "a mutant is one fault, no pair of them")
+#: what is expected, by how the kind of pydantic's mistake begins
 _EXPECTED = {
-    "string_type": "text",
-    "bool_type": "true or false",
-    "int_type": "a whole number",
-    "int_from_float": "a whole number",
-    "int_parsing": "a whole number",
-    "float_type": "a number",
-    "float_parsing": "a number",
-    "finite_number": "a finite number",
-    "list_type": "a list",
-    "tuple_type": "a list",
-    "dict_type": "a table",
-    "model_type": "a table",
+    "string": "text",
+    "bool": "true or false",
+    "int": "a whole number",
+    "float": "a number",
+    "finite": "a finite number",
+    "list": "a list",
+    "tuple": "a list",
+    "dict": "a table",
+    "model": "a table",
 }
 _BOUNDS = {
     "greater_than": ("gt", "more than"),
@@ -96,6 +91,12 @@ class DocumentPlace:
     def __truediv__(self, key: str | int) -> DocumentPlace:
         return replace(self, path=(*self.path, key))
 
+    def each(self, raw: Any) -> list[tuple[DocumentPlace, Any]]:
+        """The items of a list with their places; a value that is no list stands for itself."""
+        if not isinstance(raw, list):
+            return [(self, raw)]
+        return [(self / index, item) for index, item in enumerate(raw)]
+
     def source(self, name: str) -> str:
         """Where something is described: ``robot.toml:12 · robot:Arm.move_by``."""
         line = self.document.line(self.path)
@@ -108,7 +109,8 @@ class DocumentPlace:
     def unknown(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Note a name that does not exist."""
         document, known = self.document, list(known)
-        alias = ALSO_KNOWN_AS.get(kind, {}).get(name.casefold())
+        names = _OTHER_NAMES.get(kind, {}).items()
+        alias = next((one for one, others in names if name.casefold() in others.split(", ")), None)
         where: dict[str, Any] = {
             "file": document.file,
             "key": document.key(self.path),
@@ -170,8 +172,8 @@ def explained(detail: ErrorDetails) -> str:
     kind, value = detail["type"], detail["input"]
     if kind in ("enum", "literal_error"):
         return f"expected text, got {shown(value)}; known: {detail['ctx']['expected']}"
-    if kind in _EXPECTED:
-        return f"expected {_EXPECTED[kind]}, got {shown(value)}{_list_hint(detail)}"
+    if (wanted := _EXPECTED.get(kind.partition("_")[0])) is not None:
+        return f"expected {wanted}, got {shown(value)}{_list_hint(detail)}"
     if kind in _BOUNDS:
         bound, words = _BOUNDS[kind]
         return f"must be {words} {detail['ctx'][bound]}, got {shown(value)}"

@@ -68,17 +68,13 @@ class Sample:
         """What ``10%``, ``12.5 %`` or ``50`` says. Raises UsageError for anything else."""
         plain = text.strip()
         share, count = _SHARE.fullmatch(plain), _COUNT.fullmatch(plain)
-        if share is not None:
-            percent = Decimal(share[1])
-            if 0 < percent <= 100:
-                return cls(plain, percent=percent)
-            raise UsageError(f"a sample of {plain} cannot be drawn: a share is above 0 and at most 100 %")
-        if count is not None:
-            if int(plain) > 0:
-                return cls(plain, count=int(plain))
-            raise UsageError("a sample of 0 mutants says nothing: draw at least 1")
+        if share is not None and 0 < Decimal(share[1]) <= 100:
+            return cls(plain, percent=Decimal(share[1]))
+        if count is not None and int(plain) > 0:
+            return cls(plain, count=int(plain))
         raise UsageError(
-            f"{shortened(text)!r} is no size of a sample; write a share such as 10% or a number such as 50"
+            f"{shortened(text)!r} is no size of a sample; write a share of at most 100 %, such as 10%, or a "
+            "number such as 50"
         )
 
     def sizes(self, roles: Mapping[str, int]) -> dict[str, int]:
@@ -131,15 +127,11 @@ class Shard:
     def parse(cls, text: str) -> Shard:
         """What ``2/8`` says. Raises UsageError for anything else."""
         found = _SHARD.fullmatch(text)
-        if found is None:
-            raise UsageError(
-                f"--shard {shortened(text)}: write its number and how many there are, such as 2/8"
-            )
-        number, of = int(found[1]), int(found[2])
-        if of < 1:
-            raise UsageError(f"--shard {text}: there must be at least one shard, 1/1")
+        number, of = (int(found[1]), int(found[2])) if found is not None else (0, 0)
         if not 1 <= number <= of:
-            raise UsageError(f"--shard {text}: shards of {of} are numbered 1/{of} to {of}/{of}")
+            raise UsageError(
+                f"--shard {shortened(text)}: write its number, from 1, and how many there are, such as 2/8"
+            )
         return cls(number, of)
 
 

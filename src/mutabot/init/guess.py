@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from mutabot.model.watched import WatchedPart
+
 from .words import (
     DIRECTIONS,
     GRIPPER,
@@ -342,35 +344,31 @@ def _label(setting: NameContext) -> Guess:
     return Guess({"kind": "label", "values": [*values, "…"]}, ["which values can it have?"])
 
 
-def guess_elements(
-    name: str, length: int, setting: NameContext, *, written: bool, limits: list[list[float]] | None = None
-) -> dict[str, Guess]:
-    """What the elements mean, by the index or slice; nothing if neither the name nor the callable's tells.
+def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, written: bool) -> dict[str, Guess]:
+    """What the elements of a sequence mean, by path; nothing if neither its name nor the callable's tells.
 
     ``setting.values`` are the sequences that were seen.
     """
-    words = words_of(name)
+    at, length = part.path, part.length or 0
+    words, verb = words_of(name), noun_of(setting.words)
     noun = noun_of(words)
     if written and (name.lower() in _ACTIONS or noun == "action"):
-        return {f"[{index}]": _action(index, limits) for index in range(min(length, _MOST_JOINTS))}
-    verb = noun_of(setting.words)
-    if noun in ("none", "acceleration", "force", "torque", "time") or verb == "speed" or noun == "speed":
-        return _speeds(length, setting) if "speed" in (verb, noun) else {}
+        return {f"{at}[{index}]": _action(index, part.limits) for index in range(min(length, _MOST_JOINTS))}
+    if "speed" in (verb, noun) and length <= _MOST_JOINTS:
+        return {f"{at}[0:{length}]": Guess({"kind": "speed", "unit": "…"}, ["the unit, and the axis?"])}
+    if noun in ("none", "acceleration", "force", "torque", "time", "speed") or verb == "speed":
+        return {}
     for about, told in ((words, noun), (setting.words, verb)):
-        joints = (
-            told == "joints"
-            or (told == "angle" and length > 3)
-            or {"movej", "servoj", "getj", "j"} & set(about)
-        )
-        if joints and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
+        is_turning = told == "joints" or (told == "angle" and length > 3)
+        is_turning = is_turning or bool({"movej", "servoj", "getj", "j"} & set(about))
+        if is_turning and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
             axis = "j1" if length == 1 else f"j1..j{length}"
-            return {f"[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
+            return {f"{at}[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
         if told == "turned" and length == 3:
-            return {
-                "[0:3]": Guess({"kind": "euler", "order": "…", "unit": "rad"}, ["which order, which unit?"])
-            }
+            table: Table = {"kind": "euler", "order": "…", "unit": "rad"}
+            return {f"{at}[0:3]": Guess(table, ["which order, which unit?"])}
         if told == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
-            return _pose(name, length, setting, written)
+            return _pose(at, name, length, setting, written)
     return {}
 
 
@@ -382,23 +380,17 @@ def _element(kind: str, read: str, axis: str, name: str, setting: NameContext, w
     return measured({"kind": read, "axis": axis}, dimension, None, name, setting)
 
 
-def _pose(name: str, length: int, setting: NameContext, written: bool) -> dict[str, Guess]:
+def _pose(at: str, name: str, length: int, setting: NameContext, written: bool) -> dict[str, Guess]:
     count = min(length, 3)
     first_part = replace(setting, values=[value[:count] for value in setting.values])
-    found = {f"[0:{count}]": _element("translation", "position", "xyz"[:count], name, first_part, written)}
+    place = _element("translation", "position", "xyz"[:count], name, first_part, written)
+    found = {f"{at}[0:{count}]": place}
     if length == 6:
-        rest = {"kind": "rotation_vector", "unit": "rad"}
-        found["[3:6]"] = Guess(
-            rest, ["a rotation vector, or Euler angles (kind, order)? the unit: rad, deg?"]
-        )
+        asked = "a rotation vector, or Euler angles (kind, order)? the unit: rad, deg?"
+        found[f"{at}[3:6]"] = Guess({"kind": "rotation_vector", "unit": "rad"}, [asked])
     if length == 7:
-        found["[3:7]"] = Guess({"kind": "quaternion", "order": "…"}, ["the order: wxyz, xyzw?"])
+        found[f"{at}[3:7]"] = Guess({"kind": "quaternion", "order": "…"}, ["the order: wxyz, xyzw?"])
     return found
-
-
-def _speeds(length: int, setting: NameContext) -> dict[str, Guess]:
-    table = {"kind": "speed", "unit": "…"}
-    return {f"[0:{length}]": Guess(table, ["the unit, and the axis?"])} if length <= _MOST_JOINTS else {}
 
 
 def _action(index: int, limits: list[list[float]] | None) -> Guess:

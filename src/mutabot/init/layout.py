@@ -1,18 +1,14 @@
-"""What the text of a project tells: where program and tests lie, and which calls no test reaches."""
+"""What the text of a project tells: where program and tests lie, and what values are compared with."""
 
 from __future__ import annotations
 
 import ast
-import builtins
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
 from mutabot.errors import UsageError
-from mutabot.extensions import libraries
 
 #: folders that hold no code of the project
 _SKIPPED = frozenset(
@@ -147,18 +143,6 @@ def _arguments(root: Path, tests: Sequence[Path]) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-_NO_ROBOTS = frozenset({*sys.stdlib_module_names, "numpy", "np", "pytest", "math3d"})
-
-
-@dataclass(frozen=True)
-class Unreached:
-    """A call in the text that was not seen: its file, line and callee as written."""
-
-    file: str
-    line: int
-    callee: str
-
-
 def compared_with(layout: Layout) -> list[list[Any]]:
     """Constants that the program and its tests compare one and the same thing with, a list for each thing."""
     groups: dict[str, list[Any]] = {}
@@ -177,50 +161,6 @@ def with_compared(values: Sequence[Any], groups: Iterable[Sequence[Any]]) -> lis
         if any(isinstance(value, str) and value in group for value in values):
             found += [value for value in group if value not in found]
     return found
-
-
-def unreached(layout: Layout, seen: Iterable[tuple[str, int, str]]) -> list[Unreached]:
-    """Calls of the text that the run did not make; ``seen``: file, line and name of those it did."""
-    made = set(seen)
-    lines = {(file, line) for file, line, _ in made}  # a function may have another name here
-    found: dict[tuple[str, str], Unreached] = {}
-    for path in layout.program:
-        tree, file = parsed(path), layout.relative(path)
-        own = {one.name for one in ast.walk(tree)
-               if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)}  # fmt: skip
-        for node, names in _callees(tree):
-            line = node.func.end_lineno or node.lineno
-            is_made = (file, line, names[-1]) in made or (len(names) == 1 and (file, line) in lines)
-            if not is_made and not _is_plain(names, own):
-                call = Unreached(file, line, ".".join(names))
-                found.setdefault((file, call.callee), call)
-    return sorted(found.values(), key=lambda call: (call.file, call.line))
-
-
-def _callees(tree: ast.Module) -> Iterator[tuple[ast.Call, list[str]]]:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call):
-            names: list[str] = []
-            part: ast.expr = node.func
-            while isinstance(part, ast.Attribute):
-                names.insert(0, part.attr)
-                part = part.value
-            if isinstance(part, ast.Name):
-                yield node, [part.id, *names]
-
-
-def _is_plain(names: Sequence[str], own: set[str]) -> bool:
-    """Whether it is no robot's: a builtin, a class, something private or of the standard library."""
-    last = names[-1]
-    return (
-        (len(names) == 1 and (hasattr(builtins, last) or last in own))
-        or names[0] in _NO_ROBOTS
-        or any(fnmatchcase(names[0], one) and last not in known for one, known in libraries().items())
-        or last.startswith("_")
-        or last[:1].isupper()
-        or any(hasattr(kind, last) for kind in (list, dict, str, set))
-        or (names[0] == "self" and last in own)
-    )
 
 
 def _constants(node: ast.expr) -> Iterator[Any]:

@@ -6,10 +6,11 @@ Units and axes are those of REP 103. Where no convention is known of a type, the
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from mutabot.config.vocabulary.schema import FORMS, SIDES, Sides
 from mutabot.model.operation import Form
 from mutabot.model.watched import Use, Values, WatchedPart
 
@@ -18,20 +19,6 @@ from .words import GRIPPER, READERS, VERBS, words_of
 
 Meant = dict[str, Guess]
 
-#: which key names it, which tables speak of what is written and of what is read
-_KEYS: Mapping[Form, tuple[str, str, str]] = {
-    Form.PUBLISH: ("topic", "fields", ""),
-    Form.RECEIVE: ("topic", "", "fields"),
-    Form.CALL: ("service", "request", "response"),
-    Form.GOAL: ("action", "goal", ""),
-    Form.FEEDBACK: ("action", "", "feedback"),
-    Form.RESULT: ("action", "", "result"),
-    Form.PARAMETER: ("parameter", "", "value"),
-    Form.TICK: ("timer", "", ""),
-    Form.SLEEP: ("rate", "", ""),
-    Form.TRANSFORM: ("tf", "", "fields"),
-}
-_DIRECTIONS = {Form.PUBLISH: "publish", Form.RECEIVE: "receive"}
 #: how the types of the parts of services and actions of ROS 1 end
 _ENDINGS = {
     Form.CALL: ("Request", "Response"),
@@ -42,13 +29,12 @@ _ENDINGS = {
 #: what the tests alone read is worth a word if they wait for it: it is what they judge by. What goes wrong in
 #: a callback of theirs, the client library may keep to itself
 _READINGS = frozenset({Form.RECEIVE, Form.TRANSFORM})
+#: forms that entries are made of
+_DESCRIBED = frozenset({*SIDES, Form.TICK, Form.SLEEP})
 
-
-#: what the middleware itself does with names
-_OF_MIDDLEWARE = frozenset(
-    {"/use_sim_time", "use_sim_time", "start_type_description_service", "/rosout_disable_topics_generation"}
-)
-_BEGINNINGS = (
+#: how names begin with which the middleware itself does something
+_OF_MIDDLEWARE = (
+    "/use_sim_time", "use_sim_time", "start_type_description_service", "/rosout_disable_topics_generation",
     "/actionlib_client_", "/run_id", "/tcp_keepalive", "/enable_statistics", "/statistics_", "qos_overrides.",
 )  # fmt: skip
 
@@ -69,7 +55,7 @@ class MessageEntry:
 
     Attributes:
         key, name: what it is called by.
-        direction: of a topic; empty for anything else.
+        direction: of a topic; None for anything else.
         type: as far as it is known.
         uses: what was seen.
         parts: what passes there.
@@ -78,7 +64,7 @@ class MessageEntry:
 
     key: str
     name: str
-    direction: str = ""
+    direction: str | None = None
     type: str = ""
     uses: list[Use] = field(default_factory=list)
     parts: list[DescribedPart] = field(default_factory=list)
@@ -102,20 +88,16 @@ class MessageEntry:
 
 def entries(found: Sequence[Use]) -> list[MessageEntry]:
     """An entry for each name that the program uses, and for the readings of the tests that mean something."""
-    made: dict[tuple[str, str, str], MessageEntry] = {}
-    for use in found:
-        is_own = use.name in _OF_MIDDLEWARE or use.name.startswith(_BEGINNINGS)
-        if is_own or (use.of_tests and (use.form not in _READINGS or use.is_called_back)):
+    made: dict[tuple[str, str, str | None], MessageEntry] = {}
+    for use in sorted(found, key=lambda use: use.of_tests):
+        if use.form not in _DESCRIBED or use.name.startswith(_OF_MIDDLEWARE):
             continue
-        if use.form not in _KEYS:
+        if use.of_tests and (use.form not in _READINGS or use.is_called_back):
             continue
-        key, _, _ = _KEYS[use.form]
-        direction = _DIRECTIONS.get(use.form, "")
+        key, direction = next(key for key, forms in FORMS.items() if use.form in forms)
         entry = made.setdefault((key, use.name, direction), MessageEntry(key, use.name, direction))
         if entry.uses and use.of_tests and not entry.of_tests:
             continue  # what the program reads is told of the program alone
-        if entry.uses and entry.of_tests and not use.of_tests:
-            entry.uses, entry.parts = [], []
         entry.uses.append(use)
         entry.type = entry.type or _type(use)
         known = {(part.table, part.path) for part in entry.parts}
@@ -134,11 +116,11 @@ def _type(use: Use) -> str:
 
 
 def _described(use: Use) -> Iterator[DescribedPart]:
-    _, written, read = _KEYS[use.form]
-    for table, values in ((written, use.written), (read, use.read)):
-        if not table:
+    sides = SIDES.get(use.form, Sides(None, None))
+    for table, values in ((sides.written, use.written), (sides.read, use.read)):
+        if table is None:
             continue
-        place = MessagePlace.of(use, values, is_written=table == written)
+        place = MessagePlace.of(use, values, is_written=values is use.written)
         for part in values.parts.values():
             meant = meaning(part, place) if values.always(part) else {}
             for path, guess in meant.items():
@@ -286,8 +268,8 @@ def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Mea
         is_joints = any(re.fullmatch(r"joints?|(?:move|servo)j", word) for word in words)
         is_rate = re.search(r"vel|speed|acc|effort|torque", own) is not None
         name = "joints" if is_joints and not is_rate else own
-        found = guess_elements(name, part.length, setting, written=is_written)
-        return {f"{part.path}{step}": _by_convention(guess, values) for step, guess in found.items()}
+        found = guess_elements(part, name, setting, written=is_written)
+        return {path: _by_convention(guess, values) for path, guess in found.items()}
     if all(isinstance(value, bool) for value in values):
         kind = "opening" if any(one in word for word in words for one in GRIPPER) else "output"
         table: Table = {"kind": kind, "values": [False, True]} if is_written else {"kind": "flag"}

@@ -8,7 +8,8 @@ import os
 import re
 import signal
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -89,20 +90,16 @@ def merged(seen: WatchedCalls) -> WatchedCalls:
         first = calls.setdefault((call.target, call.of_tests), call)
         if first is not call:
             first.leads_to_names |= call.leads_to_names
-            first.sites = _added(first.sites, call.sites)
+            first.sites = dict(Counter(first.sites) + Counter(call.sites))
     uses: dict[tuple[Any, ...], Use] = {}
     for use in seen.uses:
         use.name = _ANONYMOUS.sub("_*", use.name)
         known = uses.setdefault((use.form, use.name, use.of_tests, use.is_called_back), use)
         if known is not use:
-            known.sites = _added(known.sites, use.sites)
+            known.sites = dict(Counter(known.sites) + Counter(use.sites))
             _merge(known.written, use.written)
             _merge(known.read, use.read)
     return replace(seen, calls=list(calls.values()), uses=list(uses.values()))
-
-
-def _added(some: Mapping[str, int], others: Mapping[str, int]) -> dict[str, int]:
-    return {where: some.get(where, 0) + others.get(where, 0) for where in {**some, **others}}
 
 
 def _merge(some: Values, others: Values) -> None:

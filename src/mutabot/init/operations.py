@@ -1,22 +1,25 @@
-"""Calls that were seen, turned into proposed operations."""
+"""Calls that were seen, turned into proposed operations, and the commands that one call stands for.
+
+A text, or a node, register or name, tells such commands apart: patterns, and what stands beside them.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model.watched import WatchedCallable, WatchedPart
+from mutabot.model.watched import Command, WatchedCallable, WatchedPart
 
-from .commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
 from .guess import Guess, NameContext, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
 from .words import COMMANDS, GRIPPER, HOUSEKEEPING, OPPOSITES, READERS, REPLIES, SETUP, TALK, words_of
 
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
-#: which reading tells where something is that a motion of this kind moves
-_READ = {"translation": ("position",), "rotation": ("orientation", "angle")}
+#: what tells where something is that a motion of this kind moves, and what kinds of readings tell that
+_MOVED = {"translation": "position", "rotation": "orientation"}
+_TOLD = {"position": "position", "orientation": "orientation", "angle": "orientation"}
 
 
 @dataclass
@@ -31,6 +34,7 @@ class Proposal:
         current, opposite: targets of other operations, or None.
         reads_by_name: whether the text only says what to read.
         is_plain: whether it is proposed although nothing tells what it means.
+        is_taken: whether it is proposed.
     """
 
     call: WatchedCallable
@@ -42,6 +46,7 @@ class Proposal:
     opposite: str | None = None
     reads_by_name: bool = False
     is_plain: bool = False
+    is_taken: bool = False
 
     @property
     def target(self) -> str:
@@ -70,19 +75,15 @@ class Proposal:
         return sure or is_written or bool(self.patterns) or self.is_plain or _is_command(self.call)
 
 
-def proposals(
-    calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()
-) -> tuple[list[Proposal], list[Proposal]]:
-    """Proposed operations, and those of which nothing shows what they mean to the robot.
-
-    ``groups``: constants that the program compares one and the same thing with.
-    """
-    all_ = [_proposal(call, groups) for call in calls if not _is_housekeeping(call)]
-    found = {one.target: one for one in all_ if one.is_operation}
-    for proposal in found.values():
-        _find_current(proposal, found)
-        _find_opposite(proposal, found)
-    return list(found.values()), [one for one in all_ if one.target not in found]
+def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
+    """What becomes of calls; ``groups``: constants that the program compares one and the same thing with."""
+    found = [_proposal(call, groups) for call in calls if not _is_housekeeping(call)]
+    taken = {one.target: one for one in found if one.is_operation}
+    for proposal in taken.values():
+        proposal.is_taken = True
+        _find_current(proposal, taken)
+        _find_opposite(proposal, taken)
+    return found
 
 
 def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposal:
@@ -156,8 +157,7 @@ def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[t
     setting = _setting(call, part, call.annotations.get(name, "") if is_whole else "")
     own = part.name or name
     if part.length is not None:
-        found = guess_elements(own, part.length, setting, written=True, limits=part.limits)
-        yield from ((f"{part.path}{step}", guess) for step, guess in found.items())
+        yield from guess_elements(part, own, setting, written=True).items()
         return
     if not is_whole:
         mode = ("to",) if not {"by", "relative"} & set(setting.words) else ()
@@ -187,8 +187,7 @@ def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence
     if part.name:  # a field says itself what it is
         setting = NameContext((), setting.owner, part.doc + setting.doc, values=part.values)
     if part.length is not None:
-        found = guess_elements(own, part.length, setting, written=False)
-        return {f"{part.path}{step}": guess for step, guess in found.items()}
+        return guess_elements(part, own, setting, written=False)
     if part.path and not part.name:  # an element of a tuple: only the flags of a step are known
         return {part.path: Guess({"kind": "flag"})} if call.name == "step" and part.type == "bool" else {}
     if not part.path:
@@ -200,13 +199,7 @@ def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence
 
 def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
     """Look for the reading that tells where a moved thing is: of the same object, with all its axes."""
-    wanted = {
-        (kind, axis)
-        for guess in proposal.arguments.values()
-        for kind in _READ.get(guess.table["kind"], ())[:1]
-        for axis in _axes(guess)
-    }
-    owner = proposal.target.rpartition(".")[0]
+    wanted, owner = _with_axes(proposal.arguments, _MOVED), proposal.target.rpartition(".")[0]
     if not wanted or not owner:
         return
     for reading in found.values():
@@ -214,32 +207,42 @@ def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
         is_other = words & (GRIPPER | {"target", "goal", "speed", "limit"}) or reading.call.arguments
         if reading.target.rpartition(".")[0] != owner or not reading.is_reading or is_other:
             continue
-        read = {
-            ("position" if guess.table["kind"] == "position" else "orientation", axis)
-            for guess in reading.result.values()
-            if guess.table["kind"] in ("position", "orientation", "angle")
-            for axis in _axes(guess)
-        }
-        if wanted <= read and all(guess.is_sure for guess in reading.result.values()):
+        are_sure = all(guess.is_sure for guess in reading.result.values())
+        if are_sure and wanted <= _with_axes(reading.result, _TOLD):
             proposal.current = reading.target
             return
 
 
-def _axes(guess: Guess) -> list[str]:
-    axis = guess.table.get("axis", "")
-    return list(axis) if axis and set(axis) <= set("xyz") else [axis] if axis else []
+def _with_axes(guesses: Mapping[str, Guess], told: Mapping[str, str]) -> set[tuple[str, str]]:
+    """What is told of quantities, each with an axis."""
+    return {
+        (told[guess.table["kind"]], axis)
+        for guess in guesses.values()
+        if guess.table["kind"] in told
+        for axis in _axes(guess.table.get("axis", ""))
+    }
+
+
+def _axes(axis: str) -> list[str]:
+    return list(axis) if set(axis) <= set("xyz") else [axis]
 
 
 def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
-    head, mark, name = re.fullmatch(r"(?:(.*)([.:]))?(.*)", proposal.target).groups()  # type: ignore[union-attr]
+    owner, name = proposal.target.removesuffix(proposal.call.name), proposal.call.name
+    for other in _swapped(name):
+        candidate = found.get(f"{owner}{other}")
+        if candidate is not None and set(candidate.call.arguments) == set(proposal.call.arguments):
+            proposal.opposite = candidate.target
+            return
+
+
+def _swapped(text: str) -> Iterator[str]:
+    """The text with each of its words that has an opposite replaced by that."""
     for pair in OPPOSITES:
         for one, other in (pair, pair[::-1]):
-            candidate = found.get(f"{head}{mark}{re.sub(rf'(?<![a-z]){one}(?![a-z])', other, name)}")
-            if candidate is None or candidate is proposal:
-                continue
-            if set(candidate.call.arguments) == set(proposal.call.arguments):
-                proposal.opposite = candidate.target
-                return
+            swapped = re.sub(rf"(?<![a-z]){one}(?![a-z])", other, text)
+            if swapped != text:
+                yield swapped
 
 
 def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameContext:
@@ -256,3 +259,114 @@ def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameC
         names=frozenset(call.arguments),
         relative=frozenset(said),
     )
+
+
+#: names of arguments that hold a text command
+MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order"})
+_NUMBER = re.compile(r"(?<![\w{])[-+]?\d+(?:\.\d+)?(?!\w)")
+_FIELD = re.compile(r"\{(\w+):g\}")
+_FIELDS = {"lift": "height", "drop": "height", "turn": "angle", "rotate": "angle", "wait": "seconds"}
+_READS = re.compile(r"(?:^|_)(?:read|get)", re.IGNORECASE)
+#: arguments that say how to write rather than what
+_HOW = frozenset({"timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos"})
+#: more different numbers than these are no settings, but a scale
+_MOST_VALUES = 5
+
+
+def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
+    """Notations that take these texts, each with what its only field means (empty without a field)."""
+    notations: dict[str, list[float]] = {}
+    for text in filter(str.strip, texts):
+        numbers = [float(number) for number in _NUMBER.findall(text)]
+        notations.setdefault(_notation(text), []).extend(numbers)
+    found = []
+    for notation, numbers in notations.items():
+        guess = Guess()
+        if len(_FIELD.findall(notation)) == 1:
+            words = words_of(_FIELD.sub("", notation))
+            guess = guess_argument("value", NameContext(words, values=numbers))
+        opposite = next((one for one in _swapped(notation) if one in notations), None)
+        if opposite is not None:
+            guess.table["opposite"] = opposite
+        found.append((notation, guess))
+    return found
+
+
+def _notation(text: str) -> str:
+    if _FIELD.search(text):
+        return text
+    words = re.findall(r"[a-z]+", text.lower())
+    name = next((word for word in words if word not in ("to", "by")), "value")
+    literal = text.replace("{", "{{").replace("}", "}}")
+    if len(_NUMBER.findall(literal)) == 1:
+        return _NUMBER.sub(lambda _: "{" + _FIELDS.get(name, "value") + ":g}", literal)
+    fields = iter(range(1, 100))
+    return _NUMBER.sub(lambda _: f"{{value{next(fields)}:g}}", literal)
+
+
+def tells_commands(call: WatchedCallable) -> bool:
+    """Whether there are commands, and their texts look like names of something."""
+    if not call.commands:
+        return False
+    return call.told_by != "self" or len(call.commands) > 1 or "=" in next(iter(call.commands))
+
+
+def is_read(call: WatchedCallable) -> bool:
+    """Whether its commands read."""
+    return _READS.search(call.name) is not None
+
+
+def commands_of(call: WatchedCallable, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
+    """Each command as a notation, with what is written beside it or read.
+
+    ``groups``: constants that the program compares one and the same thing with.
+    """
+    found = []
+    for text, command in call.commands.items():
+        table = _read(text, command, groups) if is_read(call) else _written(text, command)
+        notation = text.replace("{", "{{").replace("}", "}}")
+        found.append((notation, Guess(table, note=_seen(command, is_read(call)))))
+    return found
+
+
+def _written(text: str, command: Command) -> dict[str, Any]:
+    tables = {}
+    for name, values in command.arguments.items():
+        part = values.parts.get(name)
+        table = _value(text, part) if name not in _HOW and part is not None and values.always(part) else {}
+        if table:
+            tables[name] = table
+    return {"arguments": tables} if tables else {}
+
+
+def _value(text: str, part: WatchedPart) -> dict[str, Any]:
+    """What a written value means: as the node is called, else as its values look."""
+    values = list(part.values)
+    if part.length is not None or not values or any(isinstance(value, str) for value in values):
+        return {}
+    if all(isinstance(value, bool) for value in values):
+        return {"kind": "output", "values": [False, True]}
+    words = words_of(text)
+    guess = guess_argument((words or ("",))[-1], NameContext((*words[:-1], "set"), values=values))
+    if guess.is_sure and guess.table["kind"] in ("translation", "rotation", "duration"):
+        return guess.table
+    return {"kind": "output", "values": values} if 2 <= len(values) <= _MOST_VALUES else {}
+
+
+def _read(text: str, command: Command, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    part = command.result.parts.get("")
+    if part is None or not command.result.always(part) or part.length is not None or not part.values:
+        return {}
+    if part.type == "bool":
+        return {"result": {"kind": "flag"}}
+    words = words_of(text)
+    annotation = "str" if part.type == "str" else ""
+    setting = NameContext(words, annotation=annotation, values=with_compared(part.values, groups))
+    guess = guess_reading((words or ("",))[-1], setting)
+    return {"result": guess.table} if guess.is_sure else {}
+
+
+def _seen(command: Command, reads: bool) -> str:
+    several = [command.result] if reads else list(command.arguments.values())
+    shown = [str(value) for values in several for part in values.parts.values() for value in part.values]
+    return ", ".join(shown[:4]) + (", …" if len(shown) > 4 else "")

@@ -14,12 +14,11 @@ from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY, Vocabulary
 from mutabot.model.watched import WatchedCallable
 
-from .commands import commands_of, tells_commands
-from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached
+from .layout import Layout, compared_with, imported_modules, look
 from .messages import MessageEntry, entries
 from .observe import LIMIT, observe
-from .operations import Proposal, proposals
-from .text import questions_in, value_text, vocabulary_text
+from .operations import Proposal, commands_of, proposals, tells_commands
+from .text import counted, questions_in, value_text, vocabulary_text
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
 #: vocabularies of environments that are reached through the wrappers of another one
@@ -35,14 +34,12 @@ class ShippedVocabulary:
         vocabulary: what it says.
         overridden: names of methods that it describes with all that override them.
         packages: where these may come from.
-        seen: how many of the callables that were seen it describes.
     """
 
     name: str
     vocabulary: Vocabulary
     overridden: frozenset[str]
     packages: frozenset[str]
-    seen: int = 0
 
     def describes(self, call: WatchedCallable) -> bool:
         """Whether it has this callable, as an operation or as its clock; wrappers and subclasses included."""
@@ -80,12 +77,11 @@ def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list
             own, other = every[name], every.pop(wrapper)
             names, packages = own.overridden | other.overridden, own.packages | other.packages
             every[name] = replace(own, overridden=names, packages=packages)
-    found = []
-    for known in every.values():
-        seen = sum(known.describes(call) for call in calls)
-        if seen or (not calls and known.packages & imported):
-            found.append(replace(known, seen=seen))
-    return found
+    return [
+        known
+        for known in every.values()
+        if (any(map(known.describes, calls)) if calls else known.packages & imported)
+    ]
 
 
 class _Look:
@@ -96,10 +92,8 @@ class _Look:
         seen: the watched run of the tests.
         known: shipped vocabularies that fit it.
         named: proposed operations that have a name on a middleware.
-        found: proposed operations that no shipped vocabulary has.
-        others: calls of which nothing shows what they mean.
+        operations: calls that no shipped vocabulary describes, whether or not they are proposed.
         oracle: files on the tests' side that read from the robot.
-        unreached: calls of the program's text that no test makes.
     """
 
     def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
@@ -108,50 +102,56 @@ class _Look:
         self.seen = observe(self.layout, limit)
         self.program = [self.layout.relative(path) for path in self.layout.program]
         self.calls = without_doubles([call for call in self.seen.calls if call.sites])
-        self.known: list[ShippedVocabulary] = known_vocabularies(self.layout, self.calls)
-        self.named: list[MessageEntry] = entries(self.seen.uses)
+        self.known = known_vocabularies(self.layout, self.calls)
+        self.named = entries(self.seen.uses)
         groups = compared_with(self.layout)
         mine, rest = _by_side([call for call in self.calls if not call.leads_to_names])
-        self.found, self.others = proposals(self._new([call for call in mine if not call.own]), groups)
-        if not (self.found or self.known or self.named):  # program and robot share a file
-            self.found, self.others = proposals(mine, groups)
-        self._add_readings(proposals(self._new(rest), groups)[0])
-        if not (self.found or self.known or self.named):  # what is called at all can be skipped and repeated
-            for one in self.others:
-                one.is_plain = not one.call.problem and not one.call.is_property
-            self.found = [one for one in self.others if one.is_plain]
-            self.others = [one for one in self.others if not one.is_plain]
-        self.unreached: list[Unreached] = [
-            *unreached(self.layout, self._reached()),
-        ]
+        self.operations = proposals(self._new([call for call in mine if not call.own]), groups)
+        if self.is_empty:  # program and robot share a file
+            self.operations = proposals(mine, groups)
+        readings = [one for one in proposals(self._new(rest), groups) if one.is_taken and one.is_reading]
+        self.operations += readings
+        if self.is_empty:  # what is called at all can be skipped and repeated
+            for one in self.operations:
+                one.is_plain = one.is_taken = not one.call.problem and not one.call.is_property
+        self.oracle = self._files_that_read()
+
+    @property
+    def drafts(self) -> list[Proposal | MessageEntry]:
+        """All that the vocabulary is to say, be it as comments."""
+        return [*self.named, *self.operations]
+
+    @property
+    def taken(self) -> int:
+        """How many operations are proposed."""
+        return sum(one.is_taken for one in self.drafts)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is known of what the program does."""
+        return not (self.taken or self.known)
 
     @property
     def vocabulary(self) -> list[str]:
         """Names for the configuration."""
         names = [one.name for one in self.known]
-        return [*names, VOCABULARY] if self.found or self.named or not names else names
+        return [*names, VOCABULARY] if self.taken or not names else names
 
     @property
     def needs_vocabulary(self) -> bool:
         """Whether there is anything to say that no shipped vocabulary says."""
-        return bool(self.found or self.named or self.others or self.unreached or not self.known)
+        return bool(self.drafts or not self.known)
 
     def text(self) -> str:
         """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
-        text = self._text()
-        if not (self.found or self.named) or _loads(text):
+        text = vocabulary_text(self.drafts, self.program)
+        if not self.taken or _loads(text):
             return text
-        for proposal in self.found:
-            proposal.current = proposal.opposite = None
-        kept = [one for one in self.found if _loads(vocabulary_text([one], [], self.program))]
-        self.others = [*(one for one in self.found if one not in kept), *self.others]
-        self.found = kept
-        for entry in self.named:
-            entry.is_taken = _loads(vocabulary_text([], [], self.program, named=[entry]))
-        return self._text()
-
-    def _text(self) -> str:
-        return vocabulary_text(self.found, self.others, self.program, self.unreached, self.named)
+        for one in self.operations:
+            one.current = one.opposite = None
+        for draft in self.drafts:
+            draft.is_taken = draft.is_taken and _loads(vocabulary_text([draft], self.program))
+        return vocabulary_text(self.drafts, self.program)
 
     def _new(self, calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
         """Calls to be described here: those of shipped vocabularies only where the program tells more."""
@@ -163,12 +163,8 @@ class _Look:
             or (_has_limits(call) and not any(one.knows_arguments(call) for one in self.known))
         ]
 
-    def _add_readings(self, rest: Sequence[Proposal]) -> None:
-        """Readings that only the tests take, and the files where they take any."""
-        known = {proposal.target: proposal for proposal in self.found}
-        known.update((one.target, one) for one in rest if one.is_reading and one.call.sites)
-        self.found = list(known.values())
-        targets = {proposal.target for proposal in self.found if proposal.is_reading}
+    def _files_that_read(self) -> list[str]:
+        targets = {one.target for one in self.operations if one.is_taken and one.is_reading}
         files = [
             where.rpartition(":")[0]
             for call in self.seen.calls
@@ -176,11 +172,7 @@ class _Look:
             for where in call.sites
         ]
         files += [file for entry in self.named if entry.of_tests for file in entry.files]
-        self.oracle = [file for file in dict.fromkeys(files) if file not in self.program]
-
-    def _reached(self) -> list[tuple[str, int, str]]:
-        places = [(where.rpartition(":"), call.name) for call in self.seen.calls for where in call.sites]
-        return [*((file, int(line), name) for (file, _, line), name in places), *self.seen.reached]
+        return [file for file in dict.fromkeys(files) if file not in self.program]
 
 
 def propose(
@@ -287,55 +279,36 @@ def _told(found: _Look, questions: int) -> list[str]:
     if counts:
         lines.append(f"tests: {counts}; {_counted(found)}")
     lines += [f"  {problem}" for problem in seen.problems[:3] if not seen.trouble]
-    hint = ""
-    if (found.layout.root / "pyproject.toml").exists():
-        hint = "; its lines may as well stand in pyproject.toml, under [tool.mutabot]"
-    lines.append(f"wrote {CONFIGURATION}{hint}")
+    lines.append(f"wrote {CONFIGURATION}")
     for one in found.known:
-        lines.append(f"vocabulary {one.name}: comes with mutabot, describes {_number(one.seen, 'call')}")
+        calls = counted(sum(map(one.describes, found.calls)), "call")
+        lines.append(f"vocabulary {one.name}: comes with mutabot, describes {calls}")
     if found.needs_vocabulary:
-        lines.append(_about_vocabulary(found, questions))
-    stood = [one.call for one in found.found if one.call.stands_in]
-    meant = [call.target for call in stood if not call.target.startswith(ANY)]
-    free = [call.name for call in stood if call.target.startswith(ANY)]
-    if meant:
-        lines.append(f"seen on mocks or fakes, proposed as what they stand for: {', '.join(meant)}")
-    if free:
-        lines.append(f"seen on mocks or fakes, proposed for any object that has them: {', '.join(free)}")
-    return [*lines, _next(found, questions)]
-
-
-def _number(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
+        asked = f" and {counted(questions, 'question')}" if questions else ""
+        what = f"with {counted(found.taken, 'operation')}{asked}" if found.taken else "without an operation"
+        left = len(found.drafts) - found.taken
+        also = f"; {counted(left, 'more call')} as comments" if left else ""
+        lines.append(f"wrote {VOCABULARY} {what}{also}")
+    mocked = [one.call for one in found.operations if one.is_taken and one.call.stands_in]
+    names = [call.name if call.target.startswith(ANY) else call.target for call in mocked]
+    if names:
+        how = "as what they stand for, or by name for any object that has it"
+        lines.append(f"seen on mocks or fakes, proposed {how}: {', '.join(names)}")
+    if not found.is_empty:
+        answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
+        return [*lines, f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"]
+    tests = " ".join(found.layout.arguments) or "tests"
+    return [
+        *lines,
+        f"next: make `python -m pytest {tests}` run tests that call the program, remove {CONFIGURATION} and "
+        f"{VOCABULARY}, and run `mutabot init` again; or describe the robot by hand (docs/vocabulary.md)",
+    ]
 
 
 def _counted(found: _Look) -> str:
     mine, rest = _by_side([call for call in found.seen.calls if call.sites])
-    times = _number(sum(call.count for call in mine), "time")
+    times = counted(sum(call.count for call in mine), "time")
     names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}
     more = f", the tests {len(rest)} more" if rest else ""
-    more += f", and uses {_number(len(names), 'name')} of ROS" if names else ""
-    return f"the program calls {_number(len(mine), 'callable')}, {times}{more}"
-
-
-def _about_vocabulary(found: _Look, questions: int) -> str:
-    commented = len(found.others) + len(found.unreached)
-    also = f"; {_number(commented, 'more call')} as comments" if commented else ""
-    count = sum(entry.is_taken for entry in found.named) + len(found.found)
-    if count:
-        asked = f" and {_number(questions, 'question')}" if questions else ""
-        return f"wrote {VOCABULARY} with {_number(count, 'operation')}{asked}{also}"
-    if found.known:
-        return f"wrote {VOCABULARY}, which is not used yet{also}"
-    return f"wrote {VOCABULARY} without an operation: no call was seen{also}"
-
-
-def _next(found: _Look, questions: int) -> str:
-    if found.found or found.known or found.named:
-        answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
-        return f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"
-    names = " ".join(found.layout.arguments) or "tests"
-    return (
-        f"next: make `python -m pytest {names}` run tests that call the program, remove {CONFIGURATION} and "
-        f"{VOCABULARY}, and run `mutabot init` again; or describe the robot by hand (docs/vocabulary.md)"
-    )
+    more += f", and uses {counted(len(names), 'name')} of ROS" if names else ""
+    return f"the program calls {counted(len(mine), 'callable')}, {times}{more}"

@@ -11,45 +11,35 @@ from mutabot.model import ANY
 from mutabot.model.watched import WatchedPart
 
 from .guess import Guess
-from .layout import Unreached
 from .messages import DescribedPart, MessageEntry
 from .operations import Proposal
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: the longest text that is shown as an example, and values of each part
 _LONGEST, _EXAMPLES = 60, 4
-_MOST_UNREACHED, _MOST_UNTOLD = 40, 16
 _DONE = {
     "topic": "message", "service": "call", "action": "goal, feedback or result", "parameter": "reading",
     "timer": "tick", "rate": "turn", "tf": "reading",
 }  # fmt: skip
 
 
-def vocabulary_text(
-    found: Sequence[Proposal],
-    others: Sequence[Proposal],
-    program: Sequence[str],
-    unreached: Sequence[Unreached] = (),
-    named: Sequence[MessageEntry] = (),
-) -> str:
-    """The vocabulary file."""
-    blocks = [
+def vocabulary_text(drafts: Sequence[Proposal | MessageEntry], program: Sequence[str]) -> str:
+    """The vocabulary file; what it cannot take as it is stands at its end, as comments."""
+    head = (
         f"# Drafted by `mutabot init` from {', '.join(program)}. Lines follow from names, docstrings and\n"
-        "# values that were seen. To answer a question, correct the line and take its number sign away.",
-        *(entry_text(entry) for entry in named if entry.is_taken),
-        *(operation_text(proposal) for proposal in found),
-        *(_commented(entry_text(entry)) for entry in named if not entry.is_taken),
+        "# values that were seen. To answer a question, correct the line and take its number sign away."
+    )
+    texts = [
+        (entry_text(one) if isinstance(one, MessageEntry) else operation_text(one), one) for one in drafts
     ]
+    blocks = [head, *(text for text, one in texts if one.is_taken)]
+    others = [_commented(text) for text, one in texts if not one.is_taken]
     if others:
         blocks.append(
-            "# Also called, but nothing shows what it means to the robot. For an operation, take the number\n"
-            "# signs away and say what its arguments or its result mean.\n\n"
-            + "\n\n".join(_commented(operation_text(proposal)) for proposal in others)
+            "# Also seen, but nothing shows what it means to the robot. For an operation, take the number\n"
+            "# signs away and say what its arguments or its result mean."
         )
-    if unreached:
-        lines = [f"#   {one.file}:{one.line}  {one.callee}" for one in unreached[:_MOST_UNREACHED]]
-        blocks.append("# No test reaches these calls, so they cannot be mutated:\n" + "\n".join(lines))
-    return "\n\n".join(blocks) + "\n"
+    return "\n\n".join([*blocks, *others]) + "\n"
 
 
 def questions_in(text: str) -> int:
@@ -81,19 +71,21 @@ def short(value: Any) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
 
 
-def quantity_line(key: str, guess: Guess, seen: str) -> str:
-    """A quantity, or as a comment the question that it depends on."""
-    notes = [*([guess.note] if guess.note else []), *([f"seen: {seen}"] if seen else [])]
-    if guess.is_sure:
-        return f"{key} = {value_text(guess.table)}" + (f"  # {'; '.join(notes)}" if notes else "")
-    notes.insert(0, f"question: {' '.join(guess.questions)}")
-    return f"# {key} = {value_text(guess.table)}  # {'; '.join(notes)}"
+def _line(table: str, path: str, part: WatchedPart, guess: Guess | None) -> str:
+    """A quantity, or as a comment the question that it depends on, or that nothing tells what it means."""
+    key, seen = f"{table}.{key_text(path)}" if path else table, _examples(part, path)
+    if guess is None:
+        return f"# {key}  # seen: {seen or part.type or 'nothing'}"
+    asked = [] if guess.is_sure else [f"question: {' '.join(guess.questions)}"]
+    notes = [*asked, *filter(None, (guess.note, f"seen: {seen}" if seen else ""))]
+    line = f"{'# ' if asked else ''}{key} = {value_text(guess.table)}"
+    return f"{line}  # {'; '.join(notes)}" if notes else line
 
 
 def operation_text(proposal: Proposal) -> str:
     """One ``[[operation]]``, with what is not known as comments."""
     call = proposal.call
-    lines = [f"[[operation]]  # seen: {_counted(call.count, 'call')}, first at {next(iter(call.sites), '?')}"]
+    lines = [f"[[operation]]  # seen: {counted(call.count, 'call')}, first at {next(iter(call.sites), '?')}"]
     if call.problem:
         lines.append(f"# {call.problem}")
     lines += _subject(proposal)
@@ -111,9 +103,10 @@ def operation_text(proposal: Proposal) -> str:
     )
     lines += [f"{key} = {value_text(value)}" for key, value in references if value]
     lines += _arguments(proposal)
-    lines += _results(proposal)
     if proposal.message is not None:
-        lines += _pattern_lines(proposal)
+        return "\n".join([*lines, *_pattern_lines(proposal)])
+    for part in call.result.parts.values():
+        lines += _lines("result", part, proposal.result)
     return "\n".join(lines)
 
 
@@ -138,7 +131,8 @@ def _commented(text: str) -> str:
     return "\n".join(line if line.startswith("#") else f"# {line}" for line in text.splitlines())
 
 
-def _counted(count: int, noun: str) -> str:
+def counted(count: int, noun: str) -> str:
+    """``1 call``, ``2 calls``."""
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
@@ -155,23 +149,13 @@ def _arguments(proposal: Proposal) -> Iterator[str]:
         yield f'# signature = "(…)"  # nothing tells its arguments\' names; seen: ({shown})'
 
 
-def _results(proposal: Proposal) -> Iterator[str]:
-    if proposal.message is None:
-        for part in proposal.call.result.parts.values():
-            yield from _lines("result", part, proposal.result)
-
-
 def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator[str]:
     """The lines of a part: its guesses, else a comment with what was seen."""
     mine = {path: guess for path, guess in guesses.items() if _belongs(path, part)}
     for path, guess in mine.items():
-        yield quantity_line(_path(table, path), guess, _examples(part, path))
+        yield _line(table, path, part, guess)
     if not mine and (part.values or part.length or table == "arguments"):
-        yield f"# {_path(table, part.path)}  # seen: {_examples(part) or part.type or 'nothing'}"
-
-
-def _path(table: str, path: str) -> str:
-    return f"{table}.{key_text(path)}" if path else table
+        yield _line(table, part.path, part, None)
 
 
 def _belongs(path: str, part: WatchedPart) -> bool:
@@ -215,7 +199,7 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
 def entry_text(entry: MessageEntry) -> str:
     """One ``[[operation]]`` of a middleware, with what nothing tells as a comment."""
     count = sum(sum(use.sites.values()) for use in entry.uses)
-    where = f"{_counted(count, _DONE[entry.key])}, first at {next(iter(entry.uses[0].sites))}"
+    where = f"{counted(count, _DONE[entry.key])}, first at {next(iter(entry.uses[0].sites))}"
     lines = [
         f"[[operation]]  # seen: {where}",
         f"{entry.key} = {value_text(entry.name.replace(' → ', ' -> '))}",
@@ -225,9 +209,9 @@ def entry_text(entry: MessageEntry) -> str:
     if entry.type:
         lines.append(f"type = {value_text(entry.type)}")
     lines += [
-        quantity_line(_path(part.table, part.path), part.guess, _examples(part.part, part.path))
+        _line(part.table, part.path, part.part, part.guess)
         for part in entry.parts
-        if part.guess is not None
+        if part.guess is not None or not _says_no(part)
     ]
     if any(map(_says_no, entry.parts)):
         lines.append(
@@ -235,14 +219,6 @@ def entry_text(entry: MessageEntry) -> str:
         )
     if entry.key == "action":
         lines.append('# refused = ["ABORTED", "REJECTED"]  # question: were goals that end so refused?')
-    untold = [part for part in entry.parts if part.guess is None and not _says_no(part)]
-    shown = [
-        f"{_path(part.table, part.path)} ({'; '.join(filter(None, (part.part.type, _examples(part.part))))})"
-        for part in untold
-    ]
-    if shown:
-        more = f", and {len(shown) - _MOST_UNTOLD} more" if len(shown) > _MOST_UNTOLD else ""
-        lines.append(f"# nothing tells what this means: {', '.join(shown[:_MOST_UNTOLD])}{more}")
     return "\n".join(lines)
 
 

@@ -157,7 +157,6 @@ class WatchedCalls:
     Attributes:
         calls: callables in the order in which they were first used.
         uses: what was done under names.
-        reached: file, line and name of everything that was called; the name is empty for a plain one.
         outcomes: number of tests by outcome.
         problems: what failed, in pytest's words.
         trouble: why the run tells less than it could; empty if it went well.
@@ -165,7 +164,6 @@ class WatchedCalls:
 
     calls: list[WatchedCallable] = field(default_factory=list)
     uses: list[Use] = field(default_factory=list)
-    reached: list[tuple[str, int, str]] = field(default_factory=list)
     outcomes: dict[str, int] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
     trouble: str = ""

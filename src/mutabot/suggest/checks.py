@@ -1,35 +1,101 @@
-"""Checks that could be added: what each looks at, what it expects, whom it notices."""
+"""Checks that could be added: what each looks at, what it expects, whom it notices.
+
+A check holds for all runs of the original: it allows a band around them, and is written as a person writes.
+"""
 
 from __future__ import annotations
 
 import ast
+import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from mutabot.model.quantity import step_of
+from mutabot.frozen import frozen
 
-from .bands import Band, band_of, decimal, digits_of, is_number, readable
-from .measure import Measured, Read
-from .place import Addition, PlaceInTest, equal, within
-from .project import ProjectFiles
-from .readings import HAND, PROBE, ReadExpression
+from .project import Addition, PlaceInTest, ProjectFiles, equal, within
+from .readings import Measured, Read, ReadExpression, is_number, known
 
+CONFIDENCE = 0.95
 #: digits of a value above which it is no more than what the original happened to read
 _DIGITS = 3
-#: steps of a reading that are no difference, where it comes in steps: one up or down
-_STEPS = 1.5
 _PARTNERS = 8
 _NAME = re.compile(r"[^\W\d]\w*")
 _LAST = re.compile(r"(\w+)\W*$")
 _CLOCK = re.compile(
     r"(?:^|_)(?:time|clock|elapsed|duration|seconds|secs|now|timestamp|ticks?|cycle)(?:_|$)", re.I
 )
-_PLACE = re.compile(r"(?:^|_)(?:[xyz]|pos|position|place|height|distance|depth|gap|width)(?:_|$)", re.I)
-_ANGLE = re.compile(
-    r"(?:^|_)(?:angle|theta|yaw|pitch|roll|tilt|heading|rot\w*|r[xyz]|j\d+|q\d*)(?:_|$)", re.I
+#: names of what a person would rather look at, the best first
+_RANKS = (
+    re.compile(r"(?:^|_)(?:[xyz]|pos|position|place|height|distance|depth|gap|width)(?:_|$)", re.I),
+    re.compile(r"(?:^|_)(?:angle|theta|yaw|pitch|roll|tilt|heading|rot\w*|r[xyz]|j\d+|q\d*)(?:_|$)", re.I),
 )
+
+#: what mutants made tests read: per mutant id, by (round, node id)
+Mutants = Mapping[str, Mapping[tuple[int, str], Read]]
+#: mutant ids, each with a round
+Trials = frozenset[tuple[str, int]]
+
+
+@frozen
+class Band:
+    """What a reading of the original stays within.
+
+    Attributes:
+        middle: of all runs.
+        tolerance: to each side of the middle, the least that a check may ask for.
+        spread: the greatest distance of two runs.
+    """
+
+    middle: float
+    tolerance: float
+    spread: float
+
+
+def band_of(values: Sequence[float], floor: float) -> Band:
+    """The range of the runs, widened by itself on both sides; ``floor`` is the least tolerance.
+
+    No distribution is assumed. Of a normal one with 20 runs, fewer than 1 in 100 000 lie outside.
+    """
+    low, high = min(values), max(values)
+    return Band((low + high) / 2, max(floor, 1.5 * (high - low)), high - low)
+
+
+def unseen(count: int) -> float:
+    """The share of runs in which something may happen that did not in ``count``, with ``CONFIDENCE``."""
+    return 1 - (1 - CONFIDENCE) ** (1 / count) if count else 1.0
+
+
+def readable(band: Band, nearest: float, stated: float = 0.0) -> tuple[float, float]:
+    """Value and tolerance as a person would write them.
+
+    The tolerance is the one that the tests state already, if it lies between the band's and ``nearest``, the
+    least distance of a survivor from the middle; else the largest of 1, 2, 5, 10 … that is at most half of
+    ``nearest``, never under the band's. The value has no more digits than that needs.
+    """
+    tolerance = stated if band.tolerance <= stated < nearest else _round_up(band.tolerance)
+    while tolerance != stated and _round_up(tolerance * 1.5) <= nearest / 2:
+        tolerance = _round_up(tolerance * 1.5)
+    digits = -math.floor(math.log10(tolerance) + 1e-9)
+    value = round(band.middle, digits)
+    while abs(value - band.middle) + band.tolerance > tolerance * (1 + 1e-9) and digits < 12:
+        digits += 1
+        value = round(band.middle, digits)
+        if abs(value - band.middle) <= 0.01 * tolerance:
+            break
+    return value + 0.0, tolerance
+
+
+def _round_up(size: float) -> float:
+    step = 10.0 ** math.floor(math.log10(size))
+    factor = next(one for one in (1, 2, 5, 10) if one * step >= size * (1 - 1e-9))
+    return float(f"{factor * step:.1g}")
+
+
+def digits_of(value: float) -> int:
+    """How many digits a person must read."""
+    return len(f"{value!r}".partition("e")[0].replace(".", "").strip("-0")) if value else 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,47 +106,37 @@ class ProposedCheck:
         place: the test.
         reading: what it reads.
         value: what that must be: a plain value, or the other reading that it must equal.
-        band: how the original spreads; None if both must be equal.
-        tolerance: greatest distance; None if both must be equal.
-        noticed: mutant id to the rounds in which it is outside.
         runs: how many runs of the original agree.
+        spread: how far these are apart; None if both must be equal.
+        tolerance: greatest distance; None if both must be equal.
+        trials: the mutants and rounds that it would notice.
     """
 
     place: PlaceInTest
     reading: ReadExpression
     value: Any
     runs: int
-    band: Band | None = None
+    spread: float | None = None
     tolerance: float | None = None
-    noticed: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
-
-    @property
-    def trials(self) -> frozenset[tuple[str, int]]:
-        """The mutants and rounds that it would notice."""
-        return frozenset((mutant, round) for mutant, rounds in self.noticed.items() for round in rounds)
+    trials: Trials = frozenset()
 
     @property
     def worth(self) -> tuple[int, ...]:
         """What a person would rather write: the suite's reader, a relation, a place, few digits."""
+        name = _last(self.reading)
+        rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
+        digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
-        number = self.value if is_number(self.value) else 0.0
-        return (
-            -self.reading.way,
-            is_relation,
-            -_rank(self.reading),
-            -digits_of(number),
-            -len(self.statement),
-        )
+        return -self.reading.way, is_relation, -rank, -digits, -len(self.statement)
 
     @property
     def statement(self) -> str:
         """The assertion, in the style of its test."""
         style, text = self.place.style, self.reading.text
+        other = self.value.text if isinstance(self.value, ReadExpression) else None
         if self.tolerance is None:
-            value = self.value.text if isinstance(self.value, ReadExpression) else literal(self.value)
-            return equal(style, text, value)
-        value = self.value.text if isinstance(self.value, ReadExpression) else decimal(self.value)
-        return within(style, text, value, decimal(self.tolerance))
+            return equal(style, text, other or literal(self.value))
+        return within(style, text, other or repr(float(self.value)), repr(self.tolerance))
 
     def addition(self) -> Addition:
         """It as something that is added to a test."""
@@ -110,43 +166,18 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
             continue
         readings = [known(measured, place, text) for text in runs[0] if all(text in read for read in runs)]
         given = [one for one in readings if _is_given(one.text, originals, mutants)]
-        suite = _tolerances(project, place)
-        for reading in readings:
-            for check in _of(place, reading, given, runs, mutants, suite):
-                why = _why_not(project, check)
-                if why is None:
-                    found.append(check)
-                else:
-                    refused.update(dict.fromkeys(check.noticed, why))
+        compared, stated = _stated(project.module(place.file))
+        seen = _ReadAtEnd(place, runs, mutants, given, stated)
+        for check in (check for reading in readings for check in seen.checks(reading)):
+            why = _why_not(check, compared)
+            if why is None:
+                found.append(check)
+            else:
+                refused.update((mutant, why) for mutant, _ in check.trials)
     return found, refused
 
 
-def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
-    """What is known of a part; one that comes in steps may be a step off where it never was yet."""
-    of = [
-        one
-        for one in measured.readings[place]
-        if text == one.text or text.startswith((f"{one.text}.", f"{one.text}["))
-    ]
-    if of:
-        found = replace(max(of, key=lambda one: len(one.text)), text=text)
-    else:
-        objects = [size for target, size in measured.objects if f".{target.rpartition('.')[2]}" in text]
-        coarse = max((one.tolerance for one in measured.readings[place]), default=1e-6)
-        root = re.match(r"\w+", text)
-        way, tolerance = (PROBE, objects[0]) if objects else (HAND, coarse)
-        found = ReadExpression(text, way, tolerance, (), (root[0],) if root else ())
-    runs = measured.originals.get(place, {}).values()
-    values = {read[text] for read in runs if is_number(read.get(text))}
-    step = step_of(values) if len(values) > 1 else None
-    return found if step is None else replace(found, tolerance=max(found.tolerance, _STEPS * step))
-
-
-def _is_given(
-    text: str,
-    originals: Mapping[tuple[int, str], Read],
-    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
-) -> bool:
+def _is_given(text: str, originals: Mapping[tuple[int, str], Read], mutants: Mutants) -> bool:
     """Whether a reading belongs to the round and the test, and is nothing that a program did."""
     return all(
         read.get(text) == originals.get(key, {}).get(text)
@@ -155,105 +186,91 @@ def _is_given(
     )
 
 
-def _of(
-    place: PlaceInTest,
-    reading: ReadExpression,
-    given: Sequence[ReadExpression],
-    runs: Sequence[Read],
-    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
-    suite: Mapping[str, float],
-) -> Iterator[ProposedCheck]:
-    """The checks of a reading: that it equals what the test was given, or a value."""
-    values = [read[reading.text] for read in runs]
-    partners = [one for one in given if one.text != reading.text and _last(one) == _last(reading)]
-    for other in [*partners[:_PARTNERS], None]:
-        others = [read[other.text] if other is not None else 0.0 for read in runs]
-        if not all(is_number(value) for value in (*values, *others)):
-            yield from _equal(place, reading, other, values, others, mutants)
-            continue
-        apart = [value - beside for value, beside in zip(values, others, strict=True)]
-        tolerance = max(reading.tolerance, other.tolerance if other is not None else 0.0)
-        band = band_of(apart, tolerance)
-        away = _away(reading, other, band.middle, mutants)
-        outside = [size for by_round in away.values() for size in by_round.values() if size > band.tolerance]
-        if not outside:
-            continue
-        value, wide = readable(band, min(outside), suite.get(_last(reading), 0.0))
-        if other is not None and abs(band.middle) > wide - band.tolerance:
-            continue  # it is always as far from it, but not there
-        noticed = _noticed(_away(reading, other, 0.0 if other is not None else value, mutants), wide)
-        if noticed:
-            yield ProposedCheck(
-                place, reading, value if other is None else other, len(runs), band, wide, noticed
-            )
+@frozen
+class _ReadAtEnd:
+    """What was read at the end of a test.
 
+    Attributes:
+        place: the test.
+        runs: what the original read, in each run.
+        mutants: what mutants made it read.
+        given: the readings of what the test was given.
+        stated: the largest tolerance that the tests state, by the last name of what they look at.
+    """
 
-def _away(
-    reading: ReadExpression,
-    other: ReadExpression | None,
-    middle: float,
-    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
-) -> dict[str, dict[int, float]]:
-    """By mutant and round, how far a reading is from what is expected."""
-    found: dict[str, dict[int, float]] = {}
-    for mutant, reads in mutants.items():
-        for (round, _), read in reads.items():
+    place: PlaceInTest
+    runs: Sequence[Read]
+    mutants: Mutants
+    given: Sequence[ReadExpression]
+    stated: Mapping[str, float]
+
+    def checks(self, reading: ReadExpression) -> Iterator[ProposedCheck]:
+        """The checks of a reading: that it equals what the test was given, or a value."""
+        text = reading.text
+        partners = [one for one in self.given if one.text != text and _last(one) == _last(reading)]
+        for other in [*partners[:_PARTNERS], None]:
+            texts = [text] if other is None else [text, other.text]
+            are_numbers = all(is_number(read[one]) for read in self.runs for one in texts)
+            check = self._near(reading, other) if are_numbers else self._equal(reading, other)
+            if check is not None and check.trials:
+                yield check
+
+    def _near(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
+        """The check that a number is near another reading, or near a value."""
+
+        def apart(read: Read) -> float:
             value, beside = read.get(reading.text), read.get(other.text) if other is not None else 0.0
-            if is_number(value) and is_number(beside):
-                sizes = found.setdefault(mutant, {})
-                sizes[round] = max(sizes.get(round, 0.0), abs(value - beside - middle))
-    return found
+            return value - beside if is_number(value) and is_number(beside) else math.nan
+
+        floor = max(reading.tolerance, other.tolerance if other is not None else 0.0)
+        band = band_of([apart(read) for read in self.runs], floor)
+        sizes = self._furthest(lambda read: abs(apart(read) - band.middle))
+        outside = [size for size in sizes.values() if size > band.tolerance]
+        if not outside:
+            return None
+        value, wide = readable(band, min(outside), self.stated.get(_last(reading), 0.0))
+        if other is not None and abs(band.middle) > wide - band.tolerance:
+            return None  # it is always as far from it, but not there
+        middle = 0.0 if other is not None else value
+        trials = _beyond(self._furthest(lambda read: abs(apart(read) - middle)), wide)
+        expected = value if other is None else other
+        return ProposedCheck(self.place, reading, expected, len(self.runs), band.spread, wide, trials)
+
+    def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
+        """The check that something equals another reading, or a value; None if it does not always do so."""
+        text, first = reading.text, self.runs[0][reading.text]
+
+        def expected(read: Read) -> Any:
+            return read.get(other.text) if other is not None else first
+
+        if any(repr(read[text]) != repr(expected(read)) for read in self.runs):
+            return None
+        differing = self._furthest(lambda read: text in read and bool(read[text] != expected(read)))
+        value = first if other is None else other
+        return ProposedCheck(self.place, reading, value, len(self.runs), trials=_beyond(differing, 0.0))
+
+    def _furthest(self, away: Callable[[Read], float]) -> dict[tuple[str, int], float]:
+        """By mutant and round, how far its readings are from what is expected at most."""
+        found: dict[tuple[str, int], float] = {}
+        for mutant, reads in self.mutants.items():
+            for (round, _), read in reads.items():
+                size, before = away(read), found.get((mutant, round), 0.0)
+                found[mutant, round] = size if size > before else before
+        return found
 
 
-def _noticed(away: Mapping[str, Mapping[int, float]], tolerance: float) -> dict[str, tuple[int, ...]]:
-    found = {
-        mutant: tuple(round for round, size in sizes.items() if size > tolerance)
-        for mutant, sizes in away.items()
-    }
-    return {mutant: rounds for mutant, rounds in found.items() if rounds}
+def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
+    return frozenset(trial for trial, size in sizes.items() if size > tolerance)
 
 
-def _equal(
-    place: PlaceInTest,
-    reading: ReadExpression,
-    other: ReadExpression | None,
-    values: Sequence[Any],
-    others: Sequence[Any],
-    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
-) -> Iterator[ProposedCheck]:
-    if other is None and len({repr(value) for value in values}) > 1:
-        return
-    if other is not None and list(values) != list(others):
-        return
-    noticed: dict[str, tuple[int, ...]] = {}
-    for mutant, reads in mutants.items():
-        rounds = tuple(
-            round
-            for (round, _), read in reads.items()
-            if reading.text in read
-            and read[reading.text] != (read.get(other.text) if other is not None else values[0])
-        )
-        if rounds:
-            noticed[mutant] = rounds
-    if noticed:
-        yield ProposedCheck(
-            place, reading, values[0] if other is None else other, len(values), noticed=noticed
-        )
-
-
-def _why_not(project: ProjectFiles, check: ProposedCheck) -> str | None:
-    """Why a person would not merge it; None if one may."""
+def _why_not(check: ProposedCheck, compared: set[str]) -> str | None:
+    """Why a person would not merge it; None if one may. ``compared``: names that the tests compare."""
     text, name = check.reading.text, _last(check.reading)
-    if _CLOCK.search(name) and name not in _compared(project, check.place):
+    if _CLOCK.search(name) and name not in compared:
         return f"only its time differs ({text}), and the tests set no deadline"
     if is_number(check.value) and digits_of(float(check.value)) > _DIGITS:
         return f"only an exact value would notice it: {check.statement}"
     return None
-
-
-def _rank(reading: ReadExpression) -> int:
-    name = _last(reading)
-    return 0 if _PLACE.search(name) else 1 if _ANGLE.search(name) else 2
 
 
 def _last(reading: ReadExpression) -> str:
@@ -261,28 +278,23 @@ def _last(reading: ReadExpression) -> str:
     return found[1] if found else reading.text
 
 
-def _compared(project: ProjectFiles, place: PlaceInTest) -> set[str]:
-    """The names that the tests compare already."""
-    module = project.module(place.file)
-    compared = (
-        [node for node in ast.walk(module) if isinstance(node, ast.Compare)] if module is not None else []
-    )
-    return {name for node in compared for name in _NAME.findall(ast.unparse(node))}
-
-
-def _tolerances(project: ProjectFiles, place: PlaceInTest) -> dict[str, float]:
-    """The largest tolerance that the tests state already, by the last name of what they look at."""
-    module = project.module(place.file)
-    found: dict[str, float] = {}
+def _stated(module: ast.Module | None) -> tuple[set[str], dict[str, float]]:
+    """The names that tests compare, and the largest tolerance that they state by the last of these names."""
+    compared: set[str] = set()
+    tolerances: dict[str, float] = {}
     for node in ast.walk(module) if module is not None else ():
-        looked, stated = None, None
+        if isinstance(node, ast.Compare):
+            compared.update(_NAME.findall(ast.unparse(node)))
         match node:
-            case ast.Compare(left=left, comparators=[ast.Call(keywords=keywords)]):
-                looked, stated = left, next((one.value for one in keywords if one.arg == "abs"), None)
-            case ast.Call(args=[left, *_], keywords=keywords):
-                looked, stated = left, next((one.value for one in keywords if one.arg == "delta"), None)
-        if looked is not None and isinstance(stated, ast.Constant) and is_number(stated.value):
-            last = _LAST.search(ast.unparse(looked))
-            if last:
-                found[last[1]] = max(found.get(last[1], 0.0), float(stated.value))
-    return found
+            case ast.Compare(left=looked, comparators=[ast.Call(keywords=keywords)]):
+                pass
+            case ast.Call(args=[looked, *_], keywords=keywords):
+                pass
+            case _:
+                continue
+        last = _LAST.search(ast.unparse(looked))
+        for one in keywords:
+            is_tolerance = one.arg == ("abs" if isinstance(node, ast.Compare) else "delta")
+            if is_tolerance and last and isinstance(one.value, ast.Constant) and is_number(one.value.value):
+                tolerances[last[1]] = max(tolerances.get(last[1], 0.0), float(one.value.value))
+    return compared, tolerances

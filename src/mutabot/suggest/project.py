@@ -1,5 +1,7 @@
-"""A project's test files as they are read, and changes of their text, made in private copies of the project.
+"""A project's test files: places where a check can stand, statements added there, and private copies.
 
+Three styles: test functions of pytest, methods of ``TestCase``, and tests that another tool makes of
+something else, as pytest-bdd does of scenarios. No diff changes the last ones, but checks are tried in them.
 Nothing is ever written to the project itself.
 """
 
@@ -10,16 +12,25 @@ import difflib
 import os
 import shutil
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest.mock import patch
+
+import libcst as cst
+from libcst.codemod import CodemodContext
+from libcst.codemod.visitors import AddImportsVisitor
 
 from mutabot.campaign.request import Request
 from mutabot.errors import ConfigurationError
 from mutabot.frozen import frozen
 from mutabot.journal.files import HOME
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+Definition = ast.ClassDef | Function
+_NO_END = "\\ No newline at end of file\n"
 
 
 @dataclass(slots=True)
@@ -39,8 +50,8 @@ class ProjectFiles:
         return self.request.root
 
     def text(self, file: str) -> str:
-        """The text of a file."""
-        return read_text(self.root, file)
+        """The text of a file, with its own ends of lines."""
+        return (self.root / file).read_bytes().decode("utf-8")
 
     def module(self, file: str) -> ast.Module | None:
         """The parsed file; None if it cannot be read."""
@@ -71,63 +82,42 @@ class ProjectFiles:
             found += [str(one.relative_to(self.root)) for one in files]
         return found
 
-    def beside(self, file: str) -> list[str]:
-        """The ``conftest.py`` files that hold for a test file, nearest first."""
-        folder = (self.root / file).parent
-        found = []
-        while folder.is_relative_to(self.root):
-            if (folder / "conftest.py").exists():
-                found.append(str((folder / "conftest.py").relative_to(self.root)))
-            folder = folder.parent
-        return found
+    def beside(self, file: str) -> Iterator[ast.Module]:
+        """A test file and the ``conftest.py`` files that hold for it, nearest first."""
+        folders = [folder for folder in (self.root / file).parents if folder.is_relative_to(self.root)]
+        conftests = [str((folder / "conftest.py").relative_to(self.root)) for folder in folders]
+        return (module for one in (file, *conftests) if (module := self.module(one)) is not None)
+
+    def diff(self, texts: Mapping[str, str]) -> str:
+        """One unified diff of all changed files, for ``git apply`` and ``patch -p1``."""
+        parts: list[str] = []
+        for file, text in sorted(texts.items()):
+            before, after = self.text(file).splitlines(keepends=True), text.splitlines(keepends=True)
+            parts += difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
+        return "".join(one if one.endswith("\n") else f"{one}\n{_NO_END}" for one in parts)
 
 
-_NO_END = "\\ No newline at end of file\n"
+def name_in(
+    module: ast.Module, wanted: str, attribute: str, taken: Iterable[str] = ()
+) -> tuple[str, tuple[str, ...]]:
+    """How a file can name ``attribute`` of the module ``wanted``, and the import that it lacks, if it does.
 
-
-def read_text(root: Path, file: str) -> str:
-    """The text of a project's file, with its own ends of lines."""
-    return (root / file).read_bytes().decode("utf-8")
-
-
-def diff_of(root: Path, texts: Mapping[str, str]) -> str:
-    """One unified diff of all changed files, for ``git apply`` and ``patch -p1``."""
-    parts: list[str] = []
-    for file, text in sorted(texts.items()):
-        before, after = read_text(root, file).splitlines(keepends=True), text.splitlines(keepends=True)
-        parts += difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
-    return "".join(one if one.endswith("\n") else f"{one}\n{_NO_END}" for one in parts)
-
-
-@frozen
-class ImportedName:
-    """How something of a module is named in a file.
-
-    Attributes:
-        text: the name.
-        needs: the import that the file lacks, or None.
+    ``taken`` are names of other things.
     """
-
-    text: str
-    needs: str | None = None
-
-
-def name_in(module: ast.Module, wanted: str, attribute: str, taken: Iterable[str] = ()) -> ImportedName:
-    """How a file can name ``attribute`` of the module ``wanted``; ``taken`` are names of other things."""
     bound: set[str] = set(taken)
     for node in module.body:
         if isinstance(node, ast.ImportFrom) and node.module == wanted and not node.level:
             for alias in node.names:
                 if alias.name == attribute and (alias.asname or alias.name) not in bound:
-                    return ImportedName(alias.asname or alias.name)
+                    return alias.asname or alias.name, ()
         if isinstance(node, ast.Import):
             for alias in node.names:
                 if alias.name == wanted and (alias.asname or alias.name.partition(".")[0]) not in bound:
-                    return ImportedName(f"{alias.asname or alias.name}.{attribute}")
+                    return f"{alias.asname or alias.name}.{attribute}", ()
     bound |= top_names(module)
     if attribute not in bound:
-        return ImportedName(attribute, f"from {wanted} import {attribute}")
-    return ImportedName(f"{wanted}.{attribute}", f"import {wanted}")
+        return attribute, (f"from {wanted} import {attribute}",)
+    return f"{wanted}.{attribute}", (f"import {wanted}",)
 
 
 def top_names(module: ast.Module) -> set[str]:
@@ -136,11 +126,223 @@ def top_names(module: ast.Module) -> set[str]:
     for node in module.body:
         if isinstance(node, ast.Import | ast.ImportFrom):
             found |= {alias.asname or alias.name.partition(".")[0] for alias in node.names}
-        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        elif isinstance(node, Definition):
             found.add(node.name)
         else:
             found |= {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
     return found
+
+
+PYTEST, UNITTEST, OTHER = "pytest", "unittest", "other"
+
+
+@frozen
+class PlaceInTest:
+    """A test at whose end something can be looked at; all parameters of it are one place.
+
+    Attributes:
+        style: name of its style.
+        file: its module, relative to the project.
+        node: its node id without parameters.
+        names: what it is given: fixtures and parameters.
+    """
+
+    style: str
+    file: str
+    node: str
+    names: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Its name in its module, below that of its class."""
+        return tuple(self.node.split("::")[1:])
+
+
+@frozen
+class Addition:
+    """What is added to the end of a test.
+
+    Attributes:
+        place: the test.
+        lines: statements.
+        uses: names of the place that the statements use.
+        imports: what they need.
+    """
+
+    place: PlaceInTest
+    lines: tuple[str, ...]
+    uses: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
+
+
+def place_of(project: ProjectFiles, test: str) -> PlaceInTest | None:
+    """The place of a test by its node id; None if nothing can be added to it."""
+    node = test.partition("[")[0]
+    file, *path = node.split("::")
+    module = project.module(file)
+    if module is None or len(path) not in (1, 2):
+        return None
+    owner = module if len(path) == 1 else _defined(module, path[0])
+    found = _defined(owner, path[-1]) if owner is not None else None
+    function = found if isinstance(found, Function) else None
+    if len(path) == 1 and (function is None or _is_scenario(function)):
+        return PlaceInTest(OTHER, file, node, _given_around(project, file))
+    if function is None or not _has_end(function):
+        return None
+    is_case = len(path) == 2 and _is_test_case(module, path[0])
+    return PlaceInTest(UNITTEST if is_case else PYTEST, file, node, _names(function))
+
+
+def _is_scenario(function: Function) -> bool:
+    """Whether it only stands for a scenario of pytest-bdd."""
+    called = (ast.unparse(one).partition("(")[0] for one in function.decorator_list)
+    return any(one.rpartition(".")[2] == "scenario" for one in called)
+
+
+def _given_around(project: ProjectFiles, file: str) -> tuple[str, ...]:
+    """What fixtures and steps of a test file are given: fixtures, as far as a test has asked for them."""
+    functions = [
+        node
+        for module in project.beside(file)
+        for node in module.body
+        if isinstance(node, Function) and node.decorator_list
+    ]
+    return tuple(dict.fromkeys(name for one in functions for name in arguments_of(one)))
+
+
+def _has_end(function: Function) -> bool:
+    """Whether statements can follow: not in a body on the line of its ``def``, nor if it ends by raising."""
+    return function.body[0].lineno != function.lineno and not isinstance(function.body[-1], ast.Raise)
+
+
+def _names(function: Function) -> tuple[str, ...]:
+    """Arguments, and what is assigned on the way."""
+    assigned = [
+        one.id
+        for statement in function.body
+        for one in ast.walk(statement)
+        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    ]
+    return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
+
+
+def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
+    owner = _defined(module, name)
+    bases = [ast.unparse(one) for one in owner.bases] if isinstance(owner, ast.ClassDef) else []
+    return any(
+        base.endswith("TestCase") or (depth > 0 and _is_test_case(module, base, depth - 1)) for base in bases
+    )
+
+
+def _defined(owner: ast.Module | Definition, name: str) -> Definition | None:
+    """The class or function of this name in a module or class."""
+    return next(
+        (one for one in reversed(owner.body) if isinstance(one, Definition) and one.name == name), None
+    )
+
+
+def arguments_of(function: Function) -> tuple[str, ...]:
+    """The names of its arguments."""
+    given = function.args
+    return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
+
+
+def within(style: str, text: str, value: str, tolerance: str) -> str:
+    """The statement that ``text`` reads ``value`` within ``tolerance``."""
+    if style == UNITTEST:
+        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
+    return f"assert {text} == pytest.approx({value}, abs={tolerance})"
+
+
+#: values that have statements of their own: the method of ``TestCase``, and what pytest asserts
+_PLAIN = {
+    "True": ("assertTrue", "{}"),
+    "False": ("assertFalse", "not {}"),
+    "None": ("assertIsNone", "{} is None"),
+}
+
+
+def equal(style: str, text: str, value: str) -> str:
+    """The statement that ``text`` reads ``value`` exactly."""
+    if value in _PLAIN:
+        method, expression = _PLAIN[value]
+        return f"self.{method}({text})" if style == UNITTEST else f"assert {expression.format(text)}"
+    return f"self.assertEqual({text}, {value})" if style == UNITTEST else f"assert {text} == {value}"
+
+
+_AT_END = "from mutabot.runtime.observation.noted import at_end as _mutabot_at_end"
+
+
+def edited(project: ProjectFiles, additions: Iterable[Addition]) -> dict[str, str]:
+    """The new texts of the files with these additions, by file.
+
+    What is added to tests that another tool makes runs beside mutabot alone.
+    """
+    by_file: dict[str, list[Addition]] = {}
+    for one in additions:
+        by_file.setdefault(one.place.file, []).append(one)
+    return {file: _edited(project.text(file), found) for file, found in by_file.items()}
+
+
+def _edited(text: str, additions: Sequence[Addition]) -> str:
+    imports = [line for one in additions for line in one.imports]
+    written = [one for one in additions if one.place.style != OTHER]
+    made = dict.fromkeys(one.place for one in additions if one.place.style == OTHER)
+    lines = [_AT_END] if made else []
+    for number, place in enumerate(made):
+        lines += _around(place, [one for one in additions if one.place == place], number)
+    context = CodemodContext()
+    for line in imports:
+        _, source, *names = line.split()
+        AddImportsVisitor.add_needed_import(context, source, names[-1] if names else None)
+    module = cst.parse_module(text)
+    module = module.with_changes(body=_with_ends(module.body, written))
+    changed = AddImportsVisitor(context).transform_module(module)
+    code, newline = changed.code, changed.default_newline
+    if lines:
+        code += "" if code.endswith(newline) else newline
+        code += newline.join([*lines, ""])
+    return code
+
+
+def _around(place: PlaceInTest, additions: Sequence[Addition], number: int) -> list[str]:
+    """What follows a test of which the file has no function that could be added to."""
+    (test,) = place.path
+    uses = dict.fromkeys(use for one in additions for use in one.uses)
+    return [
+        "",
+        f"def _mutabot_end_{number}(value_of):",
+        *(f"    {use} = value_of({use!r})" for use in uses),
+        *(f"    {line}" for one in additions for line in one.lines),
+        "",
+        f"{test} = _mutabot_at_end({test}, _mutabot_end_{number})",
+    ]
+
+
+def _with_ends(
+    body: Sequence[cst.CSTNode], additions: Sequence[Addition], path: tuple[str, ...] = ()
+) -> list[cst.CSTNode]:
+    """The statements of a module or class, with additions at the ends of its functions."""
+    found: list[cst.CSTNode] = []
+    for one in body:
+        changed = one
+        if isinstance(one, cst.ClassDef):
+            inner = _with_ends(one.body.body, additions, (*path, one.name.value))
+            changed = one.with_changes(body=one.body.with_changes(body=inner))
+        elif isinstance(one, cst.FunctionDef):
+            here = [each for each in additions if each.place.path == (*path, one.name.value)]
+            changed = _with_end(one, here) if here else one
+        found.append(changed)
+    return found
+
+
+def _with_end(function: cst.FunctionDef, additions: Sequence[Addition]) -> cst.FunctionDef:
+    body = [*function.body.body]
+    last = body[-1]
+    returns = isinstance(last, cst.SimpleStatementLine) and isinstance(last.body[-1], cst.Return)
+    end = len(body) - 1 if returns else len(body)
+    body[end:end] = cst.parse_module("".join(f"{line}\n" for one in additions for line in one.lines)).body
+    return function.with_changes(body=function.body.with_changes(body=body))
 
 
 #: folders that no test needs and that may be large
@@ -155,36 +357,28 @@ def copy_of(request: Request, texts: Mapping[str, str]) -> Iterator[Request]:
 
     Raises ConfigurationError if there is no place for it.
     """
-    home = Path(tempfile.mkdtemp(prefix="mutabot-suggest-"))
-    root = home / request.root.name
-    before = os.environ.get(_PATH)
-    try:
+    with TemporaryDirectory(prefix="mutabot-suggest-", ignore_cleanup_errors=True) as home:
+        root = Path(home) / request.root.name
         try:
             shutil.copytree(request.root, root, symlinks=True, ignore=_ignored)
             for file, text in texts.items():
-                (root / file).parent.mkdir(parents=True, exist_ok=True)
                 (root / file).write_bytes(text.encode("utf-8"))
         except (OSError, shutil.Error) as error:
             problem = f"the project cannot be copied to {home} (set TMPDIR to another place): {error}"
             raise ConfigurationError(problem) from error
-        os.environ[_PATH] = os.pathsep.join(_paths(request.root, root, before))
-        yield replace(request, configuration=request.configuration.model_copy(update={"root": root}))
-    finally:
-        if before is None:
-            os.environ.pop(_PATH, None)
-        else:
-            os.environ[_PATH] = before
-        shutil.rmtree(home, ignore_errors=True)
+        paths = _paths(request.root, root, os.environ.get(_PATH, ""))
+        with patch.dict(os.environ, {_PATH: os.pathsep.join(paths)}):
+            yield replace(request, configuration=request.configuration.model_copy(update={"root": root}))
 
 
 def _ignored(folder: str, names: Sequence[str]) -> set[str]:
     return {name for name in names if name in _LEFT or Path(folder, name, "pyvenv.cfg").exists()}
 
 
-def _paths(own: Path, copy: Path, before: str | None) -> list[str]:
+def _paths(own: Path, copy: Path, before: str) -> list[str]:
     """Where the copy's modules are found, before those of an installation that points to the project."""
     found = [str(copy / "src")] if (copy / "src").is_dir() else []
-    given = [entry for entry in (before or "").split(os.pathsep) if entry]
+    given = [entry for entry in before.split(os.pathsep) if entry]
     for entry in [*given, *sys.path[1:]]:  # the first is where this process was started
         path = Path(entry).resolve()
         copied = copy / path.relative_to(own) if path.is_relative_to(own) else None

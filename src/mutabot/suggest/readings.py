@@ -1,22 +1,35 @@
-"""What could be read at the end of a test, as the project itself can read it.
+"""What tests could read at their ends, and what they read there: the original in many rounds, and survivors.
 
-Three ways: the functions by which the tests read already, what the vocabulary's probes and readings name, and
-what the test has at hand.
+A test can read in three ways: by the functions by which the tests read already, by what the vocabulary's
+probes and readings name, and by what it has at hand.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeGuard
 
+from mutabot.campaign.again import as_it_is_now
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.controls import run_controls
+from mutabot.campaign.engines.isolated_run import task
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.run import open_executor
 from mutabot.frozen import frozen
-from mutabot.model import Operation
+from mutabot.model import Mutant, Operation, Probe
+from mutabot.model.events import TestEnd
+from mutabot.model.quantity import step_of
 
-from .place import PlaceInTest
-from .project import ImportedName, ProjectFiles, name_in
+from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
+#: steps of a reading that are no difference, where it comes in steps: one up or down
+_STEPS = 1.5
 
 
 @frozen
@@ -28,14 +41,17 @@ class ReadExpression:
         way: ``ORACLE``, ``PROBE`` or ``HAND``.
         tolerance: greatest difference of equal worlds in it.
         needs: imports that it needs.
-        uses: names of the place that it uses.
     """
 
     text: str
     way: int
     tolerance: float
     needs: tuple[str, ...] = ()
-    uses: tuple[str, ...] = ()
+
+
+def is_number(value: Any) -> TypeGuard[float]:
+    """Whether a value is one that can be near another."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpression]:
@@ -45,14 +61,13 @@ def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpressio
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
     found = [*_by_oracle(project, place, module, coarse)]
-    for probe in vocabulary.probes:
-        name = _module_level(module, probe.target, place) if not probe.owner else None
-        if name is not None:
-            texts = (f"{name.text}()", name.text)
-            found += [ReadExpression(text, PROBE, probe.tolerance, _needs(name)) for text in texts]
-    for operation in vocabulary.operations:
-        for text, name in _reading_calls(operation, module, place):
-            found.append(ReadExpression(text, PROBE, coarse, _needs(name)))
+    calls = [(one.target, ["()", ""], one.tolerance) for one in vocabulary.probes if not one.owner]
+    calls += [(one.target, list(_calls(one)), coarse) for one in vocabulary.operations]
+    for target, endings, tolerance in calls:
+        where, _, attribute = target.partition(":")
+        if attribute and endings:
+            name, needs = name_in(module, where, attribute, place.names)
+            found += [ReadExpression(name + ending, PROBE, tolerance, needs) for ending in endings]
     return list({one.text: one for one in reversed(found)}.values())[::-1]
 
 
@@ -82,15 +97,8 @@ def _by_oracle(
             strict = any(default is None for default in given.kw_defaults)
             if strict or not set(needed) <= set(place.names) or node.decorator_list:
                 continue
-            name = name_in(module, project.import_name(file), node.name, place.names)
-            yield ReadExpression(
-                f"{name.text}({', '.join(needed)})", ORACLE, tolerance, _needs(name), tuple(needed)
-            )
-
-
-def _module_level(module: ast.Module, target: str, place: PlaceInTest) -> ImportedName | None:
-    where, _, attribute = target.partition(":")
-    return name_in(module, where, attribute, place.names) if attribute else None
+            name, needs = name_in(module, project.import_name(file), node.name, place.names)
+            yield ReadExpression(f"{name}({', '.join(needed)})", ORACLE, tolerance, needs)
 
 
 def _only_reads(operation: Operation) -> bool:
@@ -98,22 +106,144 @@ def _only_reads(operation: Operation) -> bool:
     return is_callable and not operation.command and not operation.arguments
 
 
-def _reading_calls(
-    operation: Operation, module: ast.Module, place: PlaceInTest
-) -> Iterator[tuple[str, ImportedName]]:
-    """Calls that only read: an operation without arguments, or one that is told by a text what to read."""
+def _calls(operation: Operation) -> Iterator[str]:
+    """What follows the name of a function that only reads: no argument, or a text that says what to read."""
     if not _only_reads(operation) or "." in operation.qualname:
         return
-    name = _module_level(module, operation.target, place)
-    if name is None:
-        return
     if not operation.patterns:
-        yield f"{name.text}()", name
+        yield "()"
     if operation.message and operation.message.isidentifier():
         for pattern in operation.patterns:
             if pattern.command is not True and pattern.notation and not pattern.fields and not pattern.when:
-                yield f'{name.text}({operation.message}="{pattern.notation}")', name
+                yield f'({operation.message}="{pattern.notation}")'
 
 
-def _needs(name: ImportedName) -> tuple[str, ...]:
-    return (name.needs,) if name.needs else ()
+#: what notes readings in the tests' process, and the probe that carries them out of it
+_NOTED = "mutabot.runtime.observation.noted"
+_PROBE = f"{_NOTED}:values"
+
+#: what was read at the end of one test: expression to number, text or truth value
+Read = Mapping[str, Any]
+
+
+@dataclass(slots=True)
+class Measured:
+    """What was read.
+
+    Attributes:
+        originals: per place, by (round, node id), what the original's tests read.
+        mutants: the same per place and mutant id.
+        readings: per place, what is known of its readings.
+        objects: readings of objects, each with its tolerance.
+    """
+
+    originals: dict[PlaceInTest, dict[tuple[int, str], Read]] = field(default_factory=dict)
+    mutants: dict[PlaceInTest, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
+    readings: dict[PlaceInTest, list[ReadExpression]] = field(default_factory=dict)
+    objects: list[tuple[str, float]] = field(default_factory=list)
+
+
+def measure(
+    request: Request,
+    project: ProjectFiles,
+    places: Mapping[str, PlaceInTest],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+    progress: Progress,
+) -> Measured:
+    """Run a copy of the project whose tests note what they can read.
+
+    Args:
+        request: for all rounds, fresh ones included.
+        places: by node id with parameters.
+        survivors: each with the rounds in which it survived.
+
+    Raises what a baseline raises.
+    """
+    measured = Measured(objects=of_objects(project))
+    additions = []
+    for place in dict.fromkeys(places.values()):
+        measured.readings[place] = readings_at(project, place)
+        additions.append(_noting(place, measured.readings[place], measured.objects))
+    with copy_of(request, edited(project, additions)) as copied:
+        probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
+        noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
+        with open_executor(noting, progress) as opened:
+            baseline, results = take_baseline(noting, opened, progress, repetitions=1)
+            for result in results:
+                for place, test, read in _read_in(result.ends, places):
+                    measured.originals.setdefault(place, {})[result.task.key[0], test] = read
+            _run_survivors(Campaign(noting, baseline, opened, progress), measured, places, survivors)
+    return measured
+
+
+def _run_survivors(
+    campaign: Campaign,
+    measured: Measured,
+    places: Mapping[str, PlaceInTest],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+) -> None:
+    baseline, progress = campaign.baseline, campaign.progress
+    now = [(as_it_is_now(campaign.request, baseline, mutant), rounds) for mutant, rounds in survivors]
+    for _ in run_controls(campaign, [mutant for mutant, _ in now]):
+        pass
+    trials = [(mutant, round) for mutant, rounds in now for round in rounds]
+    progress.stage("survivors", len(trials))
+    tasks = (
+        task(campaign, mutant, round, baseline.suite(round))
+        for mutant, round in trials
+        if baseline.tests_reaching(round, mutant)
+    )
+    for result in campaign.executor.run(tasks):
+        mutant, round = result.task.key
+        progress.advance(f"#{mutant.number} round {round + 1}")
+        reaching = baseline.tests_reaching(round, mutant)  # a check stands where the mutant is reached
+        for place, test, read in _read_in(result.ends, places):
+            if test in reaching:
+                measured.mutants.setdefault(place, {}).setdefault(mutant.id, {})[round, test] = read
+
+
+def _read_in(
+    ends: Iterable[TestEnd], places: Mapping[str, PlaceInTest]
+) -> Iterator[tuple[PlaceInTest, str, Read]]:
+    """What passed tests read, each with its place and node id."""
+    prefix = f"{_PROBE}."
+    for end in ends:
+        values = end.probes.items()
+        read = {name.removeprefix(prefix): value for name, value in values if name.startswith(prefix)}
+        if end.test in places and read and end.outcome == "passed":
+            yield places[end.test], end.test, read
+
+
+def _noting(
+    place: PlaceInTest, readings: Sequence[ReadExpression], objects: Sequence[tuple[str, float]]
+) -> Addition:
+    """The lines that note; they are plain statements, and never fail."""
+    # what the oracle does when it reads must not be seen by what only looks
+    ordered = sorted(readings, key=lambda one: one.way == ORACLE)
+    pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
+    classes = [target for target, _ in objects]
+    lines = (
+        f"from {_NOTED} import note as _mutabot_note",
+        f"_mutabot_note(locals(), [{pairs}], {classes!r})",
+    )
+    needs = dict.fromkeys(line for one in readings for line in one.needs)
+    return Addition(place, lines, tuple(place.names), tuple(needs))
+
+
+def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
+    """What is known of a part; one that comes in steps may be a step off where it never was yet."""
+    of = [
+        one
+        for one in measured.readings[place]
+        if text == one.text or text.startswith((f"{one.text}.", f"{one.text}["))
+    ]
+    if of:
+        found = replace(max(of, key=lambda one: len(one.text)), text=text)
+    else:
+        objects = [size for target, size in measured.objects if f".{target.rpartition('.')[2]}" in text]
+        coarse = max((one.tolerance for one in measured.readings[place]), default=1e-6)
+        found = ReadExpression(text, *((PROBE, objects[0]) if objects else (HAND, coarse)))
+    runs = measured.originals.get(place, {}).values()
+    values = {read[text] for read in runs if is_number(read.get(text))}
+    step = step_of(values) if len(values) > 1 else None
+    return found if step is None else replace(found, tolerance=max(found.tolerance, _STEPS * step))

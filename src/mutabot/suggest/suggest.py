@@ -5,60 +5,52 @@ Which survivors an observation can kill, which none can, and why no check kills 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.request import Progress, Request
-from mutabot.errors import NothingToDoError
+from mutabot.campaign.run import open_executor, run_campaign
+from mutabot.errors import MutabotError, NothingToDoError
+from mutabot.execution.task import Task, death
 from mutabot.frozen import frozen
-from mutabot.model import Mutant
-from mutabot.results.results import MutantResult, Results
+from mutabot.journal.journal import JournalReader
+from mutabot.model import By, Mutant, Verdict
+from mutabot.model.events import TestEnd
+from mutabot.results.results import MutantResult
 from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
 
-from .bands import decimal, is_number, unseen
-from .checks import ProposedCheck, candidates, known
-from .measure import Measured, measure
-from .place import OTHER, PlaceInTest, place_of
-from .project import ProjectFiles, diff_of
-from .prove import Proof, texts_with
+from .checks import ProposedCheck, Trials, candidates, unseen
+from .project import OTHER, PlaceInTest, ProjectFiles, copy_of, edited, place_of
+from .readings import Measured, is_number, known, measure
 
 #: how often checks are chosen anew because one of them failed its proof
 _ATTEMPTS = 5
 
 
-@frozen
-class Survivors:
-    """The survivors of a campaign.
+def _sorted_out(
+    chosen: Sequence[MutantResult],
+) -> tuple[dict[str, tuple[Mutant, list[int]]], list[Unsolved], list[str]]:
+    """The survivors that may look other than the original, the others, and the tests where the first acted.
 
-    Attributes:
-        to_kill: those that look other than the original, or may, with the rounds in which they survived.
-        never: those that no observation at the ends or moments of these tests can kill.
-        tests: the tests in which any of the first acted, by node id.
+    The first by id, with the rounds in which they survived. No check at the ends of these tests can kill the
+    others.
     """
-
-    to_kill: tuple[tuple[MutantResult, tuple[int, ...]], ...]
-    never: tuple[Unsolved, ...]
-    tests: tuple[str, ...]
-
-
-def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
-    """Sort out survivors."""
-    to_kill, never = [], []
+    to_kill: dict[str, tuple[Mutant, list[int]]] = {}
+    never: list[Unsolved] = []
     tests: dict[str, None] = {}
     for one in chosen:
         different = [out for out in one.survived if out.indistinguishable is not True]
+        reason = "no test reaches it; add a test that does"
         if different:
-            to_kill.append((one, tuple(out.round for out in different)))
+            to_kill[one.mutant.id] = one.mutant, [out.round for out in different]
             tests.update({looked.test: None for out in different for looked in out.looked if looked.acted})
-        elif one.survived:
+            continue
+        if one.survived:
             compared = one.survived[0].compared
             extent = f" in {compared.text}" if compared is not None else " that was compared"
             reason = f"nothing differs{extent} (indistinguishable)"
-            never.append(Unsolved(one.mutant.id, reason, never=True))
-        else:
-            reason = "no test reaches it; add a test that does"
-            never.append(Unsolved(one.mutant.id, reason, never=True))
-    return Survivors(tuple(to_kill), tuple(never), tuple(tests))
+        never.append(Unsolved(one.mutant.id, reason, never=True))
+    return to_kill, never, list(tests)
 
 
 def why_unsolved(
@@ -69,15 +61,13 @@ def why_unsolved(
     refused: Mapping[str, str],
 ) -> Unsolved:
     """The reason, with what differs most and how far the original itself spreads."""
-    failed = [one for one in found if one in proof.failed and mutant.id in one.noticed]
+    failed = [one for one in found if one in proof.failed and mutant.id in dict(one.trials)]
     if failed:
         return Unsolved(mutant.id, f"a check that would notice it failed its proof: {failed[0].statement}")
     if mutant.id in refused:
         return Unsolved(mutant.id, refused[mutant.id])
-    nearest = max(_differences(mutant, measured), default=None)
-    return Unsolved(
-        mutant.id, nearest[1] if nearest else "nothing differs in what its tests can read at their ends"
-    )
+    nothing = "nothing differs in what its tests can read at their ends"
+    return Unsolved(mutant.id, max(_differences(mutant, measured), default=(0.0, nothing))[1])
 
 
 def _differences(mutant: Mutant, measured: Measured) -> list[tuple[float, str]]:
@@ -102,7 +92,7 @@ def _differences(mutant: Mutant, measured: Measured) -> list[tuple[float, str]]:
 
 
 def _short(value: float) -> str:
-    return decimal(float(f"{value:.3g}"))
+    return repr(float(f"{value:.3g}"))
 
 
 @frozen
@@ -124,81 +114,58 @@ class Quiet:
 
 
 def suggest(
-    request: Request,
-    results: Results,
-    chosen: Sequence[MutantResult],
-    progress: Progress,
-    *,
-    seeds: int,
+    request: Request, chosen: Sequence[MutantResult], progress: Progress, *, seeds: int
 ) -> Suggestions:
     """Checks that kill these survivors of a finished campaign.
 
     Args:
         request: as the campaign's was.
-        results: of the campaign.
         chosen: the survivors that are to be killed.
         progress: is told.
         seeds: how many fresh seeds are run for the bands, and as many others for the proof.
 
     Raises NothingToDoError if there is nothing to kill or nothing to look at, and what a campaign raises.
     """
-    survivors = survivors_of(chosen)
-    if not request.vocabulary.probes:
-        progress.note(
-            "the vocabulary has no [[probe]]: checks can use only the oracle's readings and the tests' values"
-        )
-    elif not survivors.to_kill:
-        progress.note("nothing differs in any survivor; another [[probe]] may show a difference")
-    if not survivors.to_kill:
-        return _told(Suggestions(unsolved=survivors.never), chosen, request, seeds)
-    quiet = Quiet(progress)
-    project = ProjectFiles(request)
-    places, without = _places(project, survivors.tests)
-    if not places:
-        shown = next(iter(without), "no test")
-        raise NothingToDoError(
-            f"no check can be added to the tests of these survivors, such as {shown}: they are "
-            "neither functions of pytest, nor methods of unittest, nor made by another tool"
-        )
-    calibrated = request.rounds + seeds
-    measured = measure(
-        replace(request, rounds=calibrated), project, places,
-        [(one.mutant, rounds) for one, rounds in survivors.to_kill], quiet,
-    )  # fmt: skip
-    found, refused = candidates(project, measured)
-    proof = Proof(request, project, quiet)
-    fresh = range(calibrated, calibrated + seeds)
-    chosen_checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
-    texts = texts_with(project, [one for one in chosen_checks if one.place.style != OTHER])
-    suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
-    killed = {mutant for one in suggestions for mutant in one.kills}
-    left = [one.mutant for one, _ in survivors.to_kill if one.mutant.id not in killed]
-    unsolved = [*(why_unsolved(one, measured, found, proof, refused) for one in left), *survivors.never]
-    dropped = tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items())
-    whole = Suggestions(suggestions, diff_of(request.root, texts), tuple(unsolved), dropped)
-    return _told(whole, chosen, request, seeds)
-
-
-def _told(whole: Suggestions, chosen: Sequence[MutantResult], request: Request, seeds: int) -> Suggestions:
-    return replace(
-        whole,
+    to_kill, never, tests = _sorted_out(chosen)
+    nothing = Suggestions(
+        unsolved=tuple(never),
         numbers={one.mutant.id: one.mutant.number for one in chosen},
         descriptions={one.mutant.id: one.mutant.description for one in chosen},
         rounds=request.rounds,
         seeds=seeds,
     )
-
-
-def _places(project: ProjectFiles, tests: Sequence[str]) -> tuple[dict[str, PlaceInTest], list[str]]:
-    found: dict[str, PlaceInTest] = {}
-    without: list[str] = []
-    for test in tests:
-        place = place_of(project, test)
-        if place is None:
-            without.append(test)
-        else:
-            found[test] = place
-    return found, without
+    if not request.vocabulary.probes:
+        progress.note(
+            "the vocabulary has no [[probe]]: checks can use only the oracle's readings and the tests' values"
+        )
+    elif not to_kill:
+        progress.note("nothing differs in any survivor; another [[probe]] may show a difference")
+    if not to_kill:
+        return nothing
+    quiet = Quiet(progress)
+    project = ProjectFiles(request)
+    places = {test: place for test in tests if (place := place_of(project, test)) is not None}
+    if not places:
+        raise NothingToDoError(
+            f"no check can be added to the tests of these survivors, such as {next(iter(tests), 'no test')}: "
+            "they are neither functions of pytest, nor methods of unittest, nor made by another tool"
+        )
+    calibrated = request.rounds + seeds
+    measured = measure(replace(request, rounds=calibrated), project, places, list(to_kill.values()), quiet)
+    found, refused = candidates(project, measured)
+    proof = Proof(request, project, quiet)
+    fresh = range(calibrated, calibrated + seeds)
+    checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
+    texts = texts_with(project, [one for one in checks if one.place.style != OTHER])
+    killed = {mutant for one in checks for mutant, _ in proof.kills[one]}
+    left = [mutant for name, (mutant, _) in to_kill.items() if name not in killed]
+    return replace(
+        nothing,
+        suggestions=tuple(_suggestion(one, proof.kills[one], seeds) for one in checks),
+        diff=project.diff(texts),
+        unsolved=(*(why_unsolved(one, measured, found, proof, refused) for one in left), *never),
+        dropped=tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items()),
+    )
 
 
 def _proven(
@@ -213,38 +180,34 @@ def _proven(
             break
         proof.on_survivors(proof.on_original(chosen, rounds), mutants)
     chosen = [one for one in chosen if one in proof.kills and one not in proof.failed]
-    return sorted(chosen, key=lambda one: -len(_kills(one, proof.kills)))
+    return sorted(chosen, key=lambda one: -len(proof.kills[one]))
 
 
-def chosen_of(
-    checks: Sequence[ProposedCheck], kills: Mapping[ProposedCheck, Mapping[str, Sequence[int]]]
-) -> list[ProposedCheck]:
-    """For all that any check kills, the one that a person would rather write; none that others replace."""
-    left = frozenset().union(*(_kills(one, kills) for one in checks))
+def chosen_of(checks: Sequence[ProposedCheck], kills: Mapping[ProposedCheck, Trials]) -> list[ProposedCheck]:
+    """For all that any check kills, the one that a person would rather write; none that others replace.
+
+    ``kills``: what checks that were run killed; of the others counts what they would by what was measured.
+    """
+    trials = {one: kills.get(one, one.trials) for one in checks}
+    left = frozenset().union(*trials.values())
     chosen: list[ProposedCheck] = []
-    for one in sorted(checks, key=lambda one: (one.worth, len(_kills(one, kills))), reverse=True):
-        if _kills(one, kills) & left:
+    for one in sorted(checks, key=lambda one: (one.worth, len(trials[one])), reverse=True):
+        if trials[one] & left:
             chosen.append(one)
-            left -= _kills(one, kills)
+            left -= trials[one]
     for one in list(chosen):
         others = [other for other in chosen if other is not one]
-        if _kills(one, kills) <= frozenset().union(*(_kills(other, kills) for other in others)):
+        if trials[one] <= frozenset().union(*(trials[other] for other in others)):
             chosen = others
     return chosen
 
 
-def _kills(
-    check: ProposedCheck, kills: Mapping[ProposedCheck, Mapping[str, Sequence[int]]]
-) -> frozenset[tuple[str, int]]:
-    """What a check kills, as far as it was run; else what it would by what was measured."""
-    if check not in kills:
-        return check.trials
-    return frozenset((mutant, round) for mutant, rounds in kills[check].items() for round in rounds)
-
-
-def _suggestion(check: ProposedCheck, kills: Mapping[str, tuple[int, ...]], seeds: int) -> Suggestion:
+def _suggestion(check: ProposedCheck, trials: Trials, seeds: int) -> Suggestion:
     added = check.addition()
     is_other = check.place.style == OTHER
+    kills: dict[str, tuple[int, ...]] = {}
+    for mutant, round in sorted(trials):
+        kills[mutant] = (*kills.get(mutant, ()), round)
     return Suggestion(
         test=check.place.node,
         style=check.place.style,
@@ -252,9 +215,125 @@ def _suggestion(check: ProposedCheck, kills: Mapping[str, tuple[int, ...]], seed
         statement=check.statement,
         by_hand="\n".join([*dict.fromkeys(added.imports), *added.lines]) if is_other else "",
         tolerance=check.tolerance,
-        spread=check.band.spread if check.band is not None else None,
+        spread=check.spread,
         runs=check.runs,
         fresh=seeds,
         unseen=unseen(seeds),
         kills=kills,
     )
+
+
+@dataclass(slots=True)
+class Proof:
+    """What is known of checks, by their statements and tests.
+
+    Attributes:
+        request: for the rounds of the campaign.
+        project: into whose tests checks are put.
+        progress: is told.
+        failed: checks that failed, with the reason.
+        kills: of each check that was run on the survivors: the mutants and rounds that it killed.
+    """
+
+    request: Request
+    project: ProjectFiles
+    progress: Progress
+    failed: dict[ProposedCheck, str] = field(default_factory=dict)
+    kills: dict[ProposedCheck, Trials] = field(default_factory=dict)
+
+    def on_original(self, checks: Sequence[ProposedCheck], rounds: Sequence[int]) -> list[ProposedCheck]:
+        """Those of these checks with which the original passes in all of these rounds."""
+        left = [one for one in checks if one not in self.failed]
+        while left:
+            alarms = self._alarms(left, rounds)
+            if not alarms:
+                return left
+            self.failed.update(alarms)
+            left = [one for one in left if one not in alarms]
+        return []
+
+    def _alarms(self, checks: Sequence[ProposedCheck], rounds: Sequence[int]) -> dict[ProposedCheck, str]:
+        texts = texts_with(self.project, checks)
+        found: dict[ProposedCheck, str] = {}
+        with copy_of(self.request, texts) as copied:
+            these = _only(copied, checks)
+            self.progress.stage("proof on the original", len(rounds))
+            with open_executor(these, self.progress) as opened:
+                share = these.forks
+                tasks = (Task(round, these.job(round), startup=300.0, may_share=share) for round in rounds)
+                for result in opened.run(tasks):
+                    self.progress.advance(f"round {result.task.key + 1}")
+                    where = f"round {result.task.key + 1} of the original"
+                    if result.end is None or result.end.errors or not result.ends:
+                        why = death(result) if result.end is None else "; ".join(result.end.errors)
+                        return dict.fromkeys(checks, f"the tests cannot be run with it: {why or 'none ran'}")
+                    for end in result.ends:
+                        if end.outcome == "failed":
+                            text = f"fails in {where}: {(end.message or 'no message').splitlines()[0]}"
+                            for one in _blamed(checks, end, texts):
+                                found.setdefault(one, text)
+        return found
+
+    def on_survivors(
+        self, checks: Sequence[ProposedCheck], mutants: Mapping[PlaceInTest, Iterable[str]]
+    ) -> None:
+        """Run campaigns of the mutants that act in the tests of these checks, by the tests.
+
+        A test has one of the checks at a time; those of several tests are run together.
+        """
+        left = [one for one in checks if one not in self.kills and one not in self.failed]
+        while left:
+            batch = list({_own_name(one.place.node): one for one in reversed(left)}.values())
+            left = [one for one in left if one not in batch]
+            try:
+                self._run(batch, mutants)
+            except MutabotError as error:
+                if len(batch) > 1:
+                    for one in batch:
+                        self.on_survivors([one], mutants)
+                else:
+                    self.failed[batch[0]] = f"a campaign with it ends: {str(error).splitlines()[0]}"
+
+    def _run(self, checks: Sequence[ProposedCheck], mutants: Mapping[PlaceInTest, Iterable[str]]) -> None:
+        only = tuple(dict.fromkeys(mutant for one in checks for mutant in mutants[one.place]))
+        with copy_of(self.request, texts_with(self.project, checks)) as copied:
+            these = _only(copied, checks)
+            path = run_campaign(replace(these, only=only, every_test=True, repeats=False), self.progress)
+            with JournalReader.open(path) as journal:
+                outcomes = journal.outcomes()
+        killed: dict[str, set[tuple[str, int]]] = {}
+        for outcome in outcomes:
+            for kill in outcome.kills if outcome.verdict is Verdict.KILLED else ():
+                if kill.by is By.CHECK:
+                    killed.setdefault(_own_name(kill.test), set()).add((outcome.mutant, outcome.round))
+        for one in checks:
+            self.kills[one] = frozenset(killed.get(_own_name(one.place.node), ()))
+            if not self.kills[one]:
+                self.failed[one] = "kills no survivor when it is run"
+
+
+def _own_name(node: str) -> str:
+    """The name of a test within its file or class, without parameters."""
+    return node.partition("[")[0].rpartition("::")[2]
+
+
+def texts_with(project: ProjectFiles, checks: Sequence[ProposedCheck]) -> dict[str, str]:
+    """The texts of the files that change when checks stand at the ends of their tests, by path."""
+    return edited(project, (one.addition() for one in checks))
+
+
+def _only(request: Request, checks: Sequence[ProposedCheck]) -> Request:
+    tests = tuple(dict.fromkeys(one.place.node for one in checks))
+    return replace(request, configuration=request.configuration.model_copy(update={"tests": tests}))
+
+
+def _blamed(checks: Sequence[ProposedCheck], end: TestEnd, texts: Mapping[str, str]) -> list[ProposedCheck]:
+    """The checks that let a test fail: that at the place of the failure, else all that it makes."""
+    file, _, line = (end.place or "").rpartition(":")
+    lines = texts.get(file, "").splitlines()
+    if line.isdigit() and 0 < int(line) <= len(lines):
+        found = [one for one in checks if one.statement == lines[int(line) - 1].strip()]
+        if found:
+            return found
+    node = end.test.partition("[")[0]
+    return [one for one in checks if one.place.node == node] or list(checks)

@@ -30,12 +30,12 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
     "missing_call": ("[[operation]]\ncommand = true", ["robot.toml:1", "operation#1", "'call'", "missing"]),
     "no_colon": ('[[operation]]\ncall = "robot.Arm.move"', ["robot.toml:2", "no colon", "'robot:Arm.move'"]),
     "no_colon_nor_dot": ('[[operation]]\ncall = "move"', ["robot.toml:2", "no colon", "'module:move'"]),
-    "two_colons": ('[[operation]]\ncall = "a:b:c"', ["robot.toml:2", "more than one colon"]),
+    "two_colons": ('[[operation]]\ncall = "a:b:c"', ["robot.toml:2", "'b:c' is not a Python name"]),
     "no_identifier": ('[[operation]]\ncall = "robot:Arm.2x"', ["robot.toml:2", "'2x' is not a Python name"]),
     "keyword": ('[[operation]]\ncall = "robot:Arm.import"', ["'import' is not a Python name"]),
     "call_with_brackets": ('[[operation]]\ncall = "robot:move()"', ["'move()' is not a Python name"]),
-    "nothing_after_colon": ('[[operation]]\ncall = "robot:"', ["no name after the colon"]),
-    "dot_too_many": ('[[operation]]\ncall = "robot:Arm..move"', ["a dot too many"]),
+    "nothing_after_colon": ('[[operation]]\ncall = "robot:"', ["a name is missing"]),
+    "dot_too_many": ('[[operation]]\ncall = "robot:Arm..move"', ["a name is missing"]),
     "builtin_refusal": (
         GOOD_OPERATION + 'refusals = ["ValueError"]',
         ["robot.toml:3", "builtins:ValueError"],
@@ -266,7 +266,7 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     "several_axes_without_slice": ("arguments.to = { " + _BY.replace("'x'", "'xyz'") + " }", ["to[0:3]"]),
     "too_few_axes": (
         "result.'[0:3]' = { kind = 'position', axis = 'xy', unit = 'm' }",
-        ["[0:3]", "3 elements for 2 axes"],
+        ["[0:3]", "for each of the 2 axes"],
     ),
     "slice_over_both_ends": (
         "result.'[0:-1]' = { kind = 'position', axis = 'xy', unit = 'm' }",
@@ -464,7 +464,7 @@ CONFIGURATIONS: dict[str, tuple[str, list[str]]] = {
     "no_such_program": (GOOD.replace("mission.py", "misson.py"), [":2", "'misson.py'", "'mission.py'"]),
     "no_such_nested_program": (GOOD.replace("mission.py", "src/cel.py"), ["'src/cel.py'", "'src/cell.py'"]),
     "no_such_folder_at_all": (GOOD.replace("mission.py", "a/b/c.py"), ["there is no 'a/b/c.py'"]),
-    "glob_without_match": (GOOD.replace("mission.py", "lib/*.py"), ["'lib/*.py' matches nothing"]),
+    "glob_without_match": (GOOD.replace("mission.py", "lib/*.py"), ["'lib/*.py' matches no Python file"]),
     "glob_of_texts": (GOOD.replace("mission.py", "*.toml"), ["no Python file"]),
     "odd_glob": (GOOD.replace("mission.py", "a**"), ["no pattern of paths"]),
     "absolute_program": (GOOD.replace("mission.py", "/etc"), ["'/etc'", "relative to the project's folder"]),

@@ -57,14 +57,14 @@ def test_each_case_of_a_call_has_refusals_of_its_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (f"{CALL}refused = 5", [":3", "expected a table", "such as refused"]),
+        (f"{CALL}refused = 5", [":3", "expected a table", "the number 5"]),
         (f"{CALL}refused = []", [":3", "must not be empty"]),
         (f"{CALL}refused = {{ values = [] }}", [":3", "must not be empty"]),
         (f'{CALL}refused = {{ path = "status" }}', [":3", "'values' is missing"]),
         (f'{CALL}refused = {{ path = "sta tus", values = [5] }}', [":3", "makes no sense"]),
         (f"{CALL}refused = {{ values = [[1]] }}", [":3", "a list"]),
         (f'{CALL}refused = {{ vlues = [1], path = "a" }}', [":3", "'vlues'", "'values'"]),
-        (f'{CALL}refused = ["ABORTED"]', [":3", "only the goal of an action"]),
+        (f'{CALL}refused = ["ABORTED"]', [":3", "expected a table", "'ABORTED'"]),
         (f'{CALL}refused = {{ topic = "note", values = [1] }}', [":3", "'/note'"]),
         ('action = "/a"\nrefused = ["ABORTD"]', [":3", "'ABORTD'", "'ABORTED'"]),
         ('topic = "/a"\ndirection = "publish"\nrefused = { values = [5] }', [":4", "no answer", "topic ="]),

@@ -94,7 +94,7 @@ def test_a_field_of_a_request_may_decide(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (f'{CALL}when = "gripper"', [":3", "argument and its value", "such as when"]),
+        (f'{CALL}when = "gripper"', [":3", "expected a table", "'gripper'"]),
         (f'{CALL}when = {{ argumnt = "a", value = 1 }}', [":3", "'argumnt'", "'argument'"]),
         (f"{CALL}when = []", [":3", "must not be empty"]),
         (f'{CALL}when = {{ argument = "a[", value = 1 }}', [":3", "makes no sense"]),

@@ -122,6 +122,6 @@ def test_what_a_node_of_ros_1_does_is_proposed_by_name(tmp_path: Path) -> None:
     assert (y.kind, y.axis, y.unit, y.mode) == ("translation", "y", "m", "by")
     pose = {one.name: one for one in found["receive /arm/pose"].result}
     assert (pose["point.y"].kind, pose["point.y"].frame) == ("position", "base")
-    assert "# nothing tells what this means: value (float; 0.25)" in text
+    assert "# value  # seen: 0.25" in text
     assert "rospy" not in text
     assert "no test reaches" not in text

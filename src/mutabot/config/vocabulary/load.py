@@ -16,8 +16,8 @@ from mutabot.model import Clock, Kind, Operation, Probe, Quantity, Vocabulary, W
 from mutabot.model.quantity import READING_OF, is_reading_of
 
 from .operations import read_clock, read_operations, read_probe, read_wait
+from .patterns import together
 from .schema import VocabularyTable
-from .when import together
 
 #: lists of targets at the top of a file
 _TARGETS = ("refusals", "checks", "failures")
@@ -79,23 +79,18 @@ class _Merged:
             return
         if not document.data and self.is_needed:
             place.error("is empty; a vocabulary names operations: [[operation]]")
-        for index, raw in enumerate(table.operation):
-            at = place / "operation" / index
+        for at, raw in (place / "operation").each(table.operation):
             for operation in read_operations(at, raw):
                 if self._counts(operation.target, is_shipped):
                     self._add_operation(at, operation)
         for name, targets in self.targets.items():
             targets.extend(getattr(table, name))
         if table.clock is not None:
-            at = place / "clock"
-            self._add_other(at, "clock", read_clock(at, table.clock), is_shipped)
+            self._add_other(place / "clock", read_clock(place / "clock", table.clock), is_shipped)
         if table.wait is not None:
-            at = place / "wait"
-            self._add_other(at, "wait", read_wait(at, table.wait), is_shipped)
-        for index, raw in enumerate(table.probe):
-            at = place / "probe" / index
-            probe = read_probe(at, raw)
-            self._add_other(at, f"probe {probe.target if probe is not None else ''}", probe, is_shipped)
+            self._add_other(place / "wait", read_wait(place / "wait", table.wait), is_shipped)
+        for at, raw in (place / "probe").each(table.probe):
+            self._add_other(at, read_probe(at, raw), is_shipped)
 
     def _counts(self, what: str, is_shipped: bool) -> bool:
         """Whether a description is to be taken: the user's own, read first, go before shipped ones."""
@@ -122,10 +117,9 @@ class _Merged:
             where, what = (place / "call", "") if is_call else (place, f"{operation.target} ")
             where.error(f"{what}is described twice, differently: also in {also}")
 
-    def _add_other(
-        self, place: DocumentPlace, key: str, found: Clock | Wait | Probe | None, is_shipped: bool
-    ) -> None:
+    def _add_other(self, place: DocumentPlace, found: Clock | Wait | Probe | None, is_shipped: bool) -> None:
         """Add the clock, the wait or a probe, if it has no mistake, and note an earlier one that differs."""
+        key = f"probe {found.target}" if isinstance(found, Probe) else type(found).__name__
         if found is None or not self._counts(key, is_shipped):
             return
         known = self.others.setdefault(key, found)

@@ -6,25 +6,27 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from mutabot.config.mistakes import DocumentPlace, shown
+from mutabot.config.mistakes import DocumentPlace
 from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Probe, Quantity, Wait
 from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.signature import parse_signature
 
-from .names import CALLABLE, NAMING, SIDES, Sides, forms_of, name_of, type_of
-from .patterns import read_patterns
+from .patterns import in_cases, in_each_mode, name_of_cases, read_patterns, read_when
 from .quantities import bare_path, in_message, read_quantities
 from .schema import (
+    CALLABLE,
+    FORMS,
+    NAMING,
+    SIDES,
     ClockTable,
     OperationTable,
     ProbeTable,
     RefusedTable,
+    Sides,
     WaitTable,
     is_name,
     read_idle,
 )
-from .when import in_cases, in_each_mode, read_when
-from .when import name_of as name_of_cases
 
 #: keys with quantities
 _TABLES = {key for one in (CALLABLE, *SIDES.values()) for key in (one.written, one.read) if key}
@@ -56,12 +58,10 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
         return [_read_callable(place, table)]
     if keys[0] == "topic" and "direction" not in raw:
         place.error('a topic needs direction = "publish" or "receive"')
-    named = _read_name(place, table, keys[0])
-    if named is None:
-        return []
-    forms = forms_of(keys[0], table.direction)
-    _check_keys(place, table, keys[0], forms)
-    names = [replace(named, form=form) for form in forms]
+    forms = FORMS.get((keys[0], table.direction if keys[0] == "topic" else None), ())
+    names = [Named(form, getattr(table, keys[0]), table.node, table.type) for form in forms]
+    if names:
+        _check_keys(place, table, keys[0], forms)
     return [_read_operation(place, table, one.target, one, is_main=one is names[0]) for one in names]
 
 
@@ -91,18 +91,6 @@ def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Se
         elif other in _ONLY:
             text += f", only {_ONLY[other]} has"
         (place / other).error(text)
-
-
-def _read_name(place: DocumentPlace, table: OperationTable, key: str) -> Named | None:
-    """The name on a middleware, with the first of its forms; None if it has mistakes, which are noted."""
-    mistakes = len(place.errors)
-    name = (place / key).attempt(name_of, key, getattr(table, key))
-    node = (place / "node").attempt(name_of, "node", table.node) if table.node is not None else None
-    kind = (place / "type").attempt(type_of, table.type) if table.type is not None else None
-    without_forms = key == "topic" and table.direction is None
-    if name is None or without_forms or len(place.errors) > mistakes:
-        return None
-    return Named(forms_of(key, table.direction)[0], name, node, kind)
 
 
 def _read_callable(place: DocumentPlace, table: OperationTable) -> Operation:
@@ -304,39 +292,22 @@ def _read_refused(place: DocumentPlace, raw: Any, named: Named | None) -> tuple[
     action = named.name if named is not None and named.form is Form.GOAL else None
     if raw is None:
         return ()
-    if isinstance(raw, list) and raw and all(isinstance(item, str) for item in raw):
-        if action is None:
-            place.error(f"only the goal of an action ends with a word; {_REFUSED}")
-        for index, word in enumerate(raw):
-            if action is not None and word not in ENDINGS:
-                (place / index).unknown("end of a goal", word, ENDINGS)
-        return (Refused("", tuple(raw), action),)
     if raw == []:
         place.error(f"must not be empty, {_REFUSED}")
-    tables = (
-        [(place / index, item) for index, item in enumerate(raw)] if isinstance(raw, list) else [(place, raw)]
-    )
-    needs_topic = named is not None and named.form is Form.PUBLISH
-    read = (_read_refused_table(at, item, action, needs_topic) for at, item in tables)
-    return tuple(one for one in read if one is not None)
-
-
-def _read_refused_table(
-    place: DocumentPlace, raw: Any, action: str | None, needs_topic: bool
-) -> Refused | None:
-    if not isinstance(raw, dict):
-        place.error(f"expected a table, got {shown(raw)}; {_REFUSED}")
-        return None
-    table = place.table(RefusedTable, raw)
-    path = (place / "path").attempt(_path_in_answer, table.path) if table is not None else None
-    if table is None or path is None:
-        return None
-    topic = action
-    if table.topic is not None:
-        topic = (place / "topic").attempt(name_of, "topic", table.topic)
-    elif needs_topic:
-        place.error('what is published has no answer; name where it is said: topic = "/…"')
-    return Refused(str(path), tuple(table.values), topic)
+    if action is not None and isinstance(raw, list) and all(isinstance(item, str) for item in raw):
+        for at, word in place.each(raw):
+            if word not in ENDINGS:
+                at.unknown("end of a goal", word, ENDINGS)
+        return (Refused("", tuple(raw), action),)
+    found = []
+    for at, item in place.each(raw):
+        table = at.table(RefusedTable, item)
+        path = (at / "path").attempt(_path_in_answer, table.path) if table is not None else None
+        if table is not None and path is not None:
+            found.append(Refused(str(path), tuple(table.values), table.topic or action))
+            if table.topic is None and named is not None and named.form is Form.PUBLISH:
+                at.error('what is published has no answer; name where it is said: topic = "/…"')
+    return tuple(found)
 
 
 def _path_in_answer(text: str) -> Path:
@@ -361,9 +332,7 @@ def read_clock(place: DocumentPlace, raw: dict[str, Any]) -> Clock | None:
 def read_wait(place: DocumentPlace, raw: dict[str, Any]) -> Wait | None:
     """Read ``wait = { call = …, unit = … }``; None if it has mistakes, which are noted."""
     table = place.table(WaitTable, raw)
-    if table is None:
-        return None
-    return Wait(table.call, table.unit, place.source("wait"))
+    return Wait(table.call, table.unit, place.source("wait")) if table is not None else None
 
 
 def read_probe(place: DocumentPlace, raw: Any) -> Probe | None:

@@ -1,19 +1,29 @@
-"""Text commands: entries of ``patterns`` turned into patterns."""
+"""Calls that stand for several commands: texts, ``when``, and a ``mode`` that an argument decides.
+
+Entries of ``patterns`` tell text commands apart.
+
+``when = { argument = "type", value = "gripper" }``: one callable that does everything, such as
+``client.write(node, value)``, is several operations in the words of a test engineer. Each has an entry of its
+own. Together they are one operation with a pattern for each entry; calls that fit none are left alone.
+
+``mode = { argument = "relative", true = "by", false = "to" }``: a quantity has one mode, so an operation or
+text command whose mode depends on an argument becomes one command for each value of that argument.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import product
 from typing import Any
 
-from mutabot.config.mistakes import DocumentPlace
+from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.errors import nearest_name
-from mutabot.model import Path, Pattern, Quantity
+from mutabot.model import Case, Mode, Operation, Path, Pattern, Quantity
 from mutabot.model.notation import Field, Notation
 
-from .names import CALLABLE, Sides
 from .quantities import read_quantities, read_quantity
-from .schema import PatternTable, QuantityTable, read_idle
-from .when import in_each_mode, name_of
+from .schema import CALLABLE, CaseTable, PatternTable, QuantityTable, Sides, read_idle
 
 
 def read_patterns(
@@ -34,12 +44,12 @@ def read_patterns(
     """
     patterns: list[Pattern] = []
     seen: dict[tuple[str, ...], str] = {}
-    for index, item in enumerate(raw):
-        found = list(_read_pattern(place / index, item, source, common, sides))
+    for at, item in place.each(raw):
+        found = list(_read_pattern(at, item, source, common, sides))
         text = found[0].notation or "" if found else ""
         form = _form(Notation.compile(text)) if found else ()
         if form in seen:
-            (place / index / "text").error(f"takes the same commands as {seen[form]!r}")
+            (at / "text").error(f"takes the same commands as {seen[form]!r}")
         elif found:
             seen[form] = text
         patterns += found
@@ -67,7 +77,7 @@ def _read_pattern(
     for cases, at, decided in in_each_mode(place, beside):
         arguments = _arguments(at, decided, notation, sides)
         names = {quantity.name for quantity in arguments} | {field.name for field in notation.fields}
-        name = f" [{name_of(cases)}]" if cases else ""
+        name = f" [{name_of_cases(cases)}]" if cases else ""
         yield Pattern(
             text=table.text + name,
             arguments=(*arguments, *(one for one in common if one.name not in names)),
@@ -160,3 +170,165 @@ def _check_opposite(text: str, notation: Notation) -> None:
 def _form(notation: Notation) -> tuple[str, ...]:
     """What tells commands apart: literal text and types of fields, not the fields' names."""
     return tuple(part if isinstance(part, str) else f"{{:{part.kind}}}" for part in notation.parts)
+
+
+_MODE = 'such as mode = { argument = "relative", true = "by", false = "to" }'
+_WHEN = 'such as when = { argument = "type", value = "gripper" }'
+
+
+def in_each_mode(place: DocumentPlace, raw: Any) -> list[tuple[tuple[Case, ...], DocumentPlace, Any]]:
+    """A table of quantities with plain modes, once for each case of the arguments that decide about them.
+
+    There is one case without a condition if nothing decides. Mistakes are noted at the place of the first.
+    """
+    values: dict[str, tuple[str, ...]] = {}
+    for at, mode in _choices(place, raw):
+        argument, found = _read_choice(at / "mode", mode)
+        if argument and set(values.setdefault(argument, found)) != set(found):
+            at.error(
+                f"{argument} has the values {', '.join(found)} here, but {', '.join(values[argument])} "
+                "in the mode of another quantity"
+            )
+    combined = product(*([Case(argument, value) for value in found] for argument, found in values.items()))
+    silent = replace(place, errors=[])  # the mistakes of the other cases are the same
+    return [
+        (cases, silent if number else place, _in_case(raw, cases)) for number, cases in enumerate(combined)
+    ]
+
+
+def _choices(place: DocumentPlace, raw: Any) -> Iterator[tuple[DocumentPlace, dict[str, Any]]]:
+    """The quantities in a table whose mode is a table."""
+    if not isinstance(raw, dict):
+        return
+    if isinstance(raw.get("kind"), str):
+        if isinstance(raw.get("mode"), dict):
+            yield place, raw["mode"]
+        return
+    for key, item in raw.items():
+        yield from _choices(place / key, item)
+
+
+def _read_choice(place: DocumentPlace, mode: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
+    """The argument that decides, and its values; no argument if there is a mistake, which is noted."""
+    argument = mode.get("argument")
+    named = {key: value for key, value in mode.items() if key != "argument"}
+    for key, value in named.items():
+        if not isinstance(value, str):
+            (place / key).error(f'expected "by" or "to", got {shown(value)}')
+        elif value not in tuple(Mode):
+            (place / key).unknown("mode", value, [one.value for one in Mode])
+    if not isinstance(argument, str):
+        place.error(f"needs the argument that decides, {_MODE}")
+    elif len(named) < 2:
+        place.error(f"needs a mode for each value of {argument}, {_MODE}")
+    elif (place / "argument").attempt(_path_of_choice, argument) is not None:
+        return argument, tuple(named)
+    return "", ()
+
+
+def _path_of_choice(text: str) -> Path:
+    path = Path.parse(text, rooted=True)
+    if path.root == "self" or any(step.bounds is not None for step in path.steps):
+        raise ValueError(f"{text!r} is not one argument of the call")
+    return path
+
+
+def _in_case(raw: Any, cases: Sequence[Case]) -> Any:
+    """The table with the modes that these cases decide; ``by`` where the choice is a mistake."""
+    if not isinstance(raw, dict):
+        return raw
+    if not isinstance(raw.get("kind"), str):
+        return {key: _in_case(item, cases) for key, item in raw.items()}
+    mode = raw.get("mode")
+    if not isinstance(mode, dict):
+        return raw
+    value = next((case.value for case in cases if case.argument == mode.get("argument")), "")
+    return {**raw, "mode": found if (found := mode.get(value)) in tuple(Mode) else Mode.BY.value}
+
+
+def name_of_cases(cases: Sequence[Case]) -> str:
+    """The cases as ids and reports print them, as a notation."""
+    text = ", ".join(f"{case.argument}={case.value}" for case in cases)
+    return text.replace("{", "{{").replace("}", "}}")
+
+
+def read_when(place: DocumentPlace, raw: Any) -> tuple[Case, ...]:
+    """Read ``when``: a table, or a list of tables that all have to fit. Mistakes are noted."""
+    if raw == []:
+        place.error(f"must not be empty; {_WHEN}")
+    cases: dict[str, Case] = {}
+    for at, item in place.each(raw):
+        table = at.table(CaseTable, item)
+        if table is not None and table.argument in cases:
+            at.error(f"{table.argument} has one value in a call, so it cannot stand here twice")
+        elif table is not None:
+            cases[table.argument] = Case(table.argument, _text(table.value), "when")
+    return tuple(cases.values())
+
+
+def _text(value: str | bool | float) -> str:
+    """The value as ``Case`` has it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float) and value.is_integer():
+        return str(int(value))
+    return str(value)
+
+
+def in_cases(operation: Operation, cases: tuple[Case, ...]) -> Operation:
+    """The operation as one that is meant of calls in these cases alone."""
+    whole = Pattern("", operation.arguments, operation.result, source=operation.source)
+    return replace(
+        operation,
+        arguments=(),
+        result=(),
+        current=None,
+        opposite=None,
+        idle=None,
+        refused=(),
+        patterns=tuple(_pattern(operation, one, cases) for one in operation.patterns or (whole,)),
+        is_partial=True,
+    )
+
+
+def _pattern(operation: Operation, pattern: Pattern, cases: tuple[Case, ...]) -> Pattern:
+    when = (*cases, *pattern.when)
+    base = pattern.notation if operation.message is not None and operation.patterns else None
+    name = name_of_cases(when)
+    is_reading = bool(pattern.result and not pattern.arguments)
+    return replace(
+        pattern,
+        text=name if base is None else f"{base} [{name}]",
+        base=base,
+        when=when,
+        source=f"{pattern.source} · {name}",
+        opposite=pattern.opposite if base is not None else operation.opposite,
+        idle=pattern.idle if pattern.idle is not None else operation.idle,
+        command=operation.command and not (operation.patterns and is_reading),
+        current=operation.current,
+        refused=operation.refused,
+    )
+
+
+def together(first: Operation, second: Operation) -> Operation:
+    """Two entries for calls of one callable in unlike cases. Raises ValueError if they do not go together."""
+    known = {pattern.text: pattern for pattern in first.patterns}
+    for pattern in second.patterns:
+        other = known.get(pattern.text)
+        if other is not None and replace(other, source="") != replace(pattern, source=""):
+            cases = ", ".join(f"{case.argument} = {case.value}" for case in pattern.when)
+            raise ValueError(f"{cases} is described twice, differently")
+    for key in ("message", "signature"):
+        one, other_one = getattr(first, key), getattr(second, key)
+        if None not in (one, other_one) and one != other_one:
+            raise ValueError(f"{key} is {other_one!r} here, but {one!r} in another entry for the same call")
+    new = (pattern for pattern in second.patterns if pattern.text not in known)
+    return replace(
+        first,
+        patterns=(*first.patterns, *new),
+        command=first.command or second.command,
+        refusals=tuple(dict.fromkeys((*first.refusals, *second.refusals))),
+        message=first.message or second.message,
+        signature=first.signature or second.signature,
+        overrides=first.overrides or second.overrides,
+    )

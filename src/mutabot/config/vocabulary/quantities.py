@@ -1,18 +1,71 @@
-"""Tables of a vocabulary turned into quantities."""
+"""Tables of a vocabulary turned into quantities, and the rules that a quantity keeps, by its kind."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from mutabot.config.mistakes import DocumentPlace, shown
-from mutabot.model import Kind, Path, Quantity
+from mutabot.errors import nearest_name
+from mutabot.model import Kind, Mode, Path, Quantity
 from mutabot.model.path import Step
+from mutabot.model.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
+from mutabot.model.units import QUATERNION_ORDERS, UNITS, Dimension, dimension_of, is_euler_order
 
-from .names import CALLABLE, Sides
-from .rules import default_unit, default_values, faults, slice_of, split_axes, spread, steps_of
-from .schema import QuantityTable
+from .schema import CALLABLE, QuantityTable, Sides, is_target
+
+#: every axis a quantity may have
+AXES = ("x", "y", "z", *(f"j{number}" for number in range(1, 13)))
+
+_AXES_IN_SHORT = ("x", "y", "z", "j1 … j12")
+_AXIS = re.compile(r"[xyz]|j(?:1[0-2]|[1-9])")
+_JOINTS = re.compile(r"j(\d{1,2})(?:\.\.|-)j(\d{1,2})")
+
+
+def _split_axes(text: str) -> tuple[str, ...] | None:
+    """The axes in ``x``, ``xyz``, ``j1j2j3`` or ``j1..j7``; None if it is anything else."""
+    joints = _JOINTS.fullmatch(text)
+    if joints is not None:
+        axes = tuple(f"j{number}" for number in range(int(joints[1]), int(joints[2]) + 1))
+    else:
+        axes = tuple(_AXIS.findall(text))
+        if "".join(axes) != text:
+            return None
+    return axes if axes and set(axes) <= set(AXES) else None
+
+
+def _slice_of(path: Path) -> Step | None:
+    """The slice a path ends with, or None."""
+    return path.steps[-1] if path.steps and path.steps[-1].bounds is not None else None
+
+
+def _spread(path: Path, axes: tuple[str, ...]) -> list[Path]:
+    """One path per axis, for a path that ends with a slice.
+
+    Raises ValueError if it ends with none, or with one that does not have as many elements.
+    """
+    step = _slice_of(path)
+    if step is None or step.bounds is None:
+        raise ValueError(
+            f"{''.join(axes)!r} names {len(axes)} axes, for which the path must end with a slice "
+            f'such as "{path}[0:{len(axes)}]"'
+        )
+    start, stop, stride = step.bounds[0] or 0, step.bounds[1], step.bounds[2] or 1
+    if stop is None:  # counted from the end, a sequence ends at 0
+        stop = 0 if start < 0 else start + len(axes) * stride
+    has_one_end = not (start >= 0 > stop or start < 0 < stop)
+    indices = range(start, stop, stride)
+    if stride < 1 or not has_one_end or len(indices) != len(axes):
+        raise ValueError(
+            f"the slice {step} must have an element for each of the {len(axes)} axes ({', '.join(axes)}), "
+            "forwards, with start and stop counted from the same end of the sequence"
+        )
+    return [replace(path, steps=(*path.steps[:-1], Step(item=index))) for index in indices]
+
 
 #: keys that a quantity has as its table has them
 _ALIKE = ("kind", "frame", "mode", "noise", "order", "relative", "missing", "tcp")
@@ -77,21 +130,15 @@ def read_quantity(
     table = place.table(QuantityTable, raw)
     if table is None:
         return
-    axes = split_axes(table.axis) if table.axis is not None else None
+    axes = _split_axes(table.axis) if table.axis is not None else None
     several = axes is not None and len(axes) > 1
-    is_vector = slice_of(path) is not None and not several
-    broken = list(faults(table, is_written=is_written, is_vector=is_vector, words=sides.words))
-    for key, text, known in broken:
-        if known is None:
-            (place / key).error(text)
-        else:
-            (place / key).unknown(key, text, known)
-    if broken:
+    is_vector = _slice_of(path) is not None and not several
+    if note_faults(place, table, sides, is_written=is_written, is_vector=is_vector):
         return
     if axes is None or not several:
         yield _quantity(table, path, table.axis, name)
         return
-    parts = (place / "axis").attempt(spread, path, axes)
+    parts = (place / "axis").attempt(_spread, path, axes)
     for axis, part in zip(axes, parts or (), strict=False):
         yield _quantity(table, part, axis, None)
 
@@ -125,18 +172,262 @@ def _path_of(text: str, sides: Sides, is_written: bool) -> Path:
 
 
 def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:
-    steps, unit = steps_of(table)
+    steps, unit = _steps_of(table)
     facts = {key: getattr(table, key) for key in _ALIKE}
     for key in ("range", "clip"):
         limits = getattr(table, key)
         facts[key] = tuple(limits) if limits is not None else None
+    values = tuple(table.values) if table.values is not None else None
     return Quantity(
         name=name or str(path),
         path=path,
         axis=axis,
-        unit=default_unit(table),
-        values=default_values(table),
+        unit=_unit(table),
+        values=(False, True) if values is None and table.kind is Kind.FLAG else values,
         ladder=tuple(map(float, steps)) if steps is not None else None,
         ladder_unit=unit,
         **facts,
     )
+
+
+_MOVED = frozenset({Kind.TRANSLATION, Kind.ROTATION})
+_WITH_AXIS = MEASURED - {Kind.DURATION} - WHOLE
+#: keys that kinds do not have, and what is said beside that
+_LACKING: Sequence[tuple[Sequence[str], frozenset[Kind], str]] = (
+    (("values", "range", "clip"), WHOLE, ": its numbers mean something only together"),
+    (("values",), frozenset({Kind.STAMP}), ": it is any moment"),
+    (("range",), frozenset({Kind.LABEL, Kind.FLAG}), ", but values"),
+    (("range", "clip"), HEADER, ""),
+    (("unit",), frozenset(Kind) - DIMENSIONS.keys(), ""),
+    (("axis",), frozenset(Kind) - _WITH_AXIS, ""),
+    (("mode",), frozenset(Kind) - _MOVED, "; only a translation or rotation has"),
+    (("order",), frozenset(Kind) - {Kind.QUATERNION, Kind.EULER}, ""),
+    (("noise",), frozenset(Kind) - (MEASURED & READ), "; only a measured reading has"),
+)
+#: how a kind that stands on the wrong side would be written there
+_AS_ARGUMENT = {
+    Kind.POSITION: '; a commanded position is kind = "translation" with mode = "to"',
+    Kind.ORIENTATION: '; a commanded orientation is kind = "rotation" with mode = "to"',
+    Kind.ANGLE: '; a commanded joint angle is kind = "rotation" with mode = "to" and the joint as axis',
+    Kind.LABEL: '; a commanded choice is kind = "output" with its values',
+    Kind.FLAG: '; a commanded switch is kind = "output" with values = [false, true]',
+}
+_AS_RESULT = {
+    Kind.TRANSLATION: '; where the robot is, is kind = "position"',
+    Kind.ROTATION: '; how the robot is turned, is kind = "orientation" (or "angle" for a joint)',
+    Kind.OPENING: '; how far the gripper is open, is kind = "distance", and whether it is, "flag"',
+    Kind.OUTPUT: '; a state that is read back is kind = "flag" or "label"',
+}
+
+#: a rule: the key, whether it is broken, and what is said then
+Rule = tuple[str, object, str]
+
+
+def note_faults(
+    place: DocumentPlace, table: QuantityTable, sides: Sides, *, is_written: bool, is_vector: bool
+) -> bool:
+    """Note the rules that a quantity breaks, the first of each key; only its kind if that is wrong here.
+
+    ``is_vector`` tells whether it is a slice that stays one quantity. Returns whether there are any.
+    """
+    told: set[str] = set()
+    rules = _of_kind(table, is_written, sides)
+    if not any(is_broken for _, is_broken, _ in rules):
+        for key, name, known in _unknown(table):
+            told.add(key)
+            (place / key).unknown(key, name, known)
+        rules = [
+            (key, kind in kinds and getattr(table, key) is not None, f"{_a(kind)} has no {key}{beside}")
+            for keys, kinds, beside in _LACKING
+            for key in keys
+            for kind in (table.kind,)
+        ]
+        rules += [*_of_meaning(table, is_written, is_vector), *_of_values(table, is_written, is_vector)]
+        rules += [*_of_reading(table, is_written), *_of_ladder(table)]
+    for key, is_broken, text in rules:
+        if is_broken and key not in told:
+            told.add(key)
+            (place / key).error(text)
+    return bool(told)
+
+
+def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]:
+    kind = table.kind
+    written = "what is sent" if sides.written in (None, "fields") else sides.written
+    read = "what is received" if sides.read in (None, "fields") else sides.read
+    text = f"{_a(kind)} is sent to the robot, so it belongs to {written}, not to {read}"
+    if is_written:
+        text = f"{_a(kind)} is read from the robot, so it belongs to {read}, not to {written}"
+    text += (_AS_ARGUMENT if is_written else _AS_RESULT).get(kind, "")
+    known = "settings are known from what is set up; no vocabulary describes them"
+    is_wrong = kind not in (WRITTEN if is_written else READ)
+    return [("kind", kind is Kind.SETTING, known), ("kind", is_wrong, text)]
+
+
+def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
+    """Names that do not exist: the key, the name, and those that do."""
+    units, (_, of_ladder) = _units(table), _steps_of(table)
+    if table.unit is not None and units and table.unit not in UNITS:
+        yield "unit", table.unit, units
+    if table.axis is not None and table.kind in _WITH_AXIS and _split_axes(table.axis) is None:
+        yield "axis", table.axis, AXES if nearest_name(table.axis, AXES) else _AXES_IN_SHORT
+    if isinstance(of_ladder, str) and of_ladder not in UNITS:
+        yield "ladder", of_ladder, _units_of_ladder(table)
+
+
+def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list[Rule]:
+    """The rules of unit, mode, axis and order."""
+    a, kind, order, units, unit = _a(table.kind), table.kind, table.order, _units(table), _unit(table)
+    is_named = kind is Kind.OPENING and any(isinstance(one, str | bool) for one in table.values or ())
+    is_target = kind in _MOVED and table.mode is Mode.TO
+    is_position = is_written and is_target and kind is Kind.TRANSLATION
+    hidden = (
+        'only a translation or rotation with mode = "to" can hide a relative move: the program computes '
+        "its target from where the robot is"
+    )
+    several = "give the axes of the slice, or indices: each has a place of its own"
+    in_front = 'only a target position (kind = "translation", mode = "to") has a tool in front of it'
+    modes = f'{a} needs mode = "by" (relative) or "to" (absolute target)'
+    scalar = f'{a} needs order = "wxyz" or "xyzw": where its real part w stands'
+    angles = (
+        f"{kind} angles need order = three axes in the order of the angles, "
+        'such as "xyz" for axes that stay, or "ZYX" for axes that turn along'
+    )
+    return [
+        ("unit", units and unit is None and not is_named, f"{a} needs a unit: {_listed(units)}"),
+        (
+            "unit",
+            units and unit in UNITS and unit not in units,
+            f"{unit!r} is no unit for {a}; use {_listed(units)}",
+        ),
+        ("unit", unit in units and is_named, f"{a} with named values has no unit"),
+        ("mode", kind in _MOVED and table.mode is None, modes),
+        ("relative", table.relative and not is_target, hidden),
+        ("relative", table.relative and is_vector, several),
+        ("tcp", table.tcp is not None and not is_position, in_front),
+        ("order", kind is Kind.QUATERNION and order not in QUATERNION_ORDERS, scalar),
+        ("order", kind is Kind.EULER and not is_euler_order(order or ""), angles),
+    ]
+
+
+def _of_values(table: QuantityTable, is_written: bool, is_vector: bool) -> list[Rule]:
+    """The rules of values, range and clip."""
+    a, kind, values, limits, clip = _a(table.kind), table.kind, table.values or [], table.range, table.clip
+    is_given, is_measured = table.values is not None, kind in MEASURED
+    needs_values = kind in (Kind.OPENING, Kind.OUTPUT) and not (is_given or limits or clip)
+    wrong = [value for value in values if not _fits(kind, value)]
+    wanted = "numbers" if is_measured else "texts, numbers, true or false"
+    twice = [value for position, value in enumerate(values) if value in values[:position]]
+    least, most = limits or (-math.inf, math.inf)
+    outside = [value for value in values if _is_number(value) and not least <= value <= most]
+    indices = "a slice that stays one quantity cannot have values; give indices instead"
+    two = f"a flag has two values, false first, not {len(values)}; use a label"
+    rises = "must rise from the least to the greatest value, got"
+    read = f"{a} is read, not sent: only what is sent can be limited by the robot"
+    left = "values are all that can be sent, so nothing is left to limit"
+    return [
+        ("kind", is_vector and not is_measured, f"{a} is a single value; give an index instead of a slice"),
+        ("values", is_vector and is_measured and is_given, indices),
+        ("values", kind is Kind.LABEL and not is_given, "a label needs values: all that it can read"),
+        ("values", needs_values, f"{a} needs values (all that can be sent), a range or a clip"),
+        ("values", wrong, f"values must be {wanted}, not {shown(next(iter(wrong), None))}"),
+        ("values", is_given and len(values) < 2, f"needs at least two different values, got {len(values)}"),
+        ("values", twice, f"{next(iter(twice), None)!r} stands there twice"),
+        ("values", kind is Kind.FLAG and is_given and len(values) != 2, two),
+        ("values", outside, f"{next(iter(outside), None)} lies outside the range {limits}"),
+        ("range", limits and not limits[0] < limits[1], f"{rises} {limits}"),
+        ("clip", clip and not is_written, read),
+        ("clip", clip and is_given, left),
+        ("clip", clip and not clip[0] < clip[1], f"{rises} {clip}"),
+    ]
+
+
+def _of_reading(table: QuantityTable, is_written: bool) -> list[Rule]:
+    missing = table.missing
+    never = f"{_a(table.kind)} that is sent is never missing; only a reading is"
+    ways = f'write "none", "nan" or an exception (module:Name), not {shown(missing)}'
+    is_odd = missing is not None and missing not in ("none", "nan") and not is_target(missing)
+    rules: list[Rule] = [("missing", missing is not None and is_written, never), ("missing", is_odd, ways)]
+    positive = f"must be more than 0 (a standard deviation), got {table.noise}"
+    rules.append(("noise", table.noise is not None and table.noise <= 0, positive))
+    return rules
+
+
+def _unit(table: QuantityTable) -> str | None:
+    """The unit, where it goes without saying: an opening between 0 and 1 is a fraction."""
+    if table.unit is None and table.kind is Kind.OPENING:
+        numbers = [*(table.values or ()), *(table.range or table.clip or ())]
+        if numbers and all(_is_number(number) and 0 <= number <= 1 for number in numbers):
+            return "fraction"
+    return "s" if table.kind is Kind.STAMP else table.unit
+
+
+def _steps_of(table: QuantityTable) -> tuple[list[float] | None, str | None]:
+    """The magnitudes of its ladder and their unit, if it has one of its own."""
+    ladder = table.ladder
+    return (ladder.get("steps"), ladder.get("unit")) if isinstance(ladder, dict) else (ladder, None)
+
+
+def _of_ladder(table: QuantityTable) -> list[Rule]:
+    if table.ladder is None:
+        return []
+    a, (steps, unit), units = _a(table.kind), _steps_of(table), _units_of_ladder(table)
+    is_table = isinstance(table.ladder, dict)
+    is_odd_table = is_table and (table.ladder.keys() != {"steps", "unit"} or not isinstance(unit, str))
+    form = f'write {{ steps = [1, 2, 5], unit = "mm" }}, not {_written(table.ladder)}'
+    if is_odd_table:
+        return [("ladder", True, form)]
+    is_list = isinstance(steps, list) and len(steps) > 1 and all(map(_is_number, steps))
+    if not is_list or steps is None:
+        text = f"takes at least two magnitudes, such as [1, 2, 5], not {_written(steps)}"
+        return [("ladder", True, text)]
+    falls = any(later <= earlier for earlier, later in pairwise(steps))
+    no_scale = f"{a} has no magnitudes; only what is a number on a scale has"
+    positive = f"magnitudes are more than 0, not {min(steps):g}; both directions are tried"
+    other = f"{unit!r} measures no fault of {a}; use {_listed(units)}"
+    return [
+        ("ladder", table.kind not in MEASURED and table.range is None, no_scale),
+        ("ladder", min(steps) <= 0, positive),
+        ("ladder", falls, f"must rise from the smallest to the greatest magnitude, got {_written(steps)}"),
+        ("ladder", unit in UNITS and unit not in units, other),
+    ]
+
+
+def _units(table: QuantityTable) -> tuple[str, ...]:
+    """The units of its values."""
+    dimensions = DIMENSIONS.get(table.kind, frozenset())
+    return tuple(name for name in UNITS if dimension_of(name) in dimensions)
+
+
+def _units_of_ladder(table: QuantityTable) -> tuple[str, ...]:
+    """The units of faults in it: its own measure, a time or a share."""
+    own = DIMENSIONS.get(table.kind, frozenset())
+    if table.unit in UNITS:
+        own = frozenset({dimension_of(table.unit)})
+    elif table.kind in WHOLE:
+        own = frozenset({Dimension.ANGLE})
+    return tuple(name for name in UNITS if dimension_of(name) in (*own, Dimension.TIME, Dimension.RATIO))
+
+
+def _written(value: Any) -> str:
+    """A value as it stands in the file, where that is short."""
+    return str(value) if len(str(value)) < 60 else shown(value)
+
+
+def _fits(kind: Kind, value: Any) -> bool:
+    if kind in MEASURED:
+        return _is_number(value)
+    return isinstance(value, str | bool) or _is_number(value)
+
+
+def _is_number(value: Any) -> bool:
+    finite = isinstance(value, int | float) and abs(value) < float("inf")
+    return finite and not isinstance(value, bool)
+
+
+def _a(kind: Kind) -> str:
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return " or ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))

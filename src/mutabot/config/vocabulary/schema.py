@@ -1,23 +1,76 @@
-"""The shape of a vocabulary file: which keys there are and what type their values have.
+"""The shape of a vocabulary file: which keys there are, and what type their values have.
 
-What the values mean together is checked where the tables are turned into operations. An operation that is no
-Python callable, which is named ``module:qualified.name``, has a key of its own in place of ``call``, as those
-with a name on a middleware have (``vocabulary.named``), and the kind that finds it at run time in
-``Operation.kind`` (see ``runtime.targets.target``). A callable may make what a command answers while the
-robot does nothing.
+What the values mean together is checked where the tables are turned into operations. An operation is a Python
+callable, or all that is done under a name on a middleware, which has a key of its own in place of ``call``:
+``topic`` with ``direction = "publish"`` stands for publishing and for setting up the publisher, an action for
+its goal, feedback, result and cancelling.
 """
 
 from __future__ import annotations
 
 import builtins
 import keyword
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field
 
 from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.config.table import Table
-from mutabot.model import Kind, Mode
+from mutabot.model import Kind, Mode, Path
+from mutabot.model.operation import WRITTEN, Form
+
+#: the keys that name an operation on a middleware, a topic's with its ``direction``, each with the forms that
+#: it stands for, the main one first
+FORMS: Mapping[tuple[str, str | None], tuple[Form, ...]] = {
+    ("topic", "publish"): (Form.PUBLISH, Form.ADVERTISE),
+    ("topic", "receive"): (Form.RECEIVE, Form.SUBSCRIBE),
+    ("service", None): (Form.CALL, Form.CLIENT),
+    ("action", None): (Form.GOAL, Form.FEEDBACK, Form.RESULT, Form.CANCEL, Form.CLIENT),
+    ("parameter", None): (Form.PARAMETER,),
+    ("timer", None): (Form.TICK, Form.TIMER),
+    ("rate", None): (Form.SLEEP, Form.RATE),
+    ("tf", None): (Form.TRANSFORM,),
+}
+#: all keys that name an operation
+NAMING = ("call", "method", *dict.fromkeys(key for key, _ in FORMS))
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Where the quantities of an operation stand in its entry.
+
+    Attributes:
+        written, read: the keys of their tables; None where there are none.
+        root: the argument that holds the message that is written; None if arguments are written by name.
+        is_message: whether the keys of the tables are bare paths to fields, such as ``pose.position.x``.
+    """
+
+    written: str | None = "arguments"
+    read: str | None = "result"
+    root: str | None = None
+    is_message: bool = False
+
+
+#: of callables
+CALLABLE = Sides()
+#: of what is done under a name; nothing is described of the forms that are missing
+SIDES: Mapping[Form, Sides] = {
+    form: Sides(written, read, WRITTEN.get(form), is_message=form is not Form.PARAMETER)
+    for form, written, read in (
+        (Form.PUBLISH, "fields", None),
+        (Form.RECEIVE, None, "fields"),
+        (Form.CALL, "request", "response"),
+        (Form.GOAL, "goal", None),
+        (Form.FEEDBACK, None, "feedback"),
+        (Form.RESULT, None, "result"),
+        (Form.PARAMETER, None, "value"),
+        (Form.TRANSFORM, None, "fields"),
+    )
+}
 
 
 def is_name(text: str) -> bool:
@@ -36,23 +89,13 @@ def is_target(text: str) -> bool:
 
 def check_target(text: str) -> str:
     """Return a target, ``module:qualified.name``. Raises ValueError if it is none, saying what is wrong."""
-    form = "module:qualified.name"
     module, colon, name = text.partition(":")
-    parts = (*module.split("."), *name.split("."))
-    if not text.strip():
-        raise ValueError(f"is empty; expected {form}")
-    if not colon:
+    odd = next((part for part in (*module.split("."), *name.split(".")) if not is_name(part)), None)
+    if text.strip() and not colon:
         raise ValueError(f"{text!r} has no colon between module and name; write {_with_colon(text)!r}")
-    if ":" in name:
-        raise ValueError(f"{text!r} has more than one colon; expected {form}")
-    if not module or not name:
-        side = "name after" if module else "module before"
-        raise ValueError(f"{text!r} has no {side} the colon; expected {form}")
-    if "" in parts:
-        raise ValueError(f"{text!r} has a dot too many; expected {form}")
-    odd = next((part for part in parts if not is_name(part)), None)
     if odd is not None:
-        raise ValueError(f"{text!r}: {odd!r} is not a Python name; expected {form}")
+        what = f"{odd!r} is not a Python name" if odd else "a name is missing"
+        raise ValueError(f"{text!r}: {what}; expected module:qualified.name")
     return text
 
 
@@ -79,8 +122,56 @@ def _check_scalar(value: Any) -> Any:
     return value
 
 
+def _check_signs(text: str, allowed: re.Pattern[str]) -> str:
+    if not text.strip():
+        raise ValueError("is empty")
+    if not allowed.fullmatch(text):
+        odd = next(sign for sign in text if not allowed.fullmatch(sign))
+        raise ValueError(f"{text!r}: a name has no {odd!r} in it")
+    return text
+
+
+def _check_resolved(text: str) -> str:
+    if not _check_signs(text, re.compile(r"[\w/*~]+")).startswith(("/", "*")):
+        right = f"{'*/' if text.startswith('~') else '/'}{text.lstrip('~/')}"
+        raise ValueError(
+            f"{text!r} is not resolved: names are compared after namespaces and remapping; write {right!r}"
+        )
+    return text
+
+
+def _frames(text: str) -> str:
+    """The two frames as operations carry them."""
+    parts = [part.strip().removeprefix("/") for part in re.split("→|->", text)]
+    if len(parts) != 2 or not all(parts):
+        raise ValueError(f"{text!r} names no two frames; expected 'base -> tool'")
+    return " → ".join(parts)
+
+
+def _type(text: str) -> str:
+    """``package/Name`` for ``package/msg/Name`` and the like."""
+    found = re.fullmatch(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)", text)
+    if found is None:
+        raise ValueError(f"{text!r} is no type; expected package/Name, such as geometry_msgs/PoseStamped")
+    return f"{found[1]}/{found[2]}"
+
+
+def _check_argument(text: str) -> str:
+    path = Path.parse(text, rooted=True)
+    if text == "self":
+        raise ValueError('self is the object itself; name what lies in it, such as "self.name"')
+    if any(step.bounds is not None for step in path.steps):
+        raise ValueError(f"{text!r} is not one value")
+    return text
+
+
 #: a callable or an exception, ``module:qualified.name``
 Target = Annotated[str, AfterValidator(check_target)]
+#: a name of topics, services, actions, nodes or rates
+_GraphName = Annotated[str, AfterValidator(_check_resolved)]
+#: names that are not resolved by namespaces
+_ParameterName = Annotated[str, AfterValidator(partial(_check_signs, allowed=re.compile(r"[\w/*~.\-]+")))]
+_TimerName = Annotated[str, AfterValidator(partial(_check_signs, allowed=re.compile(r"[\w*.<>]+")))]
 #: the units of time in ``model.units``
 TimeUnit = Literal["s", "ms", "us", "min"]
 #: what an argument or a part of an answer can be compared with
@@ -117,20 +208,20 @@ class PatternTable(Table):
 
 
 class OperationTable(Table):
-    """One ``[[operation]]``; ``names.NAMING`` has the keys that name it, of which it has one."""
+    """One ``[[operation]]``; ``NAMING`` has the keys that name it, of which it has one."""
 
     call: Target | None = None
     method: Annotated[str | None, AfterValidator(_check_method)] = None
-    topic: str | None = None
+    topic: _GraphName | None = None
     direction: Literal["publish", "receive"] | None = None
-    service: str | None = None
-    action: str | None = None
-    parameter: str | None = None
-    timer: str | None = None
-    rate: str | None = None
-    tf: str | None = None
-    type: str | None = None
-    node: str | None = None
+    service: _GraphName | None = None
+    action: _GraphName | None = None
+    parameter: _ParameterName | None = None
+    timer: _TimerName | None = None
+    rate: _GraphName | None = None
+    tf: Annotated[str, AfterValidator(_frames)] | None = None
+    type: Annotated[str, AfterValidator(_type)] | None = None
+    node: _GraphName | None = None
     command: bool | None = None
     current: str | None = None
     opposite: str | None = None
@@ -157,13 +248,13 @@ class RefusedTable(Table):
 
     path: str = ""
     values: Annotated[list[Scalar], Field(min_length=1)]
-    topic: str | None = None
+    topic: _GraphName | None = None
 
 
 class CaseTable(Table):
     """``when = { argument = "type", value = "gripper" }``"""
 
-    argument: str
+    argument: Annotated[str, AfterValidator(_check_argument)]
     value: Scalar
 
 

@@ -58,7 +58,7 @@ class _Plugin:
         counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
         found = {**to_data(self._watch.data()), "outcomes": counts, "problems": self._problems[:20]}
         for other in seen_elsewhere(self._folder):
-            for key in ("calls", "uses", "reached"):
+            for key in ("calls", "uses"):
                 found[key] += other[key]
         write(self._output, found)
         self._written = time.monotonic()

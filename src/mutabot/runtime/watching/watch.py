@@ -181,7 +181,6 @@ class Watch:
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._method_of = cache(method_of)
         self._only_class = cache(_only_class)
-        self._reached: dict[tuple[str, int, str], None] = {}
         self._names: NamesSeen | None = None
         self.sites = CallSites(_Public(), locator.role, self.called, hands=self.read, are_read=True)
 
@@ -200,7 +199,6 @@ class Watch:
     def called(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """Return what is called in the place of ``found``, which was read from ``receiver``."""
         is_plain = receiver is NOTHING
-        self._reached[*self._place(site), "" if is_plain else site.name] = None
         if isinstance(found, type):
             return found
         callee = function_of(found) if is_plain else self._method(receiver, site.name)
@@ -218,11 +216,9 @@ class Watch:
         return found
 
     def data(self) -> WatchedCalls:
-        """What was seen: callables, what was done under names, and all places that were come by."""
+        """What was seen: callables, and what was done under names."""
         uses = list(self._names.uses.values()) if self._names is not None else []
-        return WatchedCalls(
-            [self._call(seen) for seen in list(self._seen.values())], uses, list(self._reached)
-        )
+        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses)
 
     def _leads(self) -> None:
         """Something is done under a name: the calls that are under way lead to it."""

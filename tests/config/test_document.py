@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
-from mutabot.config.toml_lines import KeyPath, key_lines
+from mutabot.config.document import KeyPath, key_lines
 
 TEXT = '''# a comment with [brackets] = and "quotes"
 title = "a # b" # c
