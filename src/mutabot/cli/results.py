@@ -81,9 +81,8 @@ def show(
     if json:
         print_json(result)
     else:
-        with closing(StoredEvidence(path)) as evidence:
-            suggestions = kept_suggestions(path, found.meta)
-            print_mutant(make_console(), result, source, evidence, suggestions, everything=all)
+        suggestions = kept_suggestions(path, found.meta)
+        print_mutant(make_console(), result, source, suggestions, everything=all)
 
 
 def thresholds(

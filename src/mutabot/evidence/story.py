@@ -1,17 +1,15 @@
 """Describe what happened in a mutant's test but not in the original: when first, how far, and in a sentence.
 
 Contacts come first, where a simulator reports them; then how far things left their paths, and where they
-ended. A timeline shows the calls and contacts of both runs side by side, around the first difference.
+ended.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from difflib import SequenceMatcher
 from math import inf, isclose
 from typing import Any
 
-from mutabot.frozen import frozen
 from mutabot.model.outcome import Apart, Diverged, Near
 from mutabot.model.quantity import is_number, told_apart, value_text
 
@@ -204,93 +202,3 @@ def _are_equal(value: Any, other: Any) -> bool:
 
 def _name(call: Told) -> str:
     return f"{call.place} {call.operation.rpartition(':')[2]}"
-
-
-#: rows before the first that differs, and after it
-_BEFORE, _AFTER = 3, 12
-_WORDS = {"touch": "touches", "part": "leaves"}
-
-
-@frozen
-class Entry:
-    """Something that was done or happened.
-
-    Attributes:
-        time: s; None without a clock.
-        text: in words.
-    """
-
-    time: float | None
-    text: str
-
-
-@frozen
-class StoryRow:
-    """The same thing in the original and in the mutant; None where it did not happen.
-
-    Attributes:
-        is_fault: whether the mutant changed something here for the first time.
-    """
-
-    original: Entry | None
-    mutant: Entry | None
-    is_fault: bool = False
-
-    @property
-    def is_same(self) -> bool:
-        """Whether both have it, at the same time to a tenth of a second."""
-        one, other = self.original, self.mutant
-        if one is None or other is None or None in (one.time, other.time):
-            return one == other
-        return f"{one.time:.1f}" == f"{other.time:.1f}"
-
-
-def timeline(original: Recording, mutant: Recording) -> list[StoryRow]:
-    """All rows, in their order."""
-    before, after = entries(original), entries(mutant)
-    number, fault = mutant.faulty_call, None
-    if number is not None and number < len(mutant.calls):
-        fault = _entry(mutant.calls[number])
-    rows: list[StoryRow] = []
-    matcher = SequenceMatcher(None, [one.text for one in before], [one.text for one in after], autojunk=False)
-    for what, i, j, k, m in matcher.get_opcodes():
-        if what == "equal":
-            pairs = zip(before[i:j], after[k:m], strict=True)
-            rows += [StoryRow(one, other, fault is not None and other == fault) for one, other in pairs]
-        else:
-            rows += [StoryRow(one, None) for one in before[i:j]]
-            rows += [StoryRow(None, other, fault is not None and other == fault) for other in after[k:m]]
-    return rows
-
-
-def around(rows: Sequence[StoryRow]) -> tuple[Sequence[StoryRow], int, int]:
-    """The rows around the first that differs, and how many are left out before and after them."""
-    first = next((number for number, row in enumerate(rows) if row.is_fault or not row.is_same), len(rows))
-    start, end = max(0, first - _BEFORE), min(len(rows), first + _AFTER)
-    return rows[start:end], start, len(rows) - end
-
-
-def entries(recording: Recording) -> list[Entry]:
-    """Calls and what happened, in their order; a contact that begins during a call comes after it."""
-    calls = [_entry(one) for one in recording.calls]
-    if any(one.time is None for one in calls):
-        return calls
-    happened = [Entry(one.time, _moment_text(one.what, one.text)) for one in recording.moments]
-    return sorted([*calls, *happened], key=lambda one: one.time or 0.0)
-
-
-def _entry(call: Told) -> Entry:
-    """``move_by y 0.2``, ``position → x 0.1``; beside other values, zeros are left out."""
-    name = call.pattern or call.operation.rpartition(":")[2]
-    read = f" → {_values(call.read)}" if call.read else ""
-    moved = {key: value for key, value in call.written.items() if value or isinstance(value, bool)}
-    return Entry(call.began, f"{name} {_values(moved or call.written)}".rstrip() + read)
-
-
-def _values(values: Mapping[str, Any]) -> str:
-    return ", ".join(f"{name.lstrip('.')} {value_text(value)}".strip() for name, value in values.items())
-
-
-def _moment_text(what: str, text: str) -> str:
-    one, _, other = text.partition(", ")
-    return f"{one} {_WORDS[what]} {other}" if what in _WORDS else text

@@ -38,7 +38,7 @@ def result_of(folder: Path, mutant: Mutant) -> MutantResult:
 
 def shown(folder: Path, mutant: Mutant, found: Suggestions | None) -> str:
     file = io.StringIO()
-    print_mutant(make_console(file, width=120), result_of(folder, mutant), None, None, found)
+    print_mutant(make_console(file, width=120), result_of(folder, mutant), None, found)
     return file.getvalue()
 
 

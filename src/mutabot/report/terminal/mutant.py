@@ -10,15 +10,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.evidence.recording import Recording
-from mutabot.evidence.story import Entry, amount, around, timeline
+from mutabot.evidence.story import amount
 from mutabot.journal.records import Replayed
 from mutabot.model import Diverged, Looked, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Apart, end_in_words
 from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import effect_text, numbers_text, telling
 from mutabot.results.results import MutantResult
-from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestions
 
 from .campaign import letters
@@ -36,7 +34,6 @@ def print_mutant(
     console: Console,
     result: MutantResult,
     source: str | None,
-    evidence: StoredEvidence | None = None,
     suggestions: Suggestions | None = None,
     *,
     everything: bool = False,
@@ -45,7 +42,6 @@ def print_mutant(
 
     Args:
         source: the text of its file, or None if it is not known.
-        evidence: the recordings of its campaign; None without any.
         suggestions: checks that were suggested for its campaign; None if none were looked for.
         everything: print every round, and what the checks of each test saw.
     """
@@ -56,7 +52,7 @@ def print_mutant(
     if lines:
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
-    found = [_rounds(result, everything=everything), *_happened(result, evidence, everything=everything)]
+    found = [_rounds(result, everything=everything), *_happened(result, everything=everything)]
     found += [*(_looked(result) if everything else ()), *suggested_sections(result, suggestions)]
     for section in found:
         print_section(console, section)
@@ -148,9 +144,7 @@ def _details(outcome: Outcome) -> Iterator[str]:
         yield f"re-run alone, because beside others it exceeded the wall clock: {outcome.beside}"
 
 
-def _happened(
-    result: MutantResult, evidence: StoredEvidence | None, *, everything: bool
-) -> Iterator[Section]:
+def _happened(result: MutantResult, *, everything: bool) -> Iterator[Section]:
     """What the robot did in the round and test that tell most; nothing where nothing was recorded."""
     number, diverged = telling(result) or (0, None)
     if diverged is None:
@@ -160,15 +154,6 @@ def _happened(
     if everything and diverged.apart:
         columns = ("*difference", ">from", ">at most", ">at", ">at the end", ">off its path")
         yield Section("How far apart", columns, [_apart_row(one) for one in diverged.apart])
-    if evidence is not None:
-        does = result.change or ("not sent" if _is_withheld(result) else "fault")
-        yield from _timeline(*evidence.pair(result.mutant.id, number, diverged.test), does)
-
-
-def _is_withheld(result: MutantResult) -> bool:
-    """Whether the mutant made no call where the program made one."""
-    examples = [one.example for one in result.outcomes if one.example is not None]
-    return bool(examples) and all(len(one) == 2 and one[1] == [] for one in examples)
 
 
 def _sentences(diverged: Diverged) -> Iterator[str]:
@@ -188,28 +173,6 @@ def _apart_row(one: Apart) -> tuple[str, ...]:
     largest, final = amount(one.largest, one.unit), amount(one.final, one.unit)
     aside = amount(one.aside, one.unit) if one.aside is not None else "–"
     return one.name, f"{one.first:.1f} s", largest, f"{one.at:.1f} s", final, aside
-
-
-def _timeline(original: Recording | None, mutant: Recording | None, does: str) -> Iterator[Section]:
-    """Calls and contacts around the first that differ; at the fault the value that was sent."""
-    if original is None or mutant is None:
-        yield Section("The recording was discarded to save space; raise the limit and run again to keep it")
-        return
-    found, before, after = around(timeline(original, mutant))
-    rows = []
-    for row in found:
-        cells = (*_cells(row.original), *_cells(row.mutant))
-        rows.append((*cells[:3], f"{cells[3]}  <- {does}") if row.is_fault else cells)
-    left_out = [f"{count} {where}" for count, where in ((before, "before"), (after, "after")) if count]
-    lines = [f"not shown: {', '.join(left_out)}"] if left_out else []
-    if rows:
-        yield Section("Timeline", (">s", "*original", ">s", "*mutant"), rows, lines)
-
-
-def _cells(entry: Entry | None) -> tuple[str, str]:
-    if entry is None:
-        return "", "–"
-    return "" if entry.time is None else f"{entry.time:.1f}", entry.text
 
 
 def _looked(result: MutantResult) -> Iterator[Section]:
