@@ -15,7 +15,6 @@ from typing import Any
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Operation, Pattern, Probe, Quantity
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import Figure
 from mutabot.model.quantity import is_number, told_apart, value_text
 from mutabot.model.units import apart, distance
 
@@ -204,7 +203,6 @@ class Difference:
         way: greatest difference of a probe along the way, in multiples of its tolerance; None if none was
             compared.
         compared: how much was.
-        figures: figures of merit that differ.
     """
 
     indistinguishable: bool
@@ -213,7 +211,6 @@ class Difference:
     gaps: tuple[str, ...] = ()
     way: float | None = None
     compared: Compared = field(default=Compared(), compare=False)
-    figures: tuple[Figure, ...] = field(default=(), compare=False)
 
 
 def compare(
@@ -253,8 +250,7 @@ def compare(
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
     compared = _compared(original, mutant, moments)
-    figures = tuple(_figures(original, mutant, probes))
-    return Difference(not lines, distance, tuple(lines), gaps, way, compared, figures)
+    return Difference(not lines, distance, tuple(lines), gaps, way, compared)
 
 
 def _on_the_way(
@@ -369,18 +365,6 @@ def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple
         for name in readings_of(probe, values) if probe.result else ():
             for quantity in probe.result:
                 yield name, quantity
-
-
-def _figures(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> Iterator[Figure]:
-    for probe in probes:
-        # a class of which the program uses several objects has a figure for each
-        keys = (key for key in original.probes if key == probe.target or key.startswith(f"{probe.target}#"))
-        for key in keys if probe.better is not None else ():
-            before, after = original.probes[key], mutant.probes.get(key)
-            if not (is_number(before) and is_number(after)):
-                continue
-            if math.inf > _distance(before, after) > probe.tolerance:
-                yield Figure(key, float(before), float(after or 0.0), probe.better or "")
 
 
 def _readable(original: Observation, mutant: Observation, target: str) -> str:

@@ -14,7 +14,7 @@ from mutabot.errors import MutabotError
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.event_file import OWN_FAULT
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import Figure, added, in_words
+from mutabot.model.outcome import added, in_words
 from mutabot.model.source_units import Executed, together
 
 #: tests of a survivor whose checks are kept
@@ -299,7 +299,6 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
     """The outcome of a survivor with how far its world is from the original's."""
     baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
     comparisons = []
-    figures: list[Figure] = []
     first = next((number for number, end in enumerate(run.ends) if end.hits), 0)
     since_hit = {end.test for end in run.ends[first:]}  # before it is hit, a mutant is the original
     for test, found in run.observations.items():
@@ -311,7 +310,6 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
         if key in baseline.observations:
             known = (vocabulary.probes, vocabulary.operations)
             comparisons.append(compare(baseline.observations[key], found, *known))
-            figures += (replace(one, test=test) for one in comparisons[-1].figures)
     worst = farthest(comparisons)
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.
     is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
@@ -323,5 +321,4 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
         gaps=worst.gaps,
         way=worst.way,
         compared=worst.compared if comparisons else None,
-        figures=tuple(figures),
     )

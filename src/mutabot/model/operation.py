@@ -378,15 +378,12 @@ class Probe:
             attribute of a class's objects is read from those that the program uses.
         tolerance: greatest difference between two equal worlds, in the reading's own units.
         result: what parts of it mean, where that decides how they are compared: angles and orientations.
-        better: whether ``less`` or ``more`` of it is better, where it is one number and a figure of merit;
-            else None.
     """
 
     target: str
     tolerance: float = 1e-6
     source: str = ""
     result: tuple[Quantity, ...] = ()
-    better: str | None = None
 
     @property
     def owner(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import field
 from enum import StrEnum
 from typing import Any
@@ -169,43 +169,6 @@ class Diverged:
 
 
 @frozen
-class Figure:
-    """A figure of merit that a mutant changed by more than its tolerance.
-
-    Attributes:
-        probe: what is read, as the vocabulary names it.
-        before, after: in the original and in the mutant.
-        better: ``less`` or ``more``: which way it gets better.
-        test: node id.
-    """
-
-    probe: str
-    before: float
-    after: float
-    better: str
-    test: str = ""
-
-    @property
-    def is_better(self) -> bool:
-        """Whether the mutant did better than the original."""
-        return self.after < self.before if self.better == "less" else self.after > self.before
-
-    @property
-    def text(self) -> str:
-        """``Cell.cycle_time 11.2 instead of 12.5``."""
-        return f"{self.probe.partition(':')[2]} {self.after:.4g} instead of {self.before:.4g}"
-
-
-def improvement(figures: Sequence[Figure]) -> str:
-    """What got better, in words; empty if nothing did, or if anything got worse."""
-    if not figures or not all(one.is_better for one in figures):
-        return ""
-    best = max(figures, key=lambda one: abs(one.after - one.before) / max(abs(one.before), 1e-12))
-    more = f" and {len(figures) - 1} more" if len(figures) > 1 else ""
-    return f"{best.text}{more}"
-
-
-@frozen
 class Compared:
     """How much of a mutant's tests was compared with the original's.
 
@@ -302,7 +265,6 @@ class Outcome:
         looked: of a survivor, the tests that reach it and what they checked.
         diverged: how the recordings of its tests differ from the original's, the worst first; empty if they
             do not, or if there are none.
-        figures: of a survivor, figures of merit that differ from the original's by more than their tolerance.
         confirmed: whether the whole suite says so too, of what was found without tests that do not reach the
             mutant; None if none was left out, or not before the test that decided.
         executed: units of the project's files that were executed until then, see ``model.units``; None if
@@ -341,14 +303,8 @@ class Outcome:
     beside: str | None = None
     looked: tuple[Looked, ...] = ()
     diverged: tuple[Diverged, ...] = ()
-    figures: tuple[Figure, ...] = ()
     confirmed: bool | None = None
     executed: Mapping[str, tuple[int, ...]] | None = None
-
-    @property
-    def improvement(self) -> str:
-        """What the tests did better with the mutant than without, in words; empty if nothing."""
-        return improvement(self.figures)
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:

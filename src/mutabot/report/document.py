@@ -14,7 +14,6 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
-from mutabot.model.outcome import Figure
 from mutabot.report.texts import status_of
 from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
@@ -148,7 +147,7 @@ def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
             data["median"] = data_of.facts(ladder.median, "above=low? at_most=high level")
     return data | {
         "rounds_counted": len(ladder.counted),
-        **data_of.facts(ladder, "rounds steps violations better runs"),
+        **data_of.facts(ladder, "rounds steps violations runs"),
     }
 
 
@@ -221,8 +220,7 @@ data_of = Encoder(
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
         "cpu simulated indistinguishable distance divergence way gaps compared commands engine stuck repeats "
-        "beside confirmed kills complete figures looked diverged",
-        Figure: "* is_better",
+        "beside confirmed kills complete looked diverged",
         Diverged: "* worst",
         Score: "score check_score killed valid by_check timeouts counts=of_each",
         RoundScores: "*total score=mean check_score=mean_check interval check_interval sample_interval "
@@ -247,7 +245,6 @@ data_of = Encoder(
         ladders.LadderRound: _ladder_round,
         ladders.MagnitudeStep: "magnitude number noticed valid interval by refused unknown",
         ladders.Violation: "round=round+1 noticed missed",
-        ladders.Better: "round=round+1 magnitude text",
         thresholds.Floor: _floor,
         thresholds.Comparison: _comparison,
         thresholds.LadderChange: "id=new.id change steps old new",

@@ -55,13 +55,6 @@ def sections(results: Results, place: Place) -> Iterator[Section]:
     found = [one.text for one in unlooked(results.mutants)]
     if found:
         yield Section("Readings that no test checks", lines=found)
-    better = [
-        f"{one.mutant.number} {place(one.mutant.site.span)} {one.mutant.operator}: {one.improvement}"
-        for one in results.mutants
-        if one.improvement
-    ]
-    if better:
-        yield Section(f"{plural(len(better), 'mutant')} did better than the original", lines=better)
     yield from _outside(results, place)
     if results.left_out:
         yield skipped(results.left_out)

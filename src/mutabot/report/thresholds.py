@@ -70,7 +70,6 @@ def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
     """What needs a look, by its heading."""
     found: dict[str, list[str]] = {
         "Out of order: a larger fault was missed": [],
-        "Better than the original": [],
         "Rounds that do not count": [],
     }
     floors: list[str] = []
@@ -78,9 +77,6 @@ def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
         name = f"{one.place} {one.name}"
         found["Out of order: a larger fault was missed"] += (f"{name}: {x}" for x in violations_in_words(one))
         found["Rounds that do not count"] += (f"{name}: {x}" for x in rounds_left_out(one))
-        for best in one.better[:1]:
-            where = f"{amount(best.magnitude, one.unit)}, round {best.round + 1}"
-            found["Better than the original"].append(f"{name}: {best.text} ({where})")
     for floor in thresholds.floors:
         if floor.is_below_noise:
             alarms = floor.false_alarms

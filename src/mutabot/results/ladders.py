@@ -283,21 +283,6 @@ class Violation:
 
 
 @frozen
-class Better:
-    """A fault with which a test did better than without, by a figure of merit that the vocabulary names.
-
-    Attributes:
-        round: 0-based round.
-        magnitude: of the fault, in the ladder's unit.
-        text: which figure, and by how much.
-    """
-
-    round: int
-    magnitude: float
-    text: str
-
-
-@frozen
 class Ladder:
     """All magnitudes of one graded fault.
 
@@ -409,16 +394,6 @@ class Ladder:
         return tuple(
             Violation(one.number, one.bracket.out_of_order[0][0], one.bracket.out_of_order[-1][1])
             for one in rounds
-        )
-
-    @property
-    def better(self) -> tuple[Better, ...]:
-        """Where a test did better with the fault than without."""
-        return tuple(
-            Better(one.number, size, outcome.improvement)
-            for one in self.rounds
-            for size, outcome in one.outcomes.items()
-            if outcome.improvement
         )
 
     @property

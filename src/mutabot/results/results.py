@@ -81,11 +81,6 @@ class MutantResult:
         )
 
     @property
-    def improvement(self) -> str:
-        """What a test did better with it than without, in words; empty if nothing."""
-        return next((one.improvement for one in self.outcomes if one.improvement), "")
-
-    @property
     def indistinguishable(self) -> bool:
         """Whether no survivor of it looked other than the original."""
         return bool(self.survived) and all(one.indistinguishable for one in self.survived)

@@ -174,10 +174,6 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
         GOOD_OPERATION + "[wait]\ncall = 'wait'",
         ["robot.toml:4", "wait.call", "'wait'"],
     ),
-    "probe_that_is_better_somehow": (
-        "[[probe]]\ncall = 'world:box'\nbetter = 'most'",
-        ["robot.toml:3", "better", "'more'"],
-    ),
     "clock_with_a_length": (
         GOOD_OPERATION + "[clock]\ntick = 'sim:step'\nunit = 'mm'",
         ["robot.toml:5", "clock.unit", "did you mean 'ms'"],

@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 from mutabot.model import Operation, Role, Vocabulary
-from mutabot.model.outcome import Figure
 from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.thresholds import bar, print_compared, print_thresholds, suggested_toml
@@ -100,12 +99,6 @@ def test_ladders_without_violations_have_a_careful_bound(tmp_path: Path) -> None
     ]
     found = thresholds_of(journals.results(tmp_path, *(Rungs(["SSSCCCC"], site=site) for site in sites)))
     assert found.most_violated == pytest.approx(3 / 8)
-
-
-def test_what_did_better_than_the_original_is_told(tmp_path: Path) -> None:
-    figure = Figure("cell:Cell.cycle_time", 12.5, 11.25, "less", samples.TEST)
-    found = thresholds_of(journals.results(tmp_path, Rungs(["SSSCCCC"], figures={(0, 2.0): figure})))
-    assert "Cell.cycle_time 11.25 instead of 12.5 (2 mm, round 1)" in text_of(found)
 
 
 @pytest.mark.parametrize("sort", SORTS)

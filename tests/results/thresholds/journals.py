@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path as File
 from typing import Any
 
@@ -12,7 +12,6 @@ from mutabot.journal.journal import Journal
 from mutabot.model import By, Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.mutant import Site
-from mutabot.model.outcome import Figure
 from mutabot.results.ladders import Ladder, ladders_of
 from mutabot.results.results import Results, read_results
 from results import samples
@@ -39,7 +38,6 @@ class Rungs:
     Attributes:
         rounds: per round a letter for each magnitude, rising.
         zero: a letter per round for magnitude 0; empty if it was not run.
-        figures: by (round, magnitude), what a survivor changed of a figure of merit.
     """
 
     rounds: Sequence[str]
@@ -51,7 +49,6 @@ class Rungs:
     unit: str | None = "mm"
     sizes: Sequence[float] = SIZES
     operation: str = "robot:Arm.move_by"
-    figures: Mapping[tuple[int, float], Figure] = field(default_factory=dict)
 
     def mutant(self, number: int, size: float) -> Mutant:
         variant = f"{self.direction}{size:g}{self.unit or ''}"
@@ -75,9 +72,7 @@ def write(path: File, *ladders: Rungs, vocabulary: Vocabulary = samples.VOCABULA
                 letter = one.zero[number] if size == 0.0 else letters[column - bool(one.zero)]
                 if letter in LETTERS:
                     verdict, by = LETTERS[letter]
-                    outcome = Outcome(mutant.id, number, verdict, by, tests=1, test=samples.TEST)
-                    figure = one.figures.get((number, size))
-                    outcomes.append(replace(outcome, figures=(figure,)) if figure is not None else outcome)
+                    outcomes.append(Outcome(mutant.id, number, verdict, by, tests=1, test=samples.TEST))
     facts = {
         "families": [GRADED],
         "rounds": max((len(one.rounds) for one in ladders), default=2),

@@ -279,7 +279,7 @@ def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
     text = f"{in_words(first)}; run once more: {in_words(second)}"
     return replace(
         first, verdict=Verdict.UNSTABLE, by=None, test=second.test or first.test, message=text,
-        indistinguishable=None, distance=None, divergence=(), gaps=(), way=None, compared=None, figures=(),
+        indistinguishable=None, distance=None, divergence=(), gaps=(), way=None, compared=None,
     )  # fmt: skip
 
 

@@ -372,4 +372,4 @@ def read_probe(place: DocumentPlace, raw: Any) -> Probe | None:
     if table is None:
         return None
     result = read_quantities(place / "result", table.result)
-    return Probe(table.call, table.tolerance, place.source(table.call), result, table.better)
+    return Probe(table.call, table.tolerance, place.source(table.call), result)

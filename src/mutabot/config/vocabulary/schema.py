@@ -190,7 +190,6 @@ class ProbeTable(Table):
     call: Target
     tolerance: Annotated[float, Field(ge=0)] = 1e-6
     result: dict[str, Any] | None = None
-    better: Literal["less", "more"] | None = None
 
 
 class VocabularyTable(Table):

@@ -88,7 +88,6 @@ def _facts(result: MutantResult) -> Table:
         "change": f"the program {result.change}" if result.change is not None else "",
         "killed": of_rounds + interval,
         "result": effect_text(result),
-        "better": result.improvement,
     }
     table = make_table(("", "*"), header=False)
     for name, text in facts.items():
