@@ -317,7 +317,6 @@ def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> No
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
         with pytest.raises(JournalError, match="disk is full") as error:
             journal.add_outcome(big)
-        assert error.value.path == str(path)
         assert str(path) in str(error.value)
         with pytest.raises(JournalError, match="disk is full"):
             journal.set_plan(samples.MUTANTS, (), sources={"a.py": "x" * 1_000_000})

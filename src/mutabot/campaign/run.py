@@ -311,7 +311,7 @@ def _disk_told(request: Request) -> Iterator[None]:
             raise
         where = error.filename or request.journal_path.parent
         text = f"{where} cannot be written: {error.strerror}; what was written before is kept"
-        raise JournalError(text, path=str(request.journal_path)) from error
+        raise JournalError(text) from error
 
 
 def _write_beginning(

@@ -117,8 +117,7 @@ def _graded(journal: Path) -> Results:
     found = results_at(journal)
     if not found.ladders:
         raise JournalError(
-            f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them",
-            path=str(journal),
+            f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them"
         )
     return found
 

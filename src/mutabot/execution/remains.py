@@ -52,17 +52,6 @@ def end_left_over(folder: Path) -> list[str]:
     return ended
 
 
-def by_mark() -> dict[Path, list[int]]:
-    """The processes that were started below workers, by the folder of the worker."""
-    found: dict[Path, list[int]] = {}
-    start = f"{VARIABLE}=".encode()
-    for pid in _processes():
-        for entry in _environment(pid):
-            if entry.startswith(start):
-                found.setdefault(Path(os.fsdecode(entry[len(start) :])), []).append(pid)
-    return found
-
-
 def claim(folder: Path) -> None:
     """Say that the folder of workers belongs to this process, as long as that lives."""
     (folder / OWNER).write_text(f"{os.getpid()} {_began(os.getpid())}", encoding="ascii")
@@ -89,8 +78,9 @@ def end_abandoned(home: Path) -> int:
 
 def end_below(folder: Path) -> int:
     """End all that was started below workers whose folders are in this one; returns how many there were."""
-    below = [(worker, pid) for worker, pids in by_mark().items() for pid in pids if folder in worker.parents]
-    return sum(_end(pid, _mark(worker)) for worker, pid in below)
+    start = _mark(folder) + b"/"
+    marked = [(pid, entry) for pid in _processes() for entry in _environment(pid) if entry.startswith(start)]
+    return sum(_end(pid, entry) for pid, entry in marked)
 
 
 def _mark(folder: Path) -> bytes:

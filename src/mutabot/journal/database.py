@@ -179,9 +179,9 @@ def guarded(path: Path) -> Iterator[None]:
             text = f"{path} cannot be written: the disk is full; what was written before is kept ({text})"
         else:
             text = f"{path}: {text}"
-        raise JournalError(text, path=str(path)) from error
+        raise JournalError(text) from error
     except OSError as error:
-        raise JournalError(f"{path}: {error.strerror or error}", path=str(path)) from error
+        raise JournalError(f"{path}: {error.strerror or error}") from error
 
 
 # Marks
@@ -484,7 +484,7 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
         raise no_journal(path)
     tables = {name for kind, name, _ in found if kind == "table"}
     if not {"meta", "outcome"} <= tables:
-        raise JournalError(f"{path} is a database, but not a journal of mutabot", path=str(path))
+        raise JournalError(f"{path} is a database, but not a journal of mutabot")
     strange = sorted(f"{kind} {name}" for kind, name, _ in found - _made())
     if "table meta" not in strange:
         version = _version(connection)
@@ -493,14 +493,12 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
             raise JournalError(
                 f"{path} was written by another version of mutabot (journal version {version or '?'}, "
                 f"this one reads {SCHEMA_VERSION}); run the campaign again",
-                path=str(path),
                 version=version,
             )
     if strange or _made() - found:
         what = f"holds what no journal has ({', '.join(strange[:3])})" if strange else "lacks a table"
         raise JournalError(
-            f"{path} {what}, so something else than mutabot has changed it; run the campaign again",
-            path=str(path),
+            f"{path} {what}, so something else than mutabot has changed it; run the campaign again"
         )
 
 
@@ -514,7 +512,7 @@ def _version(connection: sqlite3.Connection) -> int | None:
 
 def no_journal(path: Path) -> JournalError:
     """There is nothing there."""
-    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
+    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it")
 
 
 def make_way(path: Path) -> Path | None:
@@ -530,7 +528,7 @@ def make_way(path: Path) -> Path | None:
     with path.open("rb") as file:
         start = file.read(16)
     if start and not start.startswith(b"SQLite format 3"):
-        raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
+        raise JournalError(f"{path} is in the way: it is not a journal of mutabot")
     kept = previous_of(path)
     try:
         with closing(connect(path)) as connection:

@@ -65,7 +65,7 @@ class WriterLock:
             else:
                 return cls(journal, descriptor)
         os.close(descriptor)
-        raise JournalError(f"{journal} is being written by another `mutabot run`", path=str(journal))
+        raise JournalError(f"{journal} is being written by another `mutabot run`")
 
     def renew(self) -> None:
         """Take it again if its file is gone. Raises JournalError if another process has it by now."""
@@ -110,7 +110,7 @@ def at_work(home: Path) -> Iterator[None]:
         home.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(home, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     except OSError as error:
-        raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+        raise JournalError(f"cannot write to {home}: {error.strerror}") from error
     try:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -139,7 +139,7 @@ def refuse_tracked(journal: Path) -> None:
     for path in _ways(Path(os.path.abspath(journal)), _LINKS):  # noqa: PTH100  # links stay links
         found = _tracked_at(path, journal)
         if found:
-            raise JournalError(_why(journal, path.parent, found), path=str(journal))
+            raise JournalError(_why(journal, path.parent, found))
 
 
 def _tracked_at(path: Path, journal: Path) -> list[str]:
@@ -158,7 +158,7 @@ def _tracked_at(path: Path, journal: Path) -> list[str]:
         return tracked(folder, *names)
     except GitError as error:
         why = f"nobody can tell whether {journal} came with the repository; then it is not used: {error}"
-        raise JournalError(why, path=str(journal)) from error
+        raise JournalError(why) from error
 
 
 def _ways(path: Path, left: int) -> Iterator[Path]:

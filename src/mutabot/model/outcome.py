@@ -120,24 +120,6 @@ class Apart:
 
 
 @frozen
-class Near:
-    """How near something came to something that never moves.
-
-    Attributes:
-        body, obstacle: which.
-        distance: m; 0 if they overlapped. Boxes are taken as they stand, whichever way they are turned.
-        at: when, s.
-        original: the least distance in the original, m.
-    """
-
-    body: str
-    obstacle: str
-    distance: float
-    at: float
-    original: float
-
-
-@frozen
 class Diverged:
     """How the world of one test differs from the original's.
 
@@ -148,7 +130,6 @@ class Diverged:
         what: what differed then.
         story: what happened, in a sentence.
         apart: what was apart by more than its tolerance, worst first.
-        near: closest approaches that are closer than in the original, closest first.
         fault: when the mutant changed something for the first time, s; None if that is not known.
         is_simulated: whether times are simulated; else they are of the wall clock.
     """
@@ -158,7 +139,6 @@ class Diverged:
     what: str
     story: str
     apart: tuple[Apart, ...] = ()
-    near: tuple[Near, ...] = ()
     fault: float | None = None
     is_simulated: bool = True
 

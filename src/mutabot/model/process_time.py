@@ -22,8 +22,6 @@ from time import monotonic  # before a simulation takes over the clock
 
 from mutabot.frozen import frozen
 
-#: states of a task that asks for the machine: it can run, or waits for a disk
-_ASKING = frozenset("RD")
 _PRESSURE = "/proc/pressure/cpu"
 
 
@@ -34,12 +32,10 @@ class Account:
     Attributes:
         ran: seconds on a processor.
         queued: seconds for which it could have run and had none.
-        is_asking: whether it asks for the machine right now.
     """
 
     ran: float
     queued: float
-    is_asking: bool = False
 
 
 #: by the number of the task; None where the kernel keeps no such accounts
@@ -61,10 +57,8 @@ def accounts_of(processes: Iterable[int]) -> Accounts:
     for pid in processes:
         for task in _names(f"/proc/{pid}/task"):
             with suppress(OSError, IndexError, ValueError):
-                folder = f"/proc/{pid}/task/{task}"
-                ran, queued = _read(f"{folder}/schedstat").split()[:2]
-                state = _read(f"{folder}/stat").rpartition(")")[2].split()[0]
-                found[int(task)] = Account(int(ran) * 1e-9, int(queued) * 1e-9, state in _ASKING)
+                ran, queued = _read(f"/proc/{pid}/task/{task}/schedstat").split()[:2]
+                found[int(task)] = Account(int(ran) * 1e-9, int(queued) * 1e-9)
     return found
 
 

@@ -30,7 +30,7 @@ def built_in() -> list[str]:
             if rule.name in found or f'"{rule.name}"' not in text:
                 place = f"{module}:{type(rule).__name__}"
                 why = f"{place} needs a name of its own, written in its file, and has {rule.name!r}"
-                raise OperatorError(why, operator=rule.name)
+                raise OperatorError(why)
             found[rule.name] = rule
     return [rule.name for rule in in_order(found.values())]
 
@@ -46,7 +46,7 @@ def names() -> list[str]:
     for part in brought("operators").values():
         if part.name in own:
             text = f"operator {part.name!r} of package {part.owner!r} has the name of one of 'mutabot'"
-            raise OperatorError(text, operator=part.name)
+            raise OperatorError(text)
         found.append(part.name)
     return found
 
@@ -80,8 +80,8 @@ def operator(name: str) -> Operator:
         try:
             return part.make(Operator)  # type: ignore[type-abstract]
         except ExtensionError as error:
-            raise OperatorError(f"operator {error}", operator=name) from error
-    raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
+            raise OperatorError(f"operator {error}") from error
+    raise OperatorError(unknown_name_text("operator", name, names()))
 
 
 @cache

@@ -151,9 +151,7 @@ def settled(
     if wrong is not None:
         raise ControlError(
             f"the {control.name} control of {control.subject} at {control.place.site.place} ended wrongly: "
-            f"{wrong}; no verdict of this campaign could be believed",
-            control=control.name,
-            test_file=control.tests[0].partition("::")[0],
+            f"{wrong}; no verdict of this campaign could be believed"
         )
     campaign.proven.add((engine, *control.way))
 
