@@ -210,7 +210,7 @@ def test_what_is_no_journal_of_this_version_is_moved_aside(path: Path, content: 
     begin(path, KILLED)
     if content == "version":
         with closing(sqlite3.connect(path)) as connection, connection:
-            connection.execute("UPDATE meta SET value = '1' WHERE key = 'journal:version'")
+            connection.execute("PRAGMA user_version = 1")
     else:
         path.write_bytes(path.read_bytes()[:4096] + b"?" * 8192)
     before = path.read_bytes()
@@ -365,7 +365,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     samples.write_journal(path)
     connection = sqlite3.connect(path)
     with connection:
-        connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
+        connection.execute("PRAGMA user_version = 99")
     connection.close()
     with pytest.raises(JournalError, match=f"version 99, this one reads {SCHEMA_VERSION}"):
         Journal.open(path)

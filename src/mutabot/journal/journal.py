@@ -24,7 +24,7 @@ from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import from_data, storable, to_data
 from mutabot.model.events import TestEnd
 
-from .database import LAST, SCHEMA_VERSION, VERSION_KEY, Database, guarded, make_way, named_row, write_anew
+from .database import LAST, Database, guarded, make_way, named_row, write_anew
 from .files import WriterLock, previous_of, refuse_tracked
 from .records import (
     ALTERED,
@@ -97,11 +97,8 @@ class JournalReader:
 
     @property
     def set_aside(self) -> list[str]:
-        """Rows that were not written by Mutabot, or that hold what cannot be, in words: nobody believes them.
-
-        What a row holds is looked at when it is read.
-        """
-        return [*self._store.unmarked, *self._unfit]
+        """Rows that hold what cannot be, in words, as far as they were read: nobody believes them."""
+        return [*self._unfit]
 
     @staticmethod
     def open(path: Path) -> JournalReader:
@@ -349,10 +346,9 @@ class Journal(JournalReader):
     def _begin(self, meta: Mapping[str, Any]) -> None:
         with self._store.transaction():
             if self._waits:
-                self._store.remove_unmarked()  # before any of it is believed
                 for statement in _ADOPT.split(";"):
                     self._store.write(statement)
-            for key, value in {VERSION_KEY: SCHEMA_VERSION, **meta}.items():
+            for key, value in meta.items():
                 self.set_meta(key, value)
 
     # What the campaign was and how it ended
