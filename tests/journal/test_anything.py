@@ -79,7 +79,7 @@ def bent(data: Any, chance: random.Random) -> Any:
 
 
 def damage(connection: sqlite3.Connection, chance: random.Random) -> set[tuple[str, Any, Any]]:
-    """Put anything into one row; returns which it was: table, and its first two columns."""
+    """Put anything into one row; returns which it was and is: table, and its first two columns."""
     table = chance.choice(["outcome", "outcome", "mutant", "kept", "meta", *columns()])
     names_of = columns()[table]
     names = ", ".join(f'"{one}"' for one in names_of)
@@ -104,7 +104,8 @@ def damage(connection: sqlite3.Connection, chance: random.Random) -> set[tuple[s
             cursor.execute(f'UPDATE {table} SET "{names_of[index]}" = {place} WHERE rowid = ?', (value, row))
         except sqlite3.IntegrityError:  # a NULL, or a name that is taken
             return set()
-    return {(table, values[0], values[1])}
+    values_now = [*values[:index], value, *values[index + 1 :]]
+    return {(table, *some[:2]) for some in (values, values_now)}
 
 
 def damaged(whole: Path, path: Path, chance: random.Random) -> set[tuple[str, Any, Any]]:
