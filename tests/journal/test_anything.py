@@ -41,7 +41,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("journal") / "journal.sqlite"
     samples.write_journal(path)
     reached = {"tests": [samples.TEST], "sites": {samples.MOVE.id: [0]}}
-    with Journal.create(path, meta=samples.meta(**{REACHING: reached}), fresh=False) as journal:
+    with Journal.create(path, meta=samples.meta(**{REACHING: reached})) as journal:
         for round in range(2):
             journal.add_test(round, 0, TestEnd(samples.TEST, "passed", wall=0.5))
         journal.set_plan(samples.MUTANTS, samples.LEFT_OUT, sources={"mission.py": samples.PROGRAM})

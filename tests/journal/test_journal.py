@@ -108,9 +108,9 @@ def test_a_new_campaign_keeps_the_journal_of_the_last_complete_one(path: Path) -
         assert previous.outcomes() == [KILLED]
 
 
-def begin(path: Path, *outcomes: Outcome, key: str = "a b c", **options: bool) -> None:
+def begin(path: Path, *outcomes: Outcome, key: str = "a b c") -> None:
     """A campaign that finds these outcomes and is then lost."""
-    with Journal.create(path, meta={}, **options) as journal:
+    with Journal.create(path, meta={}) as journal:
         for outcome in outcomes:
             journal.add_outcome(outcome, key=key)
 
@@ -146,11 +146,7 @@ def test_an_outcome_that_tells_of_the_machine_is_not_sound(path: Path, outcome: 
         assert not journal.kept()["m", 0].is_sound
 
 
-def test_a_fresh_campaign_and_outcomes_without_a_key_keep_nothing(path: Path) -> None:
-    begin(path, KILLED)
-    begin(path, fresh=True)
-    with Journal.create(path, meta={}) as journal:
-        assert journal.kept() == {}
+def test_outcomes_without_a_key_keep_nothing(path: Path) -> None:
     begin(path, KILLED, key="")
     with Journal.create(path, meta={}) as journal:
         assert journal.kept() == {}

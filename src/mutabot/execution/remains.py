@@ -15,7 +15,6 @@ import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from mutabot.model.event_file import VARIABLE
@@ -58,7 +57,7 @@ def claim(folder: Path) -> None:
 
 
 def end_abandoned(home: Path) -> int:
-    """End what is left below workers whose controller was killed; returns how many processes there were.
+    """End and remove what controllers have left that were killed; returns how many processes there were.
 
     Args:
         home: the folder in which the folders of workers are made.
@@ -72,7 +71,7 @@ def end_abandoned(home: Path) -> int:
         if _began(int(pid)) == began:
             continue
         ended += end_below(owner.parent)
-        owner.unlink(missing_ok=True)
+        remove_folder(owner.parent)
     return ended
 
 
@@ -137,9 +136,7 @@ def remove_folder(folder: Path) -> str | None:
     """Remove a folder with all that is in it. Returns why it is still there, in words; None if it is gone."""
     problems: list[str] = []
 
-    def note(
-        function: Any, path: str, error: tuple[type[BaseException], BaseException, TracebackType]
-    ) -> None:
+    def note(function: Any, path: str, error: tuple[Any, BaseException, Any]) -> None:
         if not isinstance(error[1], FileNotFoundError):
             problems.append(f"{path} ({getattr(error[1], 'strerror', None) or error[1]})")
 

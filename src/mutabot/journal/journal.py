@@ -17,7 +17,6 @@ import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self, TypeVar
 
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
@@ -91,9 +90,7 @@ class JournalReader:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -269,11 +266,11 @@ class Journal(JournalReader):
         self._waits = waits  # for its campaign to begin: until then it is that of the one before
 
     @classmethod
-    def create(cls, path: Path, *, meta: Mapping[str, Any], fresh: bool = False) -> Journal:
+    def create(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
         """``prepare`` and ``begin`` a campaign at once."""
         journal = cls.prepare(path, meta=meta)
         with journal._store.closed_on_error():
-            journal.begin(meta, fresh=fresh)
+            journal.begin(meta)
         return journal
 
     @classmethod
@@ -307,11 +304,10 @@ class Journal(JournalReader):
                 journal._begin(meta)
         return journal
 
-    def begin(self, meta: Mapping[str, Any], *, fresh: bool = False) -> None:
+    def begin(self, meta: Mapping[str, Any]) -> None:
         """Begin the campaign. Mutants and outcomes of those before are kept aside.
 
-        All or nothing. A complete campaign stays readable as ``previous_of`` the path. ``fresh``: none of the
-        outcomes is to be reused.
+        All or nothing. A complete campaign stays readable as ``previous_of`` the path.
         """
         if not self._waits:
             return  # nothing was there before
@@ -320,8 +316,6 @@ class Journal(JournalReader):
                 write_anew(self._store.copy, previous_of(self.path))
         self._begin(meta)
         self._waits = False
-        if fresh:
-            self._store.write("UPDATE kept SET key = ''")
 
     def _begin(self, meta: Mapping[str, Any]) -> None:
         with self._store.transaction():
