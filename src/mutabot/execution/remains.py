@@ -15,7 +15,6 @@ import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from mutabot.model.event_file import VARIABLE
 from mutabot.model.keeper import name_of
@@ -132,24 +131,16 @@ def _end(pid: int, entry: bytes) -> bool:
         os.close(process)
 
 
-def remove_folder(folder: Path) -> str | None:
-    """Remove a folder with all that is in it. Returns why it is still there, in words; None if it is gone."""
-    problems: list[str] = []
-
-    def note(function: Any, path: str, error: tuple[Any, BaseException, Any]) -> None:
-        if not isinstance(error[1], FileNotFoundError):
-            problems.append(f"{path} ({getattr(error[1], 'strerror', None) or error[1]})")
-
+def remove_folder(folder: Path) -> None:
+    """Remove a folder with all that is in it, as far as its owner can."""
     for _ in range(2):  # the second time all folders are open
-        try:
-            shutil.rmtree(folder, onerror=note)
-        except (RecursionError, OSError) as error:  # more folders in each other than Python can go down
-            problems.append(f"{folder} ({getattr(error, 'strerror', None) or error})")
+        with suppress(RecursionError, OSError):
+            shutil.rmtree(folder, ignore_errors=True)
+        if os.path.lexists(folder):  # maybe with more folders in each other than Python can go down
             subprocess.run(["rm", "-rf", "--", folder], check=False, stderr=subprocess.DEVNULL)
         if not os.path.lexists(folder):
-            return None
+            return
         _open_up(folder)
-    return problems[-1] if problems else f"{folder} (something is written there)"
 
 
 def _open_up(folder: Path) -> None:

@@ -14,7 +14,7 @@ import os
 import selectors
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -121,10 +121,11 @@ class Workers:
     Attributes:
         pool: the tokens of fork parents and branches.
         look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
-        spread: see ``Executor``.
+        spread, remarks: see ``Executor``.
     """
 
     spread = 1
+    remarks: Sequence[str] = ()
 
     def __init__(
         self,
@@ -141,7 +142,6 @@ class Workers:
         self._servers: list[ForkServerProcess] = []
         self._tell, self._has_told_left = tell, False
         self._may_share = True
-        self._remains: list[str] = []
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
         compile_us()
@@ -155,13 +155,17 @@ class Workers:
             worker.process.kill()
         for worker in self._workers:
             worker.close(self._selector)
-            self._note(worker.left, None)
+            self._note(worker.left)
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
         self._selector.close()
         self.pool.close()
-        self._note(None, remove_folder(self._folder))
+        remove_folder(self._folder)
+        if self._folder.exists():
+            self._tell(
+                f"{self._folder} cannot be removed, whatever a test made there; no outcome is touched"
+            )
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
@@ -185,25 +189,12 @@ class Workers:
         """One more worker process, which shares nothing with these."""
         return Workers(self._root, self._arguments, jobs=1)
 
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """See ``Executor``."""
-        if not self._remains:
-            return ()
-        more = f" and {len(self._remains) - 1} more" if len(self._remains) > 1 else ""
-        return (
-            f"What a test made cannot be removed: {self._remains[0]}{more}. Outcomes are not touched by it; "
-            f"remove {self._folder} by hand.",
-        )
-
-    def _note(self, left: list[str] | None, remains: str | None) -> None:
-        """Take in what a process left running, which is told once, and what of it cannot be removed."""
+    def _note(self, left: list[str] | None) -> None:
+        """Tell once what a process left running."""
         if left and not self._has_told_left:
             self._has_told_left = True
             more = f" and {len(left) - 1} more" if len(left) > 1 else ""
             self._tell(f"tests leave processes running, which are ended with them: {left[0]}{more}")
-        if remains is not None:
-            self._remains.append(remains)
 
     def _has_place(self, task: Task) -> bool:
         if self._workers and (task.alone or any(worker.task.alone for worker in self._workers)):
@@ -261,7 +252,7 @@ class Workers:
         for descriptor in (server.events.bell, server.process.pidfd):
             self._selector.unregister(descriptor)
         self._servers.remove(server)
-        self._note(*server.close())
+        self._note(server.close())
 
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Event]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
@@ -298,8 +289,8 @@ class Workers:
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Event]]:
         self._workers.remove(worker)
-        lines, result, remains = worker.finish(self._selector)
-        self._note(worker.left, remains)
+        lines, result = worker.finish(self._selector)
+        self._note(worker.left)
         for line in lines:
             yield worker.task, line
         if result.end is None:
@@ -371,11 +362,8 @@ class _Worker:
         )
         self.process.end()
 
-    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result, str | None]:
-        """Collect the rest of a process that has ended.
-
-        Returns its last lines, what became of it, and what of it cannot be removed.
-        """
+    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result]:
+        """Collect the rest of a process that has ended: its last lines, and what became of it."""
         self.result.exit_code = self._end()
         lines = self._taken([] if self._home.is_whole else [_HOME_LOST])
         lines += self._taken(self.events.read(is_last=True))
@@ -388,17 +376,18 @@ class _Worker:
             lines += self._taken([Untrusted(children.doubt)] if children.doubt is not None else [])
         self.result.wall = time.monotonic() - self._started + self.process.startup
         self.result.log = self._home.log_text()
-        return lines, self.result, self.close(selector)
+        self.close(selector)
+        return lines, self.result
 
-    def close(self, selector: selectors.BaseSelector) -> str | None:
-        """Let go of all; what of it cannot be removed, in words, or None."""
+    def close(self, selector: selectors.BaseSelector) -> None:
+        """Let go of all."""
         selector.unregister(self.events.bell)
         if self.process.pidfd is not None:
             selector.unregister(self.process.pidfd)
         self.events.close()
         self._end()
         self.process.release()
-        return self._home.remove()
+        self._home.remove()
 
     def _end(self) -> int:
         """End it and all that was started below it; returns its exit code."""
