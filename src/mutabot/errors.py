@@ -113,31 +113,7 @@ class VocabularyError(ConfigurationError):
 
 
 class UnknownNameError(VocabularyError):
-    """A vocabulary or configuration uses a name that does not exist.
-
-    ``text`` replaces the sentence that is made of ``kind``, ``name`` and ``known``.
-
-    Attributes:
-        name: the name as written.
-        nearest: the existing name most like it, or None.
-    """
-
-    def __init__(
-        self,
-        kind: str,
-        name: str,
-        known: Iterable[str],
-        *,
-        nearest: str | None = None,
-        text: str | None = None,
-        file: str | None = None,
-        key: str | None = None,
-        line: int | None = None,
-    ) -> None:
-        known = set(known)
-        self.name, self.nearest = name, nearest or nearest_name(name, known)
-        problem = text or unknown_name_text(kind, name, known, self.nearest)
-        super().__init__(problem, file=file, key=key, line=line)
+    """A vocabulary or configuration uses a name that does not exist."""
 
 
 class BaselineError(MutabotError):

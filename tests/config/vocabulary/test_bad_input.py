@@ -590,7 +590,7 @@ def test_all_mistakes_of_a_file_are_told_in_the_order_of_its_lines(tmp_path: Pat
         load(["robot.toml"], tmp_path)
     lines = str(caught.value).splitlines()
     assert [line.split(" · ")[0] for line in lines] == [f"robot.toml:{n}" for n in (1, 4, 4, 5)]
-    assert (caught.value.name, caught.value.nearest) == ("chekcs", "checks")
+    assert "'chekcs'; did you mean 'checks'" in lines[0]
     assert (caught.value.file, caught.value.key, caught.value.line) == ("robot.toml", "chekcs", 1)
 
 
