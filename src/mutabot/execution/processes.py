@@ -158,13 +158,6 @@ class Spawned:
         return self._process.poll()
 
     @property
-    def tests(self) -> int:
-        """The number of the process that runs the tests; the keeper's if there is none."""
-        with contextlib.suppress(OSError, ValueError, IndexError):
-            return int(Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text("ascii").split()[0])
-        return self.pid
-
-    @property
     def left(self) -> list[str] | None:
         """What it had left running when it ended, and was ended; None if the keeper did not see to that."""
         try:
@@ -265,11 +258,6 @@ class Copy:
     def __init__(self, pid: int, server: ForkServerProcess) -> None:
         self.pid, self._server = pid, server
         self.startup = server.startup
-
-    @property
-    def tests(self) -> int:
-        """The number of the process that runs the tests."""
-        return self.pid
 
     @property
     def left(self) -> None:

@@ -101,7 +101,6 @@ class Result:
         overdue: which wall-clock limit it exceeded, in words, or None.
         hindered: why that says little of it, as the machine was busy, in words; None if it was not.
         is_starved: whether it was ended although it had not had its time, as it would have taken too long.
-        where: where it was then: its innermost calls; None if that is not known.
         wall: seconds from its start to its end.
         log: the last lines it printed.
         lost: why no process could be had that runs it to its end, or None.
@@ -128,7 +127,6 @@ class Result:
     overdue: str | None = None
     hindered: str | None = None
     is_starved: bool = False
-    where: str | None = None
     wall: float = 0.0
     log: str = ""
     lost: str | None = None
@@ -198,11 +196,6 @@ def how_ended(code: int) -> str:
     if code == UNWRITTEN:
         return "the tests' process could not write what it had to tell; is the disk full?"
     return f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
-
-
-def at(result: Result) -> str:
-    """Where a worker was when its time was up, to be added to how it ended; empty if that is not known."""
-    return f"; it was at {result.where}" if result.where is not None else ""
 
 
 class Executor(Protocol):

@@ -33,7 +33,6 @@ from mutabot.execution.processes import (
 )
 from mutabot.execution.remains import claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.task import Result, Task
-from mutabot.model import process_time
 from mutabot.model.events import Acted, Event, TestEnd, TestStart, Untrusted
 from mutabot.model.fold import Children, acted_in
 from mutabot.model.process_time import MOST, TimeUsed, overdue
@@ -163,9 +162,7 @@ class Workers:
         self.pool.close()
         remove_folder(self._folder)
         if self._folder.exists():
-            self._tell(
-                f"{self._folder} cannot be removed, whatever a test made there; no outcome is touched"
-            )
+            self._tell(f"{self._folder} cannot be removed, whatever a test made there; no outcome is touched")
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
@@ -357,9 +354,6 @@ class _Worker:
         test = self.result.running
         limit = self.task.startup if test is None else self.task.deadlines.get(test, self.task.deadline)
         self.result.overdue = overdue(limit, test)
-        self.result.where = process_time.ask(
-            self.process.tests, str(self._home.folder / process_time.FILE), self.task.job.root
-        )
         self.process.end()
 
     def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result]:

@@ -238,7 +238,6 @@ class Outcome:
             the first at most.
         commands: operations with which the deciding test had commanded the robot until it ended; None if
             that is not known.
-        stuck: where it was when its wall-clock time was up: its innermost calls; None if that is not known.
         repeats: how often it was run once more in a fresh process and had the same verdict.
         beside: how it had ended before, beside other processes on a busy machine, if the wall clock had ended
             it and it was run once more alone; else None.
@@ -278,7 +277,6 @@ class Outcome:
     complete: bool = False
     kills: tuple[Kill, ...] = ()
     commands: int | None = None
-    stuck: str | None = None
     repeats: int = 0
     beside: str | None = None
     looked: tuple[Looked, ...] = ()

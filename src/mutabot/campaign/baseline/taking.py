@@ -25,7 +25,7 @@ from mutabot.campaign.comparison import strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.vocabulary import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
+from mutabot.execution.task import ABNORMAL, Executor, Result, Task, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
 from mutabot.model import Instrumentation, Span
@@ -260,7 +260,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
             "they have not opened, or delete .mutabot?"
         )
     if result.end is None:
-        text = f"the tests cannot be run on the original: {death(result, said=False)}{at(result)}"
+        text = f"the tests cannot be run on the original: {death(result, said=False)}"
         raise BaselineError(f"{text}{said_in(result.log)}")
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))

@@ -78,8 +78,7 @@ class Control:
             return None
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
             return f"the test passes although the {provider(self.provider).location} raises"
-        where = f"; it was at {outcome.stuck}" if outcome.stuck is not None else ""
-        return f"{outcome.verdict}: {outcome.message or 'it changed something'}{where}"
+        return f"{outcome.verdict}: {outcome.message or 'it changed something'}"
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:

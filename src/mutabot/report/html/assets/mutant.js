@@ -38,7 +38,7 @@
     return () => { gone = true; stops.forEach((stop) => stop()); };
   });
 
-  const NOTHING = { test: null, exception: null, message: null, place: null, away: {}, example: null, divergence: [], gaps: [], indistinguishable: null, repeats: 0, stuck: null, beside: null, kills: [], diverged: [], looked: [] };
+  const NOTHING = { test: null, exception: null, message: null, place: null, away: {}, example: null, divergence: [], gaps: [], indistinguishable: null, repeats: 0, beside: null, kills: [], diverged: [], looked: [] };
   const ALIKE = { at: null, what: "", story: "", apart: [], fault: null };
   /** The data of the page, with what they leave out where nothing is to be said. */
   function whole(one, page) {
@@ -280,8 +280,7 @@
       values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
         h("tbody", null, those.map((each) => [each, page.rounds[each]]).filter(([, each]) => each && each.example && each.example.length === 2).map(([each, found]) => h("tr", null, h("td", { class: "n" }, each + 1), h("td", { class: "n" }, value(found.example[0], one.unit)), h("td", { class: "n" }, value(found.example[1], one.unit))))))) : null,
       h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, `${count(outcome.tests, "test")} run`, outcome.indistinguishable && "no measured difference",
-        `${number(outcome.wall, 2)} s`, outcome.confirmed === false ? "not confirmed by the whole suite" : null, outcome.repeats ? `re-run ${count(outcome.repeats, "time")} with the same result` : null, outcome.beside ? `re-run alone, because beside others it exceeded the wall clock: ${outcome.beside}` : null, ...Object.entries(outcome.away).map(([why, many]) => `left ${count(many, "call")} unchanged: ${why}`)].filter(Boolean).join(" · ")),
-      outcome.stuck ? h("pre", { tabindex: "0", "aria-label": "Where it was stuck" }, outcome.stuck) : null);
+        `${number(outcome.wall, 2)} s`, outcome.confirmed === false ? "not confirmed by the whole suite" : null, outcome.repeats ? `re-run ${count(outcome.repeats, "time")} with the same result` : null, outcome.beside ? `re-run alone, because beside others it exceeded the wall clock: ${outcome.beside}` : null, ...Object.entries(outcome.away).map(([why, many]) => `left ${count(many, "call")} unchanged: ${why}`)].filter(Boolean).join(" · ")));
   }
   const value = (found, unit) => `${typeof found === "number" ? number(found, 7) : String(found)}${unit && typeof found === "number" ? ` ${unit}` : ""}`;
 })();
