@@ -54,8 +54,8 @@ LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
 _OF_THE_DISK = ("full", "readonly", "disk I/O", "unable to open")
 #: what a database consists of while somebody has it open
 _SUFFIXES = ("", "-wal", "-shm")
-#: things in a file that are looked at: a journal has fewer; versions; rows and characters that are shown
-_MOST, _MOST_VERSIONS, _SHOWN, _LONGEST = 100, 1_000_000, 5, 150
+#: things in a file that are looked at: a journal has fewer; rows, characters and rounds that are shown
+_MOST, _SHOWN, _LONGEST, _MOST_ROUNDS = 100, 5, 150, 1_000_000
 #: what people call rows of a table
 _WORDS = {
     "meta": "fact", "test": "test of the baseline", "left_out": "mutant that was left out",
@@ -208,7 +208,7 @@ def named_row(table: str, values: tuple[Any, ...]) -> str:
     text = name if isinstance(name, str) else repr(name)
     shown = repr(text[:_LONGEST].encode("utf-8", "replace").decode())[1:-1]
     round = known.get("round") if table in ("outcome", "kept") else None
-    where = f" in round {round + 1}" if isinstance(round, int) and 0 <= round < _MOST_VERSIONS else ""
+    where = f" in round {round + 1}" if isinstance(round, int) and 0 <= round < _MOST_ROUNDS else ""
     return f"{_WORDS.get(table, table)} {shown}{where}"
 
 
