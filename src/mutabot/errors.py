@@ -17,8 +17,7 @@
     ├── ExtensionError              a package beside the core that cannot be used              (exit 2)
     └── OperatorError               an operator of a package that breaks the contract          (exit 2)
 
-Every message names the thing, the value, where it stands and what would have been right; the same
-facts are attributes.
+Every message names the thing, the value, where it stands and what would have been right.
 """
 
 from __future__ import annotations
@@ -78,15 +77,7 @@ class UsageError(MutabotError):
 
 
 class SelectionError(UsageError):
-    """A selection names mutants that do not exist.
-
-    Attributes:
-        unknown: the ids or patterns that match nothing.
-    """
-
-    def __init__(self, message: str, *, unknown: Iterable[str] = ()) -> None:
-        super().__init__(message)
-        self.unknown = tuple(unknown)
+    """A selection names mutants that do not exist."""
 
 
 class MergeError(UsageError):
@@ -111,7 +102,7 @@ class ConfigurationError(MutabotError):
     def __init__(
         self, problem: str, *, file: str | None = None, key: str | None = None, line: int | None = None
     ) -> None:
-        self.problem, self.file, self.key, self.line = problem, file, key, line
+        self.file, self.key, self.line = file, key, line
         where = ":".join(str(part) for part in (file, line) if part is not None)
         parts = [part for part in (where, key) if part]
         super().__init__(f"{' · '.join(parts)}: {problem}" if parts else problem)
@@ -122,45 +113,13 @@ class VocabularyError(ConfigurationError):
 
 
 class UnknownNameError(VocabularyError):
-    """A vocabulary or configuration uses a name that does not exist.
-
-    ``text`` replaces the sentence that is made of ``kind``, ``name`` and ``known``.
-
-    Attributes:
-        name: the name as written.
-        nearest: the existing name most like it, or None.
-    """
-
-    def __init__(
-        self,
-        kind: str,
-        name: str,
-        known: Iterable[str],
-        *,
-        nearest: str | None = None,
-        text: str | None = None,
-        file: str | None = None,
-        key: str | None = None,
-        line: int | None = None,
-    ) -> None:
-        known = set(known)
-        self.name, self.nearest = name, nearest or nearest_name(name, known)
-        problem = text or unknown_name_text(kind, name, known, self.nearest)
-        super().__init__(problem, file=file, key=key, line=line)
+    """A vocabulary or configuration uses a name that does not exist."""
 
 
 class BaselineError(MutabotError):
-    """The tests fail on the unmutated program, so no verdict would mean anything.
-
-    Attributes:
-        tests: node ids of the tests that failed.
-    """
+    """The tests fail on the unmutated program, so no verdict would mean anything."""
 
     exit_code = ExitCode.NOTHING_KNOWN
-
-    def __init__(self, message: str, *, tests: Iterable[str] = ()) -> None:
-        super().__init__(message)
-        self.tests = tuple(tests)
 
 
 class NothingToDoError(MutabotError):
@@ -170,47 +129,27 @@ class NothingToDoError(MutabotError):
 
 
 class ControlError(MutabotError):
-    """A control mutant ended wrongly: verdicts of this campaign could not be believed.
-
-    Attributes:
-        control: ``identity`` or ``fatal``.
-        test_file: the test file whose control failed.
-    """
+    """A control mutant ended wrongly: verdicts of this campaign could not be believed."""
 
     exit_code = ExitCode.UNRELIABLE
-
-    def __init__(self, message: str, *, control: str, test_file: str) -> None:
-        super().__init__(message)
-        self.control, self.test_file = control, test_file
 
 
 class UnstableError(MutabotError):
-    """More tests are flaky than the configuration allows.
-
-    Attributes:
-        tests: node ids of the flaky tests.
-    """
+    """More tests are flaky than the configuration allows."""
 
     exit_code = ExitCode.UNRELIABLE
-
-    def __init__(self, message: str, *, tests: Iterable[str] = ()) -> None:
-        super().__init__(message)
-        self.tests = tuple(tests)
 
 
 class JournalError(MutabotError):
     """The journal is missing, is not one of ours, or cannot be written.
 
-    Attributes:
-        path: the journal's path.
-        version: the journal's own version, if it was written by another version of mutabot.
+    ``version`` is the journal's own, if another version of mutabot has written it.
     """
 
     exit_code = ExitCode.USAGE
 
-    def __init__(self, message: str, *, path: str, version: int | None = None) -> None:
+    def __init__(self, message: str, *, version: int | None = None) -> None:
         super().__init__(message)
-        self.path = path
         self.version = version
 
 
@@ -218,15 +157,13 @@ class PathError(MutabotError):
     """A path into an argument or result does not fit the object it is used on.
 
     Attributes:
-        path: the path as text.
-        step: the step that failed, as text.
-        found: type name of the object the step was tried on.
+        step: the step that failed, as text; None where it is not about a step.
         known: names or keys that exist there.
     """
 
-    def __init__(self, message: str, *, path: str, step: str, found: str, known: Iterable[str] = ()) -> None:
+    def __init__(self, message: str, *, step: str | None = None, known: Iterable[str] = ()) -> None:
         super().__init__(message)
-        self.path, self.step, self.found, self.known = path, step, found, tuple(known)
+        self.step, self.known = step, tuple(known)
 
 
 class ExtensionError(MutabotError):
@@ -236,17 +173,9 @@ class ExtensionError(MutabotError):
 
 
 class OperatorError(MutabotError):
-    """An operator of a package does not keep the operator contract.
-
-    Attributes:
-        operator: the operator's name.
-    """
+    """An operator of a package does not keep the operator contract."""
 
     exit_code = ExitCode.USAGE
-
-    def __init__(self, message: str, *, operator: str) -> None:
-        super().__init__(message)
-        self.operator = operator
 
 
 def in_short(names: Sequence[str], most: int = 3) -> str:

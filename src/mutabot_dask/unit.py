@@ -175,7 +175,7 @@ class UnitAnswer:
 
     Attributes:
         lines: what its process reported.
-        exit_code, overdue, where, wall, log: as in ``Result``.
+        exit_code, overdue, wall, log: as in ``Result``.
         fault: why it says nothing about the mutant, if it does not: the fault of the worker or its machine.
         is_unfit: whether that worker is of no use to the campaign any more.
         lost: as in ``Result``.
@@ -185,7 +185,6 @@ class UnitAnswer:
     lines: tuple[Any, ...] = ()
     exit_code: int = 0
     overdue: str | None = None
-    where: str | None = None
     wall: float = 0.0
     log: str = ""
     fault: str | None = None
@@ -198,7 +197,7 @@ class UnitAnswer:
         """The answer with what a worker process told and came to."""
         return cls(
             tuple(map(event_to_data, lines)), result.exit_code, result.overdue,
-            result.where, result.wall, result.log, fault,
+            result.wall, result.log, fault,
         )  # fmt: skip
 
     def data(self, here: str, there: str) -> bytes:
@@ -220,7 +219,7 @@ class UnitAnswer:
         found = Result(task)
         for line in lines:
             found.take(line)
-        found.exit_code, found.overdue, found.where = self.exit_code, self.overdue, self.where
+        found.exit_code, found.overdue = self.exit_code, self.overdue
         found.wall, found.log, found.lost = self.wall, self.log, self.lost
         return found
 

@@ -133,7 +133,7 @@ def _one_of(tests: list[str], wanted: str) -> str:
         return found[0]
     listed = ", ".join((found or tests)[:_LISTED]) + (" …" if len(found or tests) > _LISTED else "")
     problem = f"several tests fit: {listed}" if found else f"no such test runs the mutant; these do: {listed}"
-    raise SelectionError(f"--test {wanted}: {problem}", unknown=[wanted])
+    raise SelectionError(f"--test {wanted}: {problem}")
 
 
 Test = Annotated[

@@ -82,7 +82,7 @@ def _leading_to(campaign: Campaign, mutant: Mutant, round: int, test: str) -> tu
     if test not in judges:
         listed = ", ".join(judges[:3]) or "no test does"
         problem = f"{test} does not judge the mutant in round {round + 1}; these do: {listed}"
-        raise SelectionError(problem, unknown=[test])
+        raise SelectionError(problem)
     suite = baseline.suite(round)
     return suite[: suite.index(test) + 1]
 

@@ -29,10 +29,10 @@ def load_all() -> tuple[ClassicalOperator, ...]:
             if made.name in owners:
                 other = type(owners[made.name]).__module__
                 text = f"operator {made.name!r} stands in {other} and in {kind.__module__}"
-                raise OperatorError(text, operator=made.name)
+                raise OperatorError(text)
             if made.family not in OF_TEXT:
                 text = f"operator {made.name!r} is of family {made.family!r}, which is none of {OF_TEXT}"
-                raise OperatorError(text, operator=made.name)
+                raise OperatorError(text)
             owners[made.name] = made
     return tuple(sorted(owners.values(), key=lambda rule: (rule.rank, rule.name)))
 
@@ -47,7 +47,7 @@ def operator(name: str) -> ClassicalOperator:
     for each in load_all():
         if each.name == name:
             return each
-    raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
+    raise OperatorError(unknown_name_text("operator", name, names()))
 
 
 def chosen(wanted: Iterable[str] | None) -> list[ClassicalOperator]:

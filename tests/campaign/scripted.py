@@ -81,7 +81,6 @@ class Died:
 
     exit_code: int = -9
     overdue: str | None = None
-    where: str | None = None
 
 
 End = Mapping[str, Any] | Died
@@ -182,7 +181,7 @@ class Scripted:
             if isinstance(end, Died):
                 if job.mutant is not None:
                     yield Acted(test)
-                result.exit_code, result.overdue, result.where = end.exit_code, end.overdue, end.where
+                result.exit_code, result.overdue = end.exit_code, end.overdue
                 return
             ended = self.suite.end(run, end)
             if ended.acted:
@@ -210,7 +209,7 @@ class Scripted:
             )
             end = self.script.end(run)
             if isinstance(end, Died):
-                yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, end.where, acted=True)
+                yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, acted=True)
                 del found[mutant.id], forked[mutant.id]
                 continue
             ended = self.suite.end(run, end)

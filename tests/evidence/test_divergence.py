@@ -91,16 +91,6 @@ def test_of_a_test_that_was_cut_only_what_was_is_compared() -> None:
     assert cut.what == "mission.py:9 open is no longer called"
 
 
-def test_an_approach_that_is_closer_is_told() -> None:
-    low: list[Place] = [(x, 0.0, max(0.03, z - 0.1)) for x, _, z in CARRIED[30:45]]
-    found = apart(recorded([(0.5, 0.0, 0.5)] * 15), recorded(low))
-    assert found is not None
-    nearest = found.near[0]
-    assert (nearest.body, nearest.obstacle) == ("tool", "table")
-    assert nearest.distance == pytest.approx(0.03, abs=1e-6)
-    assert nearest.original > 0.3
-
-
 def test_what_equal_runs_differ_by_is_no_difference() -> None:
     shaken = [(x, y + 0.004, z) for x, y, z in CARRIED]
     noise = noise_between(RecordedPaths(recorded(CARRIED)), RecordedPaths(recorded(shaken)))

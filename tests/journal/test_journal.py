@@ -108,9 +108,9 @@ def test_a_new_campaign_keeps_the_journal_of_the_last_complete_one(path: Path) -
         assert previous.outcomes() == [KILLED]
 
 
-def begin(path: Path, *outcomes: Outcome, key: str = "a b c", **options: bool) -> None:
+def begin(path: Path, *outcomes: Outcome, key: str = "a b c") -> None:
     """A campaign that finds these outcomes and is then lost."""
-    with Journal.create(path, meta={}, **options) as journal:
+    with Journal.create(path, meta={}) as journal:
         for outcome in outcomes:
             journal.add_outcome(outcome, key=key)
 
@@ -146,11 +146,7 @@ def test_an_outcome_that_tells_of_the_machine_is_not_sound(path: Path, outcome: 
         assert not journal.kept()["m", 0].is_sound
 
 
-def test_a_fresh_campaign_and_outcomes_without_a_key_keep_nothing(path: Path) -> None:
-    begin(path, KILLED)
-    begin(path, fresh=True)
-    with Journal.create(path, meta={}) as journal:
-        assert journal.kept() == {}
+def test_outcomes_without_a_key_keep_nothing(path: Path) -> None:
     begin(path, KILLED, key="")
     with Journal.create(path, meta={}) as journal:
         assert journal.kept() == {}
@@ -210,7 +206,7 @@ def test_what_is_no_journal_of_this_version_is_moved_aside(path: Path, content: 
     begin(path, KILLED)
     if content == "version":
         with closing(sqlite3.connect(path)) as connection, connection:
-            connection.execute("UPDATE meta SET value = '1' WHERE key = 'journal:version'")
+            connection.execute("PRAGMA user_version = 1")
     else:
         path.write_bytes(path.read_bytes()[:4096] + b"?" * 8192)
     before = path.read_bytes()
@@ -317,7 +313,6 @@ def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> No
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
         with pytest.raises(JournalError, match="disk is full") as error:
             journal.add_outcome(big)
-        assert error.value.path == str(path)
         assert str(path) in str(error.value)
         with pytest.raises(JournalError, match="disk is full"):
             journal.set_plan(samples.MUTANTS, (), sources={"a.py": "x" * 1_000_000})
@@ -366,7 +361,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     samples.write_journal(path)
     connection = sqlite3.connect(path)
     with connection:
-        connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
+        connection.execute("PRAGMA user_version = 99")
     connection.close()
     with pytest.raises(JournalError, match=f"version 99, this one reads {SCHEMA_VERSION}"):
         Journal.open(path)

@@ -21,7 +21,7 @@ from results import samples
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t")
 SURVIVED = Outcome("m", 1, Verdict.SURVIVED)
 LATER = Outcome("n", 0, Verdict.SURVIVED)
-#: what a program under test may do to the file: who knows Mutabot makes the marks as well
+#: what a program under test may write into the file
 FORGED = json.dumps({"mutant": "m", "round": 1, "verdict": "killed", "by": "check"})
 
 
@@ -74,7 +74,7 @@ def empty(path: Path) -> None:
 
 CHANGES = {
     "changed": sql(f"UPDATE outcome SET verdict = 'killed', data = '{FORGED}' WHERE round = 1"),
-    "removed": sql("DELETE FROM outcome WHERE round = 1", "DELETE FROM mark"),
+    "removed": sql("DELETE FROM outcome WHERE round = 1"),
     "added": sql(f"INSERT INTO outcome VALUES ('n', 0, 'killed', 'check', '{FORGED}', 'a', 0)"),
     "plan": sql("DELETE FROM mutant", "DELETE FROM meta"),
     "trigger": sql("CREATE TRIGGER t AFTER INSERT ON outcome BEGIN DELETE FROM outcome; END"),
@@ -174,42 +174,6 @@ def test_readers_change_nothing(path: Path) -> None:
                 other.execute("PRAGMA wal_checkpoint(PASSIVE)")
         journal.finish("complete")
         assert (journal.lost, journal.altered) == ([], [])
-
-
-def begun(path: Path) -> None:
-    with Journal.create(path, meta={"rounds": 2}) as journal:
-        journal.add_outcome(KILLED, key="a b c")
-        journal.add_outcome(SURVIVED, key="a b c")
-        journal.finish("complete")
-
-
-@pytest.mark.parametrize(
-    ("attack", "named"),
-    [
-        (CHANGES["changed"], "outcome m in round 2"),
-        (sql("DELETE FROM outcome WHERE round = 1"), "1 × outcome that is gone"),
-        (CHANGES["added"], "outcome n in round 1"),
-        (sql("UPDATE meta SET value = '1' WHERE key = 'rounds'"), "fact rounds"),
-    ],
-    ids=["changed", "removed", "added", "fact"],
-)
-def test_rows_that_others_changed_between_campaigns_are_named_and_not_believed(
-    path: Path, attack: Callable[[Path], None], named: str
-) -> None:
-    begun(path)
-    attack(path)
-    with JournalReader.open(path) as reader:
-        assert reader.set_aside == [named]
-        kept = [KILLED] if named.startswith(("outcome m", "1 ×")) else [KILLED, SURVIVED]
-        assert reader.outcomes() == kept
-        assert set(reader.found()) == {(one.mutant, one.round) for one in kept}
-    with Journal.create(path, meta={}) as journal:
-        assert journal.set_aside == [named]
-        assert set(journal.kept()) == {(one.mutant, one.round) for one in kept}
-        journal.add_outcome(LATER)
-        journal.finish("complete")
-    with JournalReader.open(path) as reader:
-        assert not reader.set_aside
 
 
 def test_a_process_that_is_killed_leaves_rows_that_are_believed(path: Path) -> None:

@@ -211,10 +211,10 @@ def test_a_broken_plug_in_raises_an_operator_error_that_names_it(how: str, tmp_p
         "from mutabot.errors import OperatorError\n"
         "from mutabot.operators import operator\n"
         "try:\n    operator('late')\n"
-        "except OperatorError as error:\n    print(error.operator, '|', error)\n"
+        "except OperatorError as error:\n    print(error)\n"
     )
     done = python(broken_plug_in(tmp_path, name, code), "-c", ask)
-    named = f"{name} | operator {name!r} of package 'broken-plug-in' (broken_plug_in:Rule)"
+    named = f"operator {name!r} of package 'broken-plug-in' (broken_plug_in:Rule)"
     assert done.stdout.startswith(named), done.stderr
     assert told in done.stdout
 

@@ -16,7 +16,7 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart
 from mutabot.journal.journal import Journal
 from mutabot.model import Diverged, Outcome, Verdict
-from mutabot.model.outcome import Apart, Near
+from mutabot.model.outcome import Apart
 from mutabot.report.document import document, dumps
 from mutabot.report.terminal.listing import plan_data
 from mutabot.results.results import Results, read_results
@@ -60,7 +60,6 @@ DIVERGED = (
         what="box is not where it is in the original",
         story="box ended 0.3 m from where it ends in the original",
         apart=(Apart("box", "m", 1.5, 0.5, 2.0, 0.3, 0.4, 0.001),),
-        near=(Near("box", "table", 0.01, 2.5, 0.1),),
         fault=1.0,
     ),
 )

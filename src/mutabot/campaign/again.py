@@ -65,5 +65,5 @@ def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant
     planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
     if mutant.id not in planned:
         problem = f"the program has changed: no test reaches {mutant.id} any more"
-        raise SelectionError(problem, unknown=[mutant.id])
+        raise SelectionError(problem)
     return replace(planned[mutant.id], number=mutant.number)

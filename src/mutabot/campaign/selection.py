@@ -111,7 +111,7 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
         nearest = nearest_name(pattern, known) or nearest_name(pattern.partition(":")[0], known)
         hint = f"the nearest is {nearest!r}" if nearest else "`mutabot list` shows what there is"
         lines.append(f"{source}: no mutant fits {_shown(pattern)}; {hint}")
-    return SelectionError("\n".join(lines), unknown=unknown)
+    return SelectionError("\n".join(lines))
 
 
 def _shown(pattern: str) -> str:
@@ -130,7 +130,7 @@ def refuse_typos(request: Request) -> None:
             mistakes.append(nothing_fits(option, unknown, [*names, *operators_of_packages(), *files]))
     if mistakes:
         text = "\n".join(map(str, mistakes))
-        raise SelectionError(text, unknown=[word for mistake in mistakes for word in mistake.unknown])
+        raise SelectionError(text)
 
 
 def _may_fit(word: str, files: Sequence[str], names: Collection[str]) -> bool:

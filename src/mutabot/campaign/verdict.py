@@ -40,7 +40,6 @@ class Death:
         overdue: whether its wall-clock time was up.
         acted: whether its mutant had changed anything by then.
         in_mutated_call: whether it was in the midst of a mutated call.
-        where: where it was when its time was up, if that is known.
         hindered: why that says little of it, as the machine was busy, in words; None if it was not.
         is_starved: whether it was ended although it had not had its time.
     """
@@ -51,7 +50,6 @@ class Death:
     overdue: bool = False
     acted: bool = False
     in_mutated_call: bool = False
-    where: str | None = None
     hindered: str | None = None
     is_starved: bool = False
 
@@ -171,7 +169,6 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         complete=request.every_test and {end.test for end in run.ends} == set(run.tests),
         kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
         commands=end.commands if end is not None else None,
-        stuck=run.death.where if run.death is not None else None,
         looked=_looked(run, baseline) if verdict is Verdict.SURVIVED else (),
         executed=_executed(run, end, baseline, is_of_suite=end is None and verdict.is_killed),
     )

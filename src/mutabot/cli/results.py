@@ -86,8 +86,7 @@ def thresholds(context: typer.Context, json: options.Json = False) -> None:
     results = results_at(journal)
     if not results.ladders:
         raise JournalError(
-            f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them",
-            path=str(journal),
+            f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them"
         )
     found = thresholds_of(results)
     print_json(found) if json else print_thresholds(make_console(), found)

@@ -143,8 +143,7 @@ class Settings(Table):
     """
     jobs: Annotated[int, Field(ge=1, le=limits.JOBS)] | None = None
     """Runs at a time. Without it, one per core that
-    may be used. A run that only waits, as for a message that never comes, lends its place to another one;
-    with 1, there is never more than one. `--jobs` goes before it.
+    may be used. `--jobs` goes before it.
 
         jobs = 1
     """

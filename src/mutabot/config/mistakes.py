@@ -117,7 +117,7 @@ class DocumentPlace:
             "line": document.line(self.path),
         }
         alias = alias if alias in known else None
-        self.errors.append(UnknownNameError(kind, name, known, nearest=alias, **where))
+        self.errors.append(UnknownNameError(unknown_name_text(kind, name, known, alias), **where))
 
     def attempt(self, read: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | None:
         """Call ``read``; note the ValueError that it raises as a mistake, and return None."""
@@ -247,7 +247,7 @@ def problem_error(problem: Problem) -> ConfigurationError:
     if name is None:
         return ConfigurationError(text, **where)
     if name not in text:
-        return UnknownNameError(text, name, problem.known, **where)
+        return UnknownNameError(unknown_name_text(text, name, problem.known), **where)
     if ";" not in text and problem.known:  # the text of an unknown name ends with what would be right
         text += ";" + unknown_name_text("", name, problem.known).partition(";")[2]
-    return UnknownNameError("", name, problem.known, text=text, **where)
+    return UnknownNameError(text, **where)

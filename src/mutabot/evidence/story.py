@@ -10,18 +10,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import inf, isclose
 from typing import Any
 
-from mutabot.model.outcome import Apart, Diverged, Near
+from mutabot.model.outcome import Apart, Diverged
 from mutabot.model.quantity import is_number, told_apart, value_text
 
 from .recording import Recording, Told
-from .tracks import TURNED, RecordedPaths, approaches, differences
+from .tracks import TURNED, RecordedPaths, differences
 
-#: parts of a sentence; differences and approaches that are kept
+#: parts of a sentence, and differences that are kept
 _MOST_PARTS, _MOST = 3, 8
 #: s by which two things must separate earlier than in the original, and by which a test must end earlier
 _EARLIER, _EARLY = 0.3, 1.0
-#: m: an approach closer than this, without contact in the original, is reported
-_CLOSE = 0.05
 #: numbers of calls that differ by less are equal
 _ROUNDING = 1e-6
 
@@ -49,7 +47,6 @@ def diverged(
         found.append((call[1], call[0]))
     if not found and call is None:
         return None
-    near = approaches(original.paths, mutant.paths, mutant.recording.blocks)
     at, what = min(found) if found else (None, "")
     if call is not None and call[1] is None:  # without a clock calls are all that has an order
         what = call[0]
@@ -57,22 +54,14 @@ def diverged(
         test=test,
         at=at,
         what=what,
-        story=_story(original, mutant, apart, near, is_cut=is_cut),
+        story=_story(original, mutant, apart, is_cut=is_cut),
         apart=tuple(apart[:_MOST]),
-        near=tuple(near[:_MOST]),
         fault=mutant.recording.fault,
         is_simulated=mutant.recording.is_simulated and original.recording.is_simulated,
     )
 
 
-def _story(
-    original: RecordedPaths,
-    mutant: RecordedPaths,
-    apart: Sequence[Apart],
-    near: Sequence[Near],
-    *,
-    is_cut: bool,
-) -> str:
+def _story(original: RecordedPaths, mutant: RecordedPaths, apart: Sequence[Apart], *, is_cut: bool) -> str:
     """The sentence, most important part first; empty if the world was the same."""
     usual, contacts = contacts_in(original.recording), contacts_in(mutant.recording)
     end, due = (one.recording.times[-1] if one.recording.times else 0.0 for one in (mutant, original))
@@ -80,12 +69,6 @@ def _story(
     parts = [f"the test ended at {end:.1f} s instead of {due:.1f} s"] if is_cut else []
     parts += _contacts(usual, contacts, mutant, end)
     parts += [part for one in apart if not one.is_delay and (part := _strayed(one, is_whole=not is_cut))]
-    parts += [
-        f"{one.body} came within {amount(one.distance)} of {one.obstacle} at {one.at:.1f} s "
-        f"(original: {amount(one.original)})"
-        for one in near
-        if one.distance < _CLOSE and tuple(sorted((one.body, one.obstacle))) not in contacts
-    ]
     if not parts and apart:
         parts = ["the same movements happened at other times"]
     return "; ".join(list(dict.fromkeys(parts))[:_MOST_PARTS])

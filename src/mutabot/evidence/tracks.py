@@ -13,9 +13,9 @@ from itertools import pairwise
 from math import acos, degrees, dist, inf, isnan, sqrt
 from typing import NamedTuple
 
-from mutabot.model.outcome import Apart, Near
+from mutabot.model.outcome import Apart
 
-from .recording import Block, Recording, Track, TrackKind
+from .recording import Recording, Track, TrackKind
 
 Point = tuple[float, float, float]
 #: a row of a track: the numbers of one moment
@@ -27,8 +27,6 @@ LENGTH, ANGLE, SHARE = 0.001, 0.5, 0.01
 TURNED = " turned"
 #: two times that differ by less are the same moment, s
 _SAME = 1e-6
-#: approaches are reported if they are closer than in the original by more than this, m
-_CLOSER = 0.005
 
 
 def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
@@ -241,33 +239,3 @@ def _aside(measure: _Measure, before: TrackPath, after: TrackPath) -> float | No
         least, most = min(usual), max(usual)
         return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
     return None if measure.name.endswith(TURNED) else aside(after.outline, before.outline)
-
-
-def approaches(
-    original: dict[str, TrackPath], mutant: dict[str, TrackPath], blocks: Sequence[Block]
-) -> list[Near]:
-    """Return the closest approaches that are closer than in the original, closest first."""
-    found = []
-    for name in original.keys() & mutant.keys():
-        before, after = original[name], mutant[name]
-        if before.track.kind is TrackKind.VALUE or before.rows == after.rows:
-            continue
-        for block in blocks:
-            (least, at), (usual, _) = _least(after, block), _least(before, block)
-            if least < usual - _CLOSER:
-                found.append(Near(name, block.name, least, at, usual))
-    return sorted(found, key=lambda one: (one.distance, one.body, one.obstacle))
-
-
-def _least(path: TrackPath, block: Block) -> tuple[float, float]:
-    """The least distance of a path from a block, m, and when."""
-    size, (x, y, z) = path.track.size or (0.0, 0.0, 0.0), block.centre
-    dx, dy, dz = (0.5 * (one + other) for one, other in zip(size, block.size, strict=True))
-    least, when = inf, 0.0
-    for (px, py, pz), time in zip(path.points, path.when, strict=True):
-        # written out: this is asked of every moment of every mutant
-        gx, gy, gz = abs(px - x) - dx, abs(py - y) - dy, abs(pz - z) - dz
-        square = (gx * gx if gx > 0 else 0.0) + (gy * gy if gy > 0 else 0.0) + (gz * gz if gz > 0 else 0.0)
-        if square < least:
-            least, when = square, time
-    return sqrt(least), when

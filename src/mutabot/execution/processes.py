@@ -102,9 +102,9 @@ class Home:
         """Whether it is still there: nobody but the controller may remove it."""
         return self.job_file.is_file() if os.access(self.folder, os.X_OK) else False
 
-    def remove(self) -> str | None:
-        """Remove it with all that is in it; why it is still there, in words, or None."""
-        return remove_folder(self.folder)
+    def remove(self) -> None:
+        """Remove it with all that is in it."""
+        remove_folder(self.folder)
 
 
 def refuse_full_disk(folder: Path) -> None:
@@ -156,13 +156,6 @@ class Spawned:
     def exit_code(self) -> int | None:
         """Its exit code, negative for a signal; None while it runs."""
         return self._process.poll()
-
-    @property
-    def tests(self) -> int:
-        """The number of the process that runs the tests; the keeper's if there is none."""
-        with contextlib.suppress(OSError, ValueError, IndexError):
-            return int(Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text("ascii").split()[0])
-        return self.pid
 
     @property
     def left(self) -> list[str] | None:
@@ -265,11 +258,6 @@ class Copy:
     def __init__(self, pid: int, server: ForkServerProcess) -> None:
         self.pid, self._server = pid, server
         self.startup = server.startup
-
-    @property
-    def tests(self) -> int:
-        """The number of the process that runs the tests."""
-        return self.pid
 
     @property
     def left(self) -> None:
@@ -394,14 +382,15 @@ class ForkServerProcess:
         code = self.exit_code_of(pid)
         return -signal.SIGKILL if code is None else code
 
-    def close(self) -> tuple[list[str], str | None]:
-        """End it and all copies; returns what these had left running, and what cannot be removed."""
+    def close(self) -> list[str]:
+        """End it and all copies; returns what these had left running."""
         self._jobs.close()
         self._listen_until(lambda: False, _ANSWER if self.serving is not None else 0.0)
         self.process.end()
         self.process.release()
         self.events.close()
-        return self.process.left or [], self._home.remove()
+        self._home.remove()
+        return self.process.left or []
 
     def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
         """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""
@@ -485,7 +474,7 @@ def usual_environment() -> dict[str, str]:
 
 #: for Python, the journal and what is recorded; for pytest with its plug-ins, the program under test, a page
 _ALWAYS = 256
-#: for each of ``-j``: a pipe and the process itself, for up to four in its place, and as much to begin them
+#: for each of ``-j``: pipes, the process itself, and as much to begin it
 _EACH = 16
 
 

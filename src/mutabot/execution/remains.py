@@ -15,8 +15,6 @@ import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
-from typing import Any
 
 from mutabot.model.event_file import VARIABLE
 from mutabot.model.keeper import name_of
@@ -52,24 +50,13 @@ def end_left_over(folder: Path) -> list[str]:
     return ended
 
 
-def by_mark() -> dict[Path, list[int]]:
-    """The processes that were started below workers, by the folder of the worker."""
-    found: dict[Path, list[int]] = {}
-    start = f"{VARIABLE}=".encode()
-    for pid in _processes():
-        for entry in _environment(pid):
-            if entry.startswith(start):
-                found.setdefault(Path(os.fsdecode(entry[len(start) :])), []).append(pid)
-    return found
-
-
 def claim(folder: Path) -> None:
     """Say that the folder of workers belongs to this process, as long as that lives."""
     (folder / OWNER).write_text(f"{os.getpid()} {_began(os.getpid())}", encoding="ascii")
 
 
 def end_abandoned(home: Path) -> int:
-    """End what is left below workers whose controller was killed; returns how many processes there were.
+    """End and remove what controllers have left that were killed; returns how many processes there were.
 
     Args:
         home: the folder in which the folders of workers are made.
@@ -83,14 +70,15 @@ def end_abandoned(home: Path) -> int:
         if _began(int(pid)) == began:
             continue
         ended += end_below(owner.parent)
-        owner.unlink(missing_ok=True)
+        remove_folder(owner.parent)
     return ended
 
 
 def end_below(folder: Path) -> int:
     """End all that was started below workers whose folders are in this one; returns how many there were."""
-    below = [(worker, pid) for worker, pids in by_mark().items() for pid in pids if folder in worker.parents]
-    return sum(_end(pid, _mark(worker)) for worker, pid in below)
+    start = _mark(folder) + b"/"
+    marked = [(pid, entry) for pid in _processes() for entry in _environment(pid) if entry.startswith(start)]
+    return sum(_end(pid, entry) for pid, entry in marked)
 
 
 def _mark(folder: Path) -> bytes:
@@ -143,26 +131,16 @@ def _end(pid: int, entry: bytes) -> bool:
         os.close(process)
 
 
-def remove_folder(folder: Path) -> str | None:
-    """Remove a folder with all that is in it. Returns why it is still there, in words; None if it is gone."""
-    problems: list[str] = []
-
-    def note(
-        function: Any, path: str, error: tuple[type[BaseException], BaseException, TracebackType]
-    ) -> None:
-        if not isinstance(error[1], FileNotFoundError):
-            problems.append(f"{path} ({getattr(error[1], 'strerror', None) or error[1]})")
-
+def remove_folder(folder: Path) -> None:
+    """Remove a folder with all that is in it, as far as its owner can."""
     for _ in range(2):  # the second time all folders are open
-        try:
-            shutil.rmtree(folder, onerror=note)
-        except (RecursionError, OSError) as error:  # more folders in each other than Python can go down
-            problems.append(f"{folder} ({getattr(error, 'strerror', None) or error})")
+        with suppress(RecursionError, OSError):
+            shutil.rmtree(folder, ignore_errors=True)
+        if os.path.lexists(folder):  # maybe with more folders in each other than Python can go down
             subprocess.run(["rm", "-rf", "--", folder], check=False, stderr=subprocess.DEVNULL)
         if not os.path.lexists(folder):
-            return None
+            return
         _open_up(folder)
-    return problems[-1] if problems else f"{folder} (something is written there)"
 
 
 def _open_up(folder: Path) -> None:

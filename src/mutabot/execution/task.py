@@ -14,25 +14,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from mutabot.frozen import frozen
-from mutabot.model import Span
+from mutabot.model import Span, events
 from mutabot.model.event_file import UNWRITTEN
-from mutabot.model.events import (
-    Acted,
-    Called,
-    Event,
-    KnownLater,
-    NotInstrumented,
-    PlacesReached,
-    Problem,
-    SessionEnd,
-    SiteSeen,
-    TestEnd,
-    TestStart,
-    TextsSeen,
-    TokensHeld,
-    Untrusted,
-    Watched,
-)
 from mutabot.model.job import Job
 
 #: pytest's exit statuses after which a run of the suite says nothing about its tests
@@ -118,7 +101,6 @@ class Result:
         overdue: which wall-clock limit it exceeded, in words, or None.
         hindered: why that says little of it, as the machine was busy, in words; None if it was not.
         is_starved: whether it was ended although it had not had its time, as it would have taken too long.
-        where: where it was then: its innermost calls; None if that is not known.
         wall: seconds from its start to its end.
         log: the last lines it printed.
         lost: why no process could be had that runs it to its end, or None.
@@ -126,67 +108,66 @@ class Result:
     """
 
     task: Task
-    sites: list[SiteSeen] = field(default_factory=list)
-    ends: list[TestEnd] = field(default_factory=list)
-    problems: list[Problem] = field(default_factory=list)
+    sites: list[events.SiteSeen] = field(default_factory=list)
+    ends: list[events.TestEnd] = field(default_factory=list)
+    problems: list[events.Problem] = field(default_factory=list)
     acted: list[str] = field(default_factory=list)
     reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
     reached_elsewhere: dict[str, tuple[int, ...]] = field(default_factory=dict)
-    called_at_import: list[Called] = field(default_factory=list)
-    seen: TextsSeen | None = None
+    called_at_import: list[events.Called] = field(default_factory=list)
+    seen: events.TextsSeen | None = None
     not_instrumented: dict[str, str] = field(default_factory=dict)
     known_later: dict[Span, str] = field(default_factory=dict)
     in_mutated_call: bool = False
     held: int = 0
     running: str | None = None
-    watched: list[Watched] = field(default_factory=list)
-    end: SessionEnd | None = None
+    watched: list[events.Watched] = field(default_factory=list)
+    end: events.SessionEnd | None = None
     exit_code: int = 0
     overdue: str | None = None
     hindered: str | None = None
     is_starved: bool = False
-    where: str | None = None
     wall: float = 0.0
     log: str = ""
     lost: str | None = None
     untrusted: str | None = None
 
-    def take(self, line: Event) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
+    def take(self, line: events.Event) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
         """Sort in one event."""
         match line:
-            case SiteSeen():
+            case events.SiteSeen():
                 self.sites.append(line)
-            case TestStart():
+            case events.TestStart():
                 self.running = line.test
                 self.watched.clear()
-            case Watched():
+            case events.Watched():
                 self.watched.append(line)
-            case Acted(in_call=None):
+            case events.Acted(in_call=None):
                 self.acted.append(line.test)
-            case Acted(in_call=bool(in_call)):
+            case events.Acted(in_call=bool(in_call)):
                 self.in_mutated_call = in_call
-            case PlacesReached() if line.elsewhere:
+            case events.PlacesReached() if line.elsewhere:
                 self.reached_elsewhere[line.test] = line.places
-            case PlacesReached():
+            case events.PlacesReached():
                 self.reached[line.test] = line.places
-            case Called():
+            case events.Called():
                 self.called_at_import.append(line)
-            case TextsSeen():
+            case events.TextsSeen():
                 self.seen = line
-            case NotInstrumented():
+            case events.NotInstrumented():
                 self.not_instrumented[line.file] = line.reason
-            case KnownLater():
+            case events.KnownLater():
                 self.known_later[line.span] = line.operation
-            case TokensHeld():
+            case events.TokensHeld():
                 self.held = line.held
-            case TestEnd():
+            case events.TestEnd():
                 self.ends.append(line)
                 self.running = None
-            case Problem():
+            case events.Problem():
                 self.problems.append(line)
-            case SessionEnd():
+            case events.SessionEnd():
                 self.end = line
-            case Untrusted() if self.untrusted is None:
+            case events.Untrusted() if self.untrusted is None:
                 during = f" (during {self.running})" if self.running else ""
                 self.untrusted = f"{line.reason}{during}"
 
@@ -217,11 +198,6 @@ def how_ended(code: int) -> str:
     return f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
 
 
-def at(result: Result) -> str:
-    """Where a worker was when its time was up, to be added to how it ended; empty if that is not known."""
-    return f"; it was at {result.where}" if result.where is not None else ""
-
-
 class Executor(Protocol):
     """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs.
 
@@ -240,7 +216,7 @@ class Executor(Protocol):
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, events.Event]]:
         """The same, with each event as it comes.
 
         A task whose job branches is a fork parent: the executor gives it and its forks the tokens by which

@@ -3,11 +3,6 @@
 One thread looks after all workers: it waits for events, for exits and for deadlines, and never for one worker
 alone. Workers are process groups of their own, so that ending one ends all it started.
 
-A worker that only waits, for what may never come, lends its place to the next task: what a mutant of a
-message does to a program is often just that. One place at a time stays one place. What counts is what the
-tasks of a worker ask for, not what they get, since a process that gets little of a busy machine is not idle.
-As long as processors are short on the machine, whoever uses them, nothing is lent.
-
 The token pool is a pipe with one byte per free token, as many tokens as processes may compute. A fork parent
 is started with a token that the controller took for it. From then on it takes and gives back by itself and
 says how many it holds, so that the tokens of one that dies are not lost.
@@ -19,12 +14,10 @@ import os
 import selectors
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
-from typing import Protocol
 
 from mutabot.errors import JournalError
 from mutabot.execution.interruption import interruptible
@@ -38,107 +31,11 @@ from mutabot.execution.processes import (
     compile_us,
     refuse_full_disk,
 )
-from mutabot.execution.remains import by_mark, claim, end_abandoned, end_left_over, remove_folder
+from mutabot.execution.remains import claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.task import Result, Task
-from mutabot.model import process_time
 from mutabot.model.events import Acted, Event, TestEnd, TestStart, Untrusted
 from mutabot.model.fold import Children, acted_in
-from mutabot.model.process_time import (
-    MOST,
-    Accounts,
-    TimeUsed,
-    accounts_of,
-    below,
-    children,
-    is_crowded,
-    overdue,
-    shortage,
-)
-
-#: seconds between two looks
-PERIOD = 1.0
-#: looks in a row that must find a worker waiting
-_LOOKS = 3
-#: share of a processor under which a worker only waits: nodes that poll, and announce themselves, take some
-_SHARE = 0.25
-#: the share of the time in which some task may have had no processor while processors are not short
-_SHORT = 0.2
-#: workers at most, for each place
-_MOST = 4
-
-
-class Observed(Protocol):
-    """A worker: its process, and the folder that processes below it know it by."""
-
-    @property
-    def pid(self) -> int: ...
-
-    @property
-    def processes(self) -> Path: ...
-
-
-class Waiting:
-    """Which workers only wait.
-
-    Args:
-        places: how many may be at work at a time.
-    """
-
-    def __init__(self, places: int) -> None:
-        self._places = places
-        self._accounts: dict[int, Accounts] = {}
-        self._still: dict[int, int] = {}
-        self._looked = 0.0
-        self._shortage: float | None = None
-
-    def has_place(self, workers: Iterable[Observed]) -> bool:
-        """Whether one more may begin beside these, of which some may only wait."""
-        here = list(workers)
-        if len(here) < self._places:
-            return True
-        if self._places == 1 or len(here) >= _MOST * self._places:
-            return False
-        self._look(here)
-        return len(here) - sum(self._still.get(one.pid, 0) >= _LOOKS for one in here) < self._places
-
-    def _look(self, workers: list[Observed]) -> None:
-        now = time.monotonic()
-        since = now - self._looked
-        if since < PERIOD:
-            return
-        self._looked = now
-        known, marked = children(), by_mark()
-        accounts = {
-            one.pid: accounts_of(below([one.pid, *marked.get(one.processes, ())], known)) for one in workers
-        }
-        is_short = self._is_short(since)
-        self._still = {
-            pid: self._still.get(pid, 0) + 1
-            for pid, found in accounts.items()
-            if not is_short and asks_for_little(self._accounts.get(pid), found, _SHARE * since)
-        }
-        self._accounts = accounts
-
-    def _is_short(self, since: float) -> bool:
-        """Whether processors were short since the last look."""
-        before, self._shortage = self._shortage, shortage()
-        if self._shortage is None:
-            return is_crowded()
-        return before is None or self._shortage - before > _SHORT * since
-
-
-def asks_for_little(before: Accounts, now: Accounts, seconds: float) -> bool:
-    """Whether the tasks of a worker have asked for fewer seconds of a processor between two looks.
-
-    Not if any asks right now, if tasks have begun or ended, or if the kernel does not tell.
-    """
-    if not before or not now or before.keys() != now.keys():
-        return False
-    if any(one.is_asking for one in (*before.values(), *now.values())):
-        return False
-    asked = sum(one.ran + one.queued for one in now.values())
-    return asked - sum(one.ran + one.queued for one in before.values()) < seconds
-
+from mutabot.model.process_time import MOST, TimeUsed, overdue
 
 _BYTE = b"t"
 #: bytes that a pipe holds at most
@@ -205,17 +102,17 @@ def _work_folder(home: Path) -> Path:
             remove_folder(folder)
             raise
     except OSError as error:
-        raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+        raise JournalError(f"cannot write to {home}: {error.strerror}") from error
     return folder
 
 
 class Workers:
-    """Runs tasks in up to ``jobs`` worker processes at a time, and more while some of them only wait.
+    """Runs tasks in up to ``jobs`` worker processes at a time.
 
     Args:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
-        jobs: how many are at work side by side.
+        jobs: how many run side by side.
         tell: told once why tasks do not begin as copies of a fork server, and what tests leave running.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
@@ -223,10 +120,11 @@ class Workers:
     Attributes:
         pool: the tokens of fork parents and branches.
         look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
-        spread: see ``Executor``.
+        spread, remarks: see ``Executor``.
     """
 
     spread = 1
+    remarks: Sequence[str] = ()
 
     def __init__(
         self,
@@ -240,11 +138,9 @@ class Workers:
         self._jobs = max(1, jobs)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
-        self._waiting = Waiting(self._jobs)
         self._servers: list[ForkServerProcess] = []
         self._tell, self._has_told_left = tell, False
         self._may_share = True
-        self._remains: list[str] = []
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
         compile_us()
@@ -253,20 +149,20 @@ class Workers:
     def __enter__(self) -> Workers:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for worker in self._workers:
             worker.process.kill()
         for worker in self._workers:
             worker.close(self._selector)
-            self._note(worker.left, None)
+            self._note(worker.left)
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
         self._selector.close()
         self.pool.close()
-        self._note(None, remove_folder(self._folder))
+        remove_folder(self._folder)
+        if self._folder.exists():
+            self._tell(f"{self._folder} cannot be removed, whatever a test made there; no outcome is touched")
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
@@ -290,33 +186,20 @@ class Workers:
         """One more worker process, which shares nothing with these."""
         return Workers(self._root, self._arguments, jobs=1)
 
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """See ``Executor``."""
-        if not self._remains:
-            return ()
-        more = f" and {len(self._remains) - 1} more" if len(self._remains) > 1 else ""
-        return (
-            f"What a test made cannot be removed: {self._remains[0]}{more}. Outcomes are not touched by it; "
-            f"remove {self._folder} by hand.",
-        )
-
-    def _note(self, left: list[str] | None, remains: str | None) -> None:
-        """Take in what a process left running, which is told once, and what of it cannot be removed."""
+    def _note(self, left: list[str] | None) -> None:
+        """Tell once what a process left running."""
         if left and not self._has_told_left:
             self._has_told_left = True
             more = f" and {len(left) - 1} more" if len(left) > 1 else ""
             self._tell(f"tests leave processes running, which are ended with them: {left[0]}{more}")
-        if remains is not None:
-            self._remains.append(remains)
 
     def _has_place(self, task: Task) -> bool:
         if self._workers and (task.alone or any(worker.task.alone for worker in self._workers)):
             return False
-        if not task.is_fork_parent:
-            return self._waiting.has_place(self._workers)
         if len(self._workers) >= self._jobs:
             return False
+        if not task.is_fork_parent:
+            return True
         if not self._workers:
             self.pool.refill()  # nobody is left who could hold one
         return self.pool.take()
@@ -366,11 +249,11 @@ class Workers:
         for descriptor in (server.events.bell, server.process.pidfd):
             self._selector.unregister(descriptor)
         self._servers.remove(server)
-        self._note(*server.close())
+        self._note(server.close())
 
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Event]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
-        timeout = self._patience(next_task)
+        timeout = self._patience()
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
         if is_for_token:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
@@ -394,20 +277,17 @@ class Workers:
             if worker.has_ended:
                 yield from self._finish(worker)
 
-    def _patience(self, next_task: Task | None) -> float | None:
+    def _patience(self) -> float | None:
         """Seconds until something is to be looked at, whatever happens; None if nothing is."""
         if any(worker.has_ended for worker in self._workers):
             return 0.0  # a fork server may have told so while it was asked for something else
         until = min((worker.until for worker in self._workers), default=None)
-        seconds = None if until is None else max(0.0, until - time.monotonic())
-        if next_task is None:
-            return seconds
-        return PERIOD if seconds is None else min(seconds, PERIOD)
+        return None if until is None else max(0.0, until - time.monotonic())
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Event]]:
         self._workers.remove(worker)
-        lines, result, remains = worker.finish(self._selector)
-        self._note(worker.left, remains)
+        lines, result = worker.finish(self._selector)
+        self._note(worker.left)
         for line in lines:
             yield worker.task, line
         if result.end is None:
@@ -428,16 +308,6 @@ class _Worker:
         self.left: list[str] | None = None
         self._started = time.monotonic()
         self._allow(task.startup)
-
-    @property
-    def pid(self) -> int:
-        """The number of its process."""
-        return self.process.pid
-
-    @property
-    def processes(self) -> Path:
-        """The folder that processes below it know it by."""
-        return self._home.processes
 
     @property
     def has_ended(self) -> bool:
@@ -467,33 +337,27 @@ class _Worker:
 
     def _allow(self, seconds: float) -> None:
         """From now on it may take so long."""
-        self._limit, self._used = seconds, TimeUsed.from_now([self.pid])
+        self._limit, self._used = seconds, TimeUsed.from_now([self.process.pid])
         self.until = self._used.began + seconds
 
     def is_out_of_time(self) -> bool:
         """Whether it has used its time, now that the wall clock has run out; if not, it gets what is left."""
-        left = self._used.left(self._limit, [self.pid])
+        left = self._used.left(self._limit, [self.process.pid])
         if left > 0:
             self.until = time.monotonic() + max(left, LOOKS)
         return left <= 0
 
     def expire(self) -> None:
         """Its time is up: end the process group."""
-        self.result.hindered = self._used.hindrance([self.pid])
+        self.result.hindered = self._used.hindrance([self.process.pid])
         self.result.is_starved = time.monotonic() >= self._used.began + MOST * self._limit
         test = self.result.running
         limit = self.task.startup if test is None else self.task.deadlines.get(test, self.task.deadline)
         self.result.overdue = overdue(limit, test)
-        self.result.where = process_time.ask(
-            self.process.tests, str(self._home.folder / process_time.FILE), self.task.job.root
-        )
         self.process.end()
 
-    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result, str | None]:
-        """Collect the rest of a process that has ended.
-
-        Returns its last lines, what became of it, and what of it cannot be removed.
-        """
+    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result]:
+        """Collect the rest of a process that has ended: its last lines, and what became of it."""
         self.result.exit_code = self._end()
         lines = self._taken([] if self._home.is_whole else [_HOME_LOST])
         lines += self._taken(self.events.read(is_last=True))
@@ -506,17 +370,18 @@ class _Worker:
             lines += self._taken([Untrusted(children.doubt)] if children.doubt is not None else [])
         self.result.wall = time.monotonic() - self._started + self.process.startup
         self.result.log = self._home.log_text()
-        return lines, self.result, self.close(selector)
+        self.close(selector)
+        return lines, self.result
 
-    def close(self, selector: selectors.BaseSelector) -> str | None:
-        """Let go of all; what of it cannot be removed, in words, or None."""
+    def close(self, selector: selectors.BaseSelector) -> None:
+        """Let go of all."""
         selector.unregister(self.events.bell)
         if self.process.pidfd is not None:
             selector.unregister(self.process.pidfd)
         self.events.close()
         self._end()
         self.process.release()
-        return self._home.remove()
+        self._home.remove()
 
     def _end(self) -> int:
         """End it and all that was started below it; returns its exit code."""

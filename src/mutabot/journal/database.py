@@ -4,9 +4,8 @@ What the writer knows is in a second database without a name, which is gone with
 that is read. Programs under test can write to any file of the project: the file is looked at in each
 transaction and at the end, and made anew if it is not what was written.
 
-Each row has a *mark*, a digest that is written with it, by which rows that somebody else wrote are found.
-There is no secret in it: it shows that a row is as some Mutabot wrote it. A file may come from anybody. A
-view or a trigger in it would be evaluated with each question: only the tables of this version may be there.
+A file may come from anybody. A view or a trigger in it would be evaluated with each question: only the tables
+of this version may be there.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from functools import cache
-from hashlib import blake2b
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Self
@@ -25,11 +23,11 @@ from mutabot.errors import JournalError
 from mutabot.model.codec import printable
 
 from .files import WriterLock, previous_of, refuse_tracked
-from .records import UNFIT, load
 
 SCHEMA_VERSION = 7
 
-TABLES = """
+TABLES = f"""
+PRAGMA user_version = {SCHEMA_VERSION};
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE test (
     round INTEGER NOT NULL, repetition INTEGER NOT NULL, test TEXT NOT NULL, outcome TEXT NOT NULL,
@@ -49,20 +47,15 @@ CREATE TABLE kept (
 CREATE TABLE parts (digest TEXT PRIMARY KEY, data TEXT NOT NULL);
 CREATE TABLE known (id TEXT PRIMARY KEY, data TEXT NOT NULL, outdated INTEGER NOT NULL);
 CREATE TABLE text (digest TEXT PRIMARY KEY, data BLOB NOT NULL);
-CREATE TABLE mark (
-    "table" TEXT NOT NULL, row INTEGER NOT NULL, digest BLOB NOT NULL, PRIMARY KEY ("table", row)
-) WITHOUT ROWID;
 """
 #: the rows that hold the last outcome of each mutant and round
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
-#: key of meta that says which version the journal has
-VERSION_KEY = "journal:version"
 #: what SQLite says where it is the disk that cannot take what is written, and not the file that is wrong
 _OF_THE_DISK = ("full", "readonly", "disk I/O", "unable to open")
 #: what a database consists of while somebody has it open
 _SUFFIXES = ("", "-wal", "-shm")
-#: things in a file that are looked at: a journal has fewer; versions; rows and characters that are shown
-_MOST, _MOST_VERSIONS, _SHOWN, _LONGEST = 100, 1_000_000, 5, 150
+#: things in a file that are looked at: a journal has fewer; rows, characters and rounds that are shown
+_MOST, _SHOWN, _LONGEST, _MOST_ROUNDS = 100, 5, 150, 1_000_000
 #: what people call rows of a table
 _WORDS = {
     "meta": "fact", "test": "test of the baseline", "left_out": "mutant that was left out",
@@ -81,10 +74,10 @@ def _made() -> frozenset[tuple[str, str, str | None]]:
 
 @cache
 def columns() -> dict[str, tuple[str, ...]]:
-    """The tables with rows of their own, and their columns."""
+    """The tables and their columns."""
     with closing(sqlite3.connect(":memory:")) as connection:
         connection.executescript(TABLES)
-        tables = [name for kind, name, _ in _made() if kind == "table" and name != "mark"]
+        tables = [name for kind, name, _ in _made() if kind == "table"]
         info = {name: connection.execute(f"PRAGMA table_info({name})").fetchall() for name in sorted(tables)}
     return {name: tuple(row[1] for row in rows) for name, rows in info.items()}
 
@@ -179,48 +172,18 @@ def guarded(path: Path) -> Iterator[None]:
             text = f"{path} cannot be written: the disk is full; what was written before is kept ({text})"
         else:
             text = f"{path}: {text}"
-        raise JournalError(text, path=str(path)) from error
+        raise JournalError(text) from error
     except OSError as error:
-        raise JournalError(f"{path}: {error.strerror or error}", path=str(path)) from error
+        raise JournalError(f"{path}: {error.strerror or error}") from error
 
 
-# Marks
+# What others did
 
 
-def mark_of(*values: Any) -> bytes:
-    """The mark of a row: a digest of its table and all its values."""
-    text = "\0".join([decode(one) if isinstance(one, bytes) else str(one) for one in values])
-    return blake2b(text.encode("utf-8", "surrogateescape"), digest_size=12).digest()
-
-
-def mark_rows(connection: sqlite3.Connection) -> None:
-    """Have every row that this connection writes marked, and no mark stay of a row that it removes."""
-    connection.create_function("mutabot_mark", -1, mark_of, deterministic=True)
-    # Without this, a row that is replaced goes without a trigger.
-    connection.execute("PRAGMA recursive_triggers = ON")
-    for table, names in columns().items():
-        # as bytes: a text from elsewhere may be no UTF-8
-        new = ", ".join(f'CAST(new."{name}" AS BLOB)' for name in names)
-        remove = f"DELETE FROM mark WHERE \"table\" = '{table}' AND row = "
-        add = f"INSERT INTO mark VALUES ('{table}', new.rowid, mutabot_mark('{table}', {new}));"
-        for event, actions in (
-            ("INSERT", f"{remove} new.rowid; {add}"),  # there may be one of a row that is gone
-            ("DELETE", f"{remove} old.rowid;"),
-            ("UPDATE", f"{remove} old.rowid; {add}"),
-        ):
-            # Temporary: in the file there is nothing but tables.
-            connection.execute(
-                f"CREATE TEMP TRIGGER mark_{table}_{event} AFTER {event} ON main.{table} BEGIN {actions} END"
-            )
-
-
-def _rows(connection: sqlite3.Connection, table: str) -> dict[int, tuple[bytes | None, tuple[Any, ...]]]:
-    """The rows of a table by their numbers, with their marks."""
-    found = connection.execute(
-        f"SELECT t.rowid, m.digest, t.* FROM main.{table} AS t "
-        f"LEFT JOIN main.mark AS m ON m.\"table\" = '{table}' AND m.row = t.rowid"
-    )
-    return {row: (mark, tuple(values)) for row, mark, *values in found}
+def _rows(connection: sqlite3.Connection, table: str) -> dict[int, tuple[Any, ...]]:
+    """The rows of a table by their numbers."""
+    found = connection.execute(f"SELECT rowid, * FROM main.{table}")
+    return {row: tuple(values) for row, *values in found}
 
 
 def _differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str]:
@@ -234,10 +197,7 @@ def _differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[st
             # by what they look like: what is no number is not equal to itself
             if repr(theirs.get(row)) != repr(ours.get(row)):
                 what = "added" if row not in ours else "removed" if row not in theirs else "changed"
-                found.append(f"{named_row(table, (ours.get(row) or theirs[row])[1])} was {what}")
-    marks = (one.execute("SELECT count(*) FROM main.mark").fetchone() for one in (file, known))
-    if not found and len(set(marks)) > 1:
-        found.append("the marks of rows")
+                found.append(f"{named_row(table, ours.get(row) or theirs[row])} was {what}")
     return [*found[:_SHOWN], f"and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else found
 
 
@@ -248,7 +208,7 @@ def named_row(table: str, values: tuple[Any, ...]) -> str:
     text = name if isinstance(name, str) else repr(name)
     shown = repr(text[:_LONGEST].encode("utf-8", "replace").decode())[1:-1]
     round = known.get("round") if table in ("outcome", "kept") else None
-    where = f" in round {round + 1}" if isinstance(round, int) and 0 <= round < _MOST_VERSIONS else ""
+    where = f" in round {round + 1}" if isinstance(round, int) and 0 <= round < _MOST_ROUNDS else ""
     return f"{_WORDS.get(table, table)} {shown}{where}"
 
 
@@ -262,7 +222,6 @@ class Database:
 
     Attributes:
         path: the file.
-        unmarked: rows that something else than Mutabot has written, in words; they are left out.
         is_new: whether there was nothing in the file, and nothing is as yet.
         lost: how often the file was deleted or replaced, in words, and was written again.
         altered: rows of the file that somebody else changed, added or removed, and that were restored.
@@ -270,7 +229,6 @@ class Database:
 
     def __init__(self, path: Path, copy: sqlite3.Connection) -> None:
         self.path, self.copy = path, copy
-        self.unmarked: list[str] = []
         self.lost: list[str] = []
         self.altered: list[str] = []
         self.is_new = False
@@ -290,7 +248,6 @@ class Database:
                 found = cls(path, loaded(file))
             with found.closed_on_error():
                 check_schema(path, found.copy)
-                found.remove_unmarked()
                 found.copy.execute("PRAGMA query_only = ON")
         return found
 
@@ -312,7 +269,6 @@ class Database:
                     found.copy.executescript(TABLES)
                 else:
                     found._know_file()
-                mark_rows(found.copy)
         return found
 
     def close(self) -> None:
@@ -377,28 +333,6 @@ class Database:
             if not is_ours:
                 self._restore()
 
-    def remove_unmarked(self) -> None:
-        """Drop what something else than Mutabot has written, and marks of rows that are gone."""
-        for table in columns():
-            rows = _rows(self.copy, table).items()
-            strange = {row: values for row, (mark, values) in rows if mark != mark_of(table, *values)}
-            gone = f'FROM mark WHERE "table" = ? AND row NOT IN (SELECT rowid FROM {table})'
-            count = self.rows(f"SELECT count(*) {gone}", table)[0][0]
-            for row, values in strange.items():
-                self._drop(f"DELETE FROM {table} WHERE rowid = ?", row)
-                self.unmarked.append(named_row(table, values))
-            if count or strange:
-                self._drop(f"DELETE {gone}", table)
-            if count:
-                word = _WORDS.get(table, table)
-                self.unmarked.append(f"{count} × {word} that {'is' if count == 1 else 'are'} gone")
-
-    def _drop(self, statement: str, value: Any) -> None:
-        if self._file is not None:
-            self.write(statement, value)
-        else:
-            self.copy.execute(statement, (value,))
-
     def _repeat_in_file(self, done: list[tuple[str, tuple[Any, ...]]]) -> bool:
         """Write into the file what was written; returns whether it is there."""
         assert self._file is not None
@@ -451,7 +385,6 @@ class Database:
 
     def _know_file(self) -> None:
         assert self._file is not None
-        mark_rows(self._file)
         self._identity, self._version = _identity(self.path), self._data_version()
 
     def _restore(self) -> None:
@@ -484,37 +417,25 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
         raise no_journal(path)
     tables = {name for kind, name, _ in found if kind == "table"}
     if not {"meta", "outcome"} <= tables:
-        raise JournalError(f"{path} is a database, but not a journal of mutabot", path=str(path))
+        raise JournalError(f"{path} is a database, but not a journal of mutabot")
     strange = sorted(f"{kind} {name}" for kind, name, _ in found - _made())
-    if "table meta" not in strange:
-        version = _version(connection)
-        # a version that cannot be read is one row that is damaged, if all tables are ours
-        if version != SCHEMA_VERSION and (version is not None or strange):
-            raise JournalError(
-                f"{path} was written by another version of mutabot (journal version {version or '?'}, "
-                f"this one reads {SCHEMA_VERSION}); run the campaign again",
-                path=str(path),
-                version=version,
-            )
+    version = connection.execute("PRAGMA main.user_version").fetchone()[0]
+    if version != SCHEMA_VERSION:
+        raise JournalError(
+            f"{path} was written by another version of mutabot (journal version {version or '6 or older'}, "
+            f"this one reads {SCHEMA_VERSION}); run the campaign again",
+            version=version,
+        )
     if strange or _made() - found:
         what = f"holds what no journal has ({', '.join(strange[:3])})" if strange else "lacks a table"
         raise JournalError(
-            f"{path} {what}, so something else than mutabot has changed it; run the campaign again",
-            path=str(path),
+            f"{path} {what}, so something else than mutabot has changed it; run the campaign again"
         )
-
-
-def _version(connection: sqlite3.Connection) -> int | None:
-    row = connection.execute("SELECT value FROM main.meta WHERE key = ?", (VERSION_KEY,)).fetchone()
-    with suppress(*UNFIT):
-        found = load(row[0]) if row is not None else None
-        return found if isinstance(found, int) and abs(found) < _MOST_VERSIONS else None
-    return None
 
 
 def no_journal(path: Path) -> JournalError:
     """There is nothing there."""
-    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
+    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it")
 
 
 def make_way(path: Path) -> Path | None:
@@ -530,7 +451,7 @@ def make_way(path: Path) -> Path | None:
     with path.open("rb") as file:
         start = file.read(16)
     if start and not start.startswith(b"SQLite format 3"):
-        raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
+        raise JournalError(f"{path} is in the way: it is not a journal of mutabot")
     kept = previous_of(path)
     try:
         with closing(connect(path)) as connection:
@@ -541,7 +462,8 @@ def make_way(path: Path) -> Path | None:
                 return None
     except JournalError as error:
         if error.version is not None:
-            kept = path.with_name(f"{path.stem}.version-{error.version}{path.suffix}")
+            name = f"version-{error.version}" if error.version else "older"
+            kept = path.with_name(f"{path.stem}.{name}{path.suffix}")
     except sqlite3.OperationalError:
         raise  # it is not the content that is wrong: a full disk, a folder that cannot be written
     except sqlite3.DatabaseError:

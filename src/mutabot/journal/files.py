@@ -9,10 +9,7 @@ from __future__ import annotations
 
 import fcntl
 import os
-import shutil
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from mutabot.errors import JournalError
@@ -65,7 +62,7 @@ class WriterLock:
             else:
                 return cls(journal, descriptor)
         os.close(descriptor)
-        raise JournalError(f"{journal} is being written by another `mutabot run`", path=str(journal))
+        raise JournalError(f"{journal} is being written by another `mutabot run`")
 
     def renew(self) -> None:
         """Take it again if its file is gone. Raises JournalError if another process has it by now."""
@@ -103,32 +100,8 @@ def is_written(journal: Path) -> bool:
     return False
 
 
-@contextmanager
-def at_work(home: Path) -> Iterator[None]:
-    """Say that somebody works in mutabot's folder; the first to come removes what killed ones left there."""
-    try:
-        home.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(home, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    except OSError as error:
-        raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
-    try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            pass
-        else:
-            for left_behind in home.glob("work-*"):
-                shutil.rmtree(left_behind, ignore_errors=True)
-        fcntl.flock(descriptor, fcntl.LOCK_SH)
-        yield
-    finally:
-        os.close(descriptor)
-
-
 #: what SQLite keeps beside a file, and reads
 _BESIDE = ("", "-wal", "-shm", "-journal")
-#: as many links one after the other as Linux follows
-_LINKS = 40
 
 
 def refuse_tracked(journal: Path) -> None:
@@ -136,10 +109,12 @@ def refuse_tracked(journal: Path) -> None:
 
     Also if git cannot tell: then nobody knows where the journal comes from.
     """
-    for path in _ways(Path(os.path.abspath(journal)), _LINKS):  # noqa: PTH100  # links stay links
+    here = Path(os.path.abspath(journal))  # noqa: PTH100  # links stay links
+    links = (one for one in (here, *here.parents) if one.is_symlink())
+    for path in (here, *links, Path(os.path.realpath(here))):
         found = _tracked_at(path, journal)
         if found:
-            raise JournalError(_why(journal, path.parent, found), path=str(journal))
+            raise JournalError(_why(journal, path.parent, found))
 
 
 def _tracked_at(path: Path, journal: Path) -> list[str]:
@@ -158,24 +133,7 @@ def _tracked_at(path: Path, journal: Path) -> list[str]:
         return tracked(folder, *names)
     except GitError as error:
         why = f"nobody can tell whether {journal} came with the repository; then it is not used: {error}"
-        raise JournalError(why, path=str(journal)) from error
-
-
-def _ways(path: Path, left: int) -> Iterator[Path]:
-    """A path, and every link on the way to what it means, each in its real folder; at last where it leads."""
-    place = Path(path.anchor)
-    parts = path.parts[1:]
-    for index, part in enumerate(parts):
-        here = place / part
-        if part == "..":
-            place = place.parent
-        elif here.is_symlink() and left:
-            yield here
-            yield from _ways(Path(place, here.readlink(), *parts[index + 1 :]), left - 1)
-            return
-        else:
-            place = here
-    yield place
+        raise JournalError(why) from error
 
 
 def _why(journal: Path, folder: Path, names: list[str]) -> str:

@@ -17,34 +17,16 @@ import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self, TypeVar
 
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import from_data, storable, to_data
 from mutabot.model.events import TestEnd
 
-from .database import LAST, SCHEMA_VERSION, VERSION_KEY, Database, guarded, make_way, named_row, write_anew
+from . import records
+from .database import LAST, Database, guarded, make_way, named_row, write_anew
 from .files import WriterLock, previous_of, refuse_tracked
-from .records import (
-    ALTERED,
-    UNFIT,
-    BaselineTest,
-    ControlEnd,
-    Kept,
-    MovedOutcome,
-    baseline_test_in,
-    bytes_in,
-    control_in,
-    fact,
-    known_in,
-    left_out_in,
-    load,
-    outcome_in,
-    planned_in,
-    round_in,
-    text_in,
-)
+from .records import UNFIT, BaselineTest, ControlEnd, Kept, MovedOutcome
 
 T = TypeVar("T")
 #: a key of meta that is the journal's own: why the campaign ended
@@ -97,11 +79,8 @@ class JournalReader:
 
     @property
     def set_aside(self) -> list[str]:
-        """Rows that were not written by Mutabot, or that hold what cannot be, in words: nobody believes them.
-
-        What a row holds is looked at when it is read.
-        """
-        return [*self._store.unmarked, *self._unfit]
+        """Rows that hold what cannot be, in words, as far as they were read: nobody believes them."""
+        return [*self._unfit]
 
     @staticmethod
     def open(path: Path) -> JournalReader:
@@ -111,9 +90,7 @@ class JournalReader:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -128,7 +105,7 @@ class JournalReader:
         for key, text in self._store.rows("SELECT key, value FROM meta"):
             if isinstance(key, str) and not key.startswith("journal:"):
                 with self._checked("meta", key):
-                    found[key] = fact(key, load(text))
+                    found[key] = records.fact(key, records.load(text))
         return {key: value for key, value in found.items() if value is not None}
 
     @property
@@ -140,10 +117,7 @@ class JournalReader:
     @property
     def finished(self) -> str | None:
         """Why the campaign ended; None while it runs and after it was killed."""
-        with self._checked("meta", _FINISHED_KEY):
-            rows = self._store.rows("SELECT value FROM meta WHERE key = ?", _FINISHED_KEY)
-            return str(load(rows[0][0])) if rows else None
-        return None
+        return self._one("meta", "value", "key", _FINISHED_KEY, lambda text: str(records.load(text)))
 
     @property
     def attempt(self) -> str | None:
@@ -153,39 +127,36 @@ class JournalReader:
         """
         rows = self._store.rows("SELECT value FROM meta WHERE key = ?", _ATTEMPT_KEY)
         with self._checked("meta", _ATTEMPT_KEY):
-            return str(load(rows[0][0]) or "") if rows else None
+            return str(records.load(rows[0][0]) or "") if rows else None
         return ""
 
     # The baseline and the plan
 
     def tests(self) -> list[BaselineTest]:
         """The tests of the baseline in the order they were added."""
-        return self._all("test", baseline_test_in)
+        return self._all("test", records.baseline_test_in)
 
     def controls(self) -> list[ControlEnd]:
         """The controls in the order they were added."""
-        return self._all("control", control_in)
+        return self._all("control", records.control_in)
 
     def mutants(self) -> list[Mutant]:
         """The planned mutants by number."""
-        return self._all("mutant", planned_in, "ORDER BY number, rowid")
+        return self._all("mutant", records.planned_in, "ORDER BY number, rowid")
 
     def left_out(self) -> list[LeftOut]:
         """What the plan leaves out, in its order."""
-        return self._all("left_out", left_out_in)
+        return self._all("left_out", records.left_out_in)
 
     def source(self, file: str) -> str | None:
         """The text of a mutated file at the time of the campaign, or None if it was not written down."""
-        rows = self._store.rows("SELECT text FROM source WHERE file = ?", file)
-        with self._checked("source", file):
-            return text_in(rows[0][0]) if rows else None
-        return None
+        return self._one("source", "text", "file", file, records.text_in)
 
     # Outcomes
 
     def outcomes(self) -> list[Outcome]:
         """The last outcome of each (mutant, round), in the order they came."""
-        return self._all("outcome", outcome_in, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
+        return self._all("outcome", records.outcome_in, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
 
     def rounds_known(self) -> dict[str, int]:
         """In how many rounds each mutant has an outcome; those without any are missing."""
@@ -218,7 +189,7 @@ class JournalReader:
             )  # fmt: skip
             for verdict, by, text, key in rows:
                 with self._checked(table, mutant, round):
-                    outcome_in(mutant, round, verdict, by, text)
+                    records.outcome_in(mutant, round, verdict, by, text)
                     return MovedOutcome(mutant, round, verdict, by, text, key)
                 return None
         raise KeyError((mutant, round))
@@ -232,30 +203,26 @@ class JournalReader:
         found = {}
         for mutant, round, key, sound, verdict in rows:
             with self._checked(table, mutant, round):
-                found[text_in(mutant), round_in(round)] = Kept(text_in(key), bool(sound), Verdict(verdict))
+                found[records.text_in(mutant), records.round_in(round)] = Kept(
+                    records.text_in(key), bool(sound), Verdict(verdict)
+                )
         return found
 
     def kept_outcomes(self) -> list[Outcome]:
         """All that earlier campaigns found, also what cannot be reused."""
-        return self._all("kept", outcome_in)
+        return self._all("kept", records.outcome_in)
 
     def known(self) -> list[tuple[Mutant, bool]]:
         """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
-        return self._all("known", known_in)
+        return self._all("known", records.known_in)
 
     def parts(self, digest: str) -> dict[str, str] | None:
         """What a digest in a key stands for, or None if that is not known any more."""
-        rows = self._store.rows("SELECT data FROM parts WHERE digest = ?", digest)
-        with self._checked("parts", digest):
-            return from_data(dict[str, str], load(rows[0][0])) if rows else None
-        return None
+        return self._one("parts", "data", "digest", digest, records.parts_in)
 
     def text(self, digest: str) -> bytes | None:
         """What stood in a Python file with this digest, or None if that is not known any more."""
-        rows = self._store.rows("SELECT data FROM text WHERE digest = ?", digest)
-        with self._checked("text", digest):
-            return bytes_in(rows[0][0]) if rows else None
-        return None
+        return self._one("text", "data", "digest", digest, records.bytes_in)
 
     def _all(self, table: str, read: Callable[..., T], which: str = "ORDER BY rowid") -> list[T]:
         """What the rows of a table hold, from all their columns."""
@@ -264,6 +231,13 @@ class JournalReader:
             with self._checked(table, *row):
                 found.append(read(*row))
         return found
+
+    def _one(self, table: str, column: str, key: str, name: str, read: Callable[[Any], T]) -> T | None:
+        """What a row holds that is known by a name; None if there is none, or it holds what cannot be."""
+        with self._checked(table, name):
+            for (found,) in self._store.rows(f"SELECT {column} FROM {table} WHERE {key} = ?", name):
+                return read(found)
+        return None
 
     @contextmanager
     def _checked(self, table: str, *values: Any) -> Iterator[None]:
@@ -292,11 +266,11 @@ class Journal(JournalReader):
         self._waits = waits  # for its campaign to begin: until then it is that of the one before
 
     @classmethod
-    def create(cls, path: Path, *, meta: Mapping[str, Any], fresh: bool = False) -> Journal:
+    def create(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
         """``prepare`` and ``begin`` a campaign at once."""
         journal = cls.prepare(path, meta=meta)
         with journal._store.closed_on_error():
-            journal.begin(meta, fresh=fresh)
+            journal.begin(meta)
         return journal
 
     @classmethod
@@ -330,11 +304,10 @@ class Journal(JournalReader):
                 journal._begin(meta)
         return journal
 
-    def begin(self, meta: Mapping[str, Any], *, fresh: bool = False) -> None:
+    def begin(self, meta: Mapping[str, Any]) -> None:
         """Begin the campaign. Mutants and outcomes of those before are kept aside.
 
-        All or nothing. A complete campaign stays readable as ``previous_of`` the path. ``fresh``: none of the
-        outcomes is to be reused.
+        All or nothing. A complete campaign stays readable as ``previous_of`` the path.
         """
         if not self._waits:
             return  # nothing was there before
@@ -343,16 +316,13 @@ class Journal(JournalReader):
                 write_anew(self._store.copy, previous_of(self.path))
         self._begin(meta)
         self._waits = False
-        if fresh:
-            self._store.write("UPDATE kept SET key = ''")
 
     def _begin(self, meta: Mapping[str, Any]) -> None:
         with self._store.transaction():
             if self._waits:
-                self._store.remove_unmarked()  # before any of it is believed
                 for statement in _ADOPT.split(";"):
                     self._store.write(statement)
-            for key, value in {VERSION_KEY: SCHEMA_VERSION, **meta}.items():
+            for key, value in meta.items():
                 self.set_meta(key, value)
 
     # What the campaign was and how it ended
@@ -369,7 +339,7 @@ class Journal(JournalReader):
         with self._store.transaction(whole=True):
             pass  # what is not as it was written is written again
         if self.altered:
-            self.set_meta(ALTERED, [*(self.meta().get(ALTERED) or []), *self.altered])
+            self.set_meta(records.ALTERED, [*(self.meta().get(records.ALTERED) or []), *self.altered])
         self.set_meta(_ATTEMPT_KEY if self._waits else _FINISHED_KEY, reason)
 
     # The baseline and the plan

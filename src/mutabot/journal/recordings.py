@@ -10,7 +10,6 @@ import sqlite3
 from collections.abc import Iterable
 from enum import IntEnum
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 from .database import connect, connect_to_read, guarded, loaded
@@ -75,9 +74,7 @@ class Recordings:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -151,15 +148,12 @@ class Recordings:
                 self._delete("mutant = ?", mutant)
 
     def _make_room(self, rank: Rank, size: int) -> bool:
-        for lower in range(rank):
-            rows = self._rows(
-                "SELECT mutant, round, test FROM recording WHERE rank = ? ORDER BY size DESC", lower
-            )
-            for mutant, round, test in rows:
-                if self._used + size <= self._limit:
-                    break
-                self._delete("mutant = ? AND round = ? AND test = ?", mutant, round, test)
-                self.dropped += 1
+        lower = "SELECT mutant, round, test FROM recording WHERE rank < ? ORDER BY rank, size DESC"
+        for mutant, round, test in self._rows(lower, rank):
+            if self._used + size <= self._limit:
+                break
+            self._delete("mutant = ? AND round = ? AND test = ?", mutant, round, test)
+            self.dropped += 1
         with guarded(self.path):
             self._connection.execute("PRAGMA incremental_vacuum")
         return self._used + size <= self._limit

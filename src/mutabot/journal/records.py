@@ -536,6 +536,11 @@ def _check_number(value: float | None, least: float = 0) -> None:
         raise ValueError
 
 
+def parts_in(text: Any) -> dict[str, str]:
+    """What a digest in a key stands for."""
+    return from_data(dict[str, str], load(text))
+
+
 def bytes_in(data: Any) -> bytes:
     """The content of a file."""
     if not isinstance(data, bytes):

@@ -65,7 +65,7 @@ def name_of(member: Any) -> str:
     return str(member.name or member)
 
 
-def written_of(member: Any, values: Sequence[Any], path: str) -> Any:
+def written_of(member: Any, values: Sequence[Any]) -> Any:
     """Which of a vocabulary's values stands for a member; its name if none does.
 
     Raises PathError if its enumeration has no member for one of the values, or one member for two of them.
@@ -73,10 +73,10 @@ def written_of(member: Any, values: Sequence[Any], path: str) -> Any:
     kind: Any = type(member)
     members = [member_of(kind, value) for value in values]
     if None in members:
-        raise _wrong(kind, _unknown(kind, values[members.index(None)]), path)
+        raise PathError(_unknown(kind, values[members.index(None)]))
     twice = [name_of(one) for one in members if members.count(one) > 1]
     if twice:
-        raise _wrong(kind, f"values name {twice[0]} of {kind.__name__} twice", path)
+        raise PathError(f"values name {twice[0]} of {kind.__name__} twice")
     return values[members.index(member)] if member in members else name_of(member)
 
 
@@ -86,10 +86,6 @@ def _unknown(kind: type[Any], value: Any) -> str:
     listed = ", ".join(known[:_MOST]) + (" …" if len(known) > _MOST else "")
     hint = f"did you mean {near!r}?" if near else f"it has {listed}"
     return f"{kind.__name__} has no member {value!r}, which values name; {hint}"
-
-
-def _wrong(kind: type[Any], text: str, path: str) -> PathError:
-    return PathError(text, path="", step=path, found=kind.__name__)
 
 
 def _is_value(member: Any, written: Any) -> bool:

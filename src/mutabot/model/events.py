@@ -285,7 +285,6 @@ class BranchDied(Event):
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
         hindered, is_starved: as in ``Result``.
-        where: where it was then, if that is known.
         acted: whether the mutant had changed anything.
         in_mutated_call: whether it was in the midst of a mutated call.
     """
@@ -294,7 +293,6 @@ class BranchDied(Event):
     test: str
     exit_code: int
     overdue: str | None = None
-    where: str | None = None
     hindered: str | None = None
     is_starved: bool = False
     acted: bool = False

@@ -12,26 +12,8 @@ from dataclasses import dataclass, field, replace
 from time import monotonic, sleep  # tests may replace those of the module
 
 from mutabot.frozen import frozen
+from mutabot.model import events
 from mutabot.model.event_file import ANYBODY, FOLDER, NOW, OWN_FAULT, SUFFIX, EventReader
-from mutabot.model.events import (
-    TRACE_LIMIT,
-    Acted,
-    Began,
-    BranchDied,
-    BranchFinished,
-    Called,
-    Did,
-    Event,
-    Found,
-    Noted,
-    PlacesReached,
-    Raised,
-    SessionEnd,
-    SiteSeen,
-    TestEnd,
-    Untrusted,
-    Used,
-)
 from mutabot.model.job import Job
 from mutabot.model.outcome import added
 
@@ -54,18 +36,18 @@ class ChildRecord:
         called, noted, did, places, used, exceeded: what it told during the running test.
     """
 
-    began: Began
+    began: events.Began
     nodes: list[str] = field(default_factory=list)
-    sites: dict[int, SiteSeen] = field(default_factory=dict)
+    sites: dict[int, events.SiteSeen] = field(default_factory=dict)
     ended: bool = False
-    raised: Raised | None = None
+    raised: events.Raised | None = None
     is_in_call: bool = False
     acted: dict[str, None] = field(default_factory=dict)
-    called: list[Called] = field(default_factory=list)
-    noted: list[Noted] = field(default_factory=list)
-    did: list[Did] = field(default_factory=list)
+    called: list[events.Called] = field(default_factory=list)
+    noted: list[events.Noted] = field(default_factory=list)
+    did: list[events.Did] = field(default_factory=list)
     places: set[int] = field(default_factory=set)
-    used: Used | None = None
+    used: events.Used | None = None
     exceeded: str | None = None
 
     @property
@@ -76,32 +58,32 @@ class ChildRecord:
         arguments = [one for one in self.began.command[1:] if not one.startswith("-")]
         return os.path.basename(arguments[0]) if arguments else os.path.basename(self.began.command[0])
 
-    def take(self, event: Event) -> None:
+    def take(self, event: events.Event) -> None:
         """Sort in one event; what is none of a test is nothing to it."""
         match event:
-            case SiteSeen():
+            case events.SiteSeen():
                 self.sites[event.index] = event
-            case Called():
+            case events.Called():
                 self.called.append(event)
-            case Noted():
+            case events.Noted():
                 self.noted.append(event)
-            case Did():
+            case events.Did():
                 self.did.append(event)
                 if event.acted:
                     self.acted[event.test] = None
-            case Acted(in_call=bool(is_in_call)):
+            case events.Acted(in_call=bool(is_in_call)):
                 self.is_in_call = is_in_call
                 if is_in_call:
                     self.acted[event.test] = None
-            case PlacesReached():
+            case events.PlacesReached():
                 self.places.update(event.places)
-            case Used():
+            case events.Used():
                 self.used, self.exceeded = event, event.exceeded or self.exceeded
-            case Raised():
+            case events.Raised():
                 self.raised = event
-            case Found():
+            case events.Found():
                 self.nodes += event.nodes
-            case SessionEnd():
+            case events.SessionEnd():
                 self.ended = True
 
     def forget(self) -> None:
@@ -142,9 +124,9 @@ class Children:
         self._folder, self._key = os.path.join(home, FOLDER), key
         self._readers: dict[str, EventReader] = {}
 
-    def read(self) -> list[Event]:
+    def read(self) -> list[events.Event]:
         """Sort in what is new, and return it."""
-        found: list[Event] = []
+        found: list[events.Event] = []
         for name in [*self._readers, *(name for name in self._names() if name not in self._readers)]:
             for event in self._new_in(name):
                 self._take(name, event)
@@ -153,10 +135,10 @@ class Children:
             self._note("one of them could not write what it had to tell; is the disk full?")
         return found
 
-    def _take(self, name: str, event: Event) -> None:
-        if isinstance(event, Untrusted):
+    def _take(self, name: str, event: events.Event) -> None:
+        if isinstance(event, events.Untrusted):
             self._note(event.reason)
-        elif isinstance(event, Began):
+        elif isinstance(event, events.Began):
             if str(event.pid) != name.partition("-")[0] or name in self.records:
                 self._note(f"{name} was not begun by its process")
             elif event.unable is None:
@@ -172,7 +154,7 @@ class Children:
             files = []
         return [file for file in files if file.endswith(SUFFIX) and file[0].isdigit()]
 
-    def _new_in(self, name: str) -> list[Event]:
+    def _new_in(self, name: str) -> list[events.Event]:
         """The new events of a process, which may be in the midst of writing one."""
         path = os.path.join(self._folder, name)
         reader = self._readers.setdefault(name, EventReader(path, self._key))
@@ -200,16 +182,18 @@ def acted_in(records: Collection[ChildRecord]) -> list[str]:
     return list(dict.fromkeys(test for record in records for test in record.acted))
 
 
-def fold_fork(events: Sequence[Event], exit_code: int, died: BranchDied | None) -> list[Event]:
+def fold_fork(
+    seen: Sequence[events.Event], exit_code: int, died: events.BranchDied | None
+) -> list[events.Event]:
     """What is to be known of a fork that has ended, by its events and its parent's word of how it ended."""
-    found: list[Event] = [
-        replace(event, exit_code=exit_code) if isinstance(event, BranchFinished) else event
-        for event in events
-        if not isinstance(event, Acted)
+    found: list[events.Event] = [
+        replace(event, exit_code=exit_code) if isinstance(event, events.BranchFinished) else event
+        for event in seen
+        if not isinstance(event, events.Acted)
     ]
     if died is None:
         return found
-    told = [event.in_call for event in events if isinstance(event, Acted)]
+    told = [event.in_call for event in seen if isinstance(event, events.Acted)]
     calls = [one for one in told if one is not None]
     return [*found, replace(died, acted=None in told, in_mutated_call=calls[-1:] == [True])]
 
@@ -227,13 +211,13 @@ class Known:
     """
 
     job: Job
-    index_of: Callable[[SiteSeen], int]
+    index_of: Callable[[events.SiteSeen], int]
     has_acted: bool = False
     codes: Mapping[int, int] = field(default_factory=dict)
     signalled: Collection[int] = ()
 
 
-def fold(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
+def fold(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
     """The end of a test, as the test process alone would tell it, with what the others told during it."""
     if not records:
         return end
@@ -242,13 +226,13 @@ def fold(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
     return _with_ends(end, records, known)
 
 
-def calls_of(records: Sequence[ChildRecord], known: Known) -> Iterator[tuple[int, Called]]:
+def calls_of(records: Sequence[ChildRecord], known: Known) -> Iterator[tuple[int, events.Called]]:
     """The calls of each process in their order, one process after the other, each with its site."""
     for one in records:
         yield from ((known.index_of(one.sites[call.site]), call) for call in one.called)
 
 
-def _with_calls(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
+def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
     called = list(calls_of(records, known))
     trace = [*end.trace, *((site, call.written, call.read, call.answer) for site, call in called)]
     used = [one.used for one in records if one.used is not None]
@@ -258,15 +242,15 @@ def _with_calls(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> T
         end,
         refused_calls=(*end.refused_calls, *((site, number) for site, number in noted if number is not None)),
         live=tuple(sorted({*end.live, *(site for site, number in noted if number is None)})),
-        trace=tuple(trace[:TRACE_LIMIT]) if known.job.record else (),
-        truncated=end.truncated or len(trace) > TRACE_LIMIT,
+        trace=tuple(trace[: events.TRACE_LIMIT]) if known.job.record else (),
+        truncated=end.truncated or len(trace) > events.TRACE_LIMIT,
         operations=end.operations + max(len(called), sum(one.operations for one in used)),
         commands=end.commands + sum(one.commands for one in used),
         simulated=max((time for time in times if time is not None), default=None),
     )
 
 
-def _with_deeds(end: TestEnd, did: list[Did]) -> TestEnd:
+def _with_deeds(end: events.TestEnd, did: list[events.Did]) -> events.TestEnd:
     """What the mutant did in all processes together."""
     if not did:
         return end
@@ -289,7 +273,7 @@ def _with_deeds(end: TestEnd, did: list[Did]) -> TestEnd:
     return end
 
 
-def _with_ends(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
+def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
     """What became of the processes, as far as it decides about the test."""
     raised = [one.raised for one in records if one.raised is not None]
     failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
@@ -311,7 +295,7 @@ def _with_ends(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> Te
     return end
 
 
-def _lost(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> str | None:
+def _lost(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> str | None:
     """Why a failed test says nothing about the mutant, or None."""
     for one in records:
         code = known.codes.get(one.began.pid)

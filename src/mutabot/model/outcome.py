@@ -120,24 +120,6 @@ class Apart:
 
 
 @frozen
-class Near:
-    """How near something came to something that never moves.
-
-    Attributes:
-        body, obstacle: which.
-        distance: m; 0 if they overlapped. Boxes are taken as they stand, whichever way they are turned.
-        at: when, s.
-        original: the least distance in the original, m.
-    """
-
-    body: str
-    obstacle: str
-    distance: float
-    at: float
-    original: float
-
-
-@frozen
 class Diverged:
     """How the world of one test differs from the original's.
 
@@ -148,7 +130,6 @@ class Diverged:
         what: what differed then.
         story: what happened, in a sentence.
         apart: what was apart by more than its tolerance, worst first.
-        near: closest approaches that are closer than in the original, closest first.
         fault: when the mutant changed something for the first time, s; None if that is not known.
         is_simulated: whether times are simulated; else they are of the wall clock.
     """
@@ -158,7 +139,6 @@ class Diverged:
     what: str
     story: str
     apart: tuple[Apart, ...] = ()
-    near: tuple[Near, ...] = ()
     fault: float | None = None
     is_simulated: bool = True
 
@@ -258,7 +238,6 @@ class Outcome:
             the first at most.
         commands: operations with which the deciding test had commanded the robot until it ended; None if
             that is not known.
-        stuck: where it was when its wall-clock time was up: its innermost calls; None if that is not known.
         repeats: how often it was run once more in a fresh process and had the same verdict.
         beside: how it had ended before, beside other processes on a busy machine, if the wall clock had ended
             it and it was run once more alone; else None.
@@ -298,7 +277,6 @@ class Outcome:
     complete: bool = False
     kills: tuple[Kill, ...] = ()
     commands: int | None = None
-    stuck: str | None = None
     repeats: int = 0
     beside: str | None = None
     looked: tuple[Looked, ...] = ()

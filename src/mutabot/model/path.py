@@ -115,10 +115,7 @@ class Path:
         except (TypeError, AttributeError, ValueError, AssertionError, OverflowError) as error:
             # messages of ROS 2 assert that a value is of the type of its field
             raise PathError(
-                f"cannot replace {step} of {type(value).__name__} (path {self}): {error}",
-                path=str(self),
-                step=str(step),
-                found=type(value).__name__,
+                f"cannot replace {step} of {type(value).__name__} (path {self}): {error}", step=str(step)
             ) from error
 
     def _advance(self, value: Any, step: Step) -> Any:
@@ -133,9 +130,7 @@ class Path:
             hint = f"; did you mean {near!r}?" if near else f"; it has {', '.join(known[:8]) or 'no parts'}"
             raise PathError(
                 f"{str(self) or 'the value'}: {type(value).__name__} has no {step}{hint}",
-                path=str(self),
                 step=str(step),
-                found=type(value).__name__,
                 known=known,
             ) from error
 

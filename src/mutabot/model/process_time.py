@@ -1,29 +1,20 @@
-"""Measure how much time a process has used on a shared machine, and find where it hangs.
+"""Measure how much time a process has used on a shared machine.
 
 Time for which its tasks waited for a processor does not count. So a limit of wall clock means the same on a
 busy machine as on a quiet one, as far as the kernel keeps accounts: a task that waits for a message asks for
 nothing; one that wants to compute and has no processor looks just as idle to a plain clock.
-
-A process that hangs writes its stack into a file when it gets a signal, before it is ended.
 """
 
 from __future__ import annotations
 
 import os
-import re
-import signal
-import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
-from itertools import takewhile
-from pathlib import Path
 from time import monotonic  # before a simulation takes over the clock
 
 from mutabot.frozen import frozen
 
-#: states of a task that asks for the machine: it can run, or waits for a disk
-_ASKING = frozenset("RD")
 _PRESSURE = "/proc/pressure/cpu"
 
 
@@ -34,12 +25,10 @@ class Account:
     Attributes:
         ran: seconds on a processor.
         queued: seconds for which it could have run and had none.
-        is_asking: whether it asks for the machine right now.
     """
 
     ran: float
     queued: float
-    is_asking: bool = False
 
 
 #: by the number of the task; None where the kernel keeps no such accounts
@@ -61,10 +50,8 @@ def accounts_of(processes: Iterable[int]) -> Accounts:
     for pid in processes:
         for task in _names(f"/proc/{pid}/task"):
             with suppress(OSError, IndexError, ValueError):
-                folder = f"/proc/{pid}/task/{task}"
-                ran, queued = _read(f"{folder}/schedstat").split()[:2]
-                state = _read(f"{folder}/stat").rpartition(")")[2].split()[0]
-                found[int(task)] = Account(int(ran) * 1e-9, int(queued) * 1e-9, state in _ASKING)
+                ran, queued = _read(f"/proc/{pid}/task/{task}/schedstat").split()[:2]
+                found[int(task)] = Account(int(ran) * 1e-9, int(queued) * 1e-9)
     return found
 
 
@@ -191,63 +178,3 @@ class TimeUsed:
         pairs = [(before.get(task, _NONE), account) for task, account in found.items()]
         ran = sum(account.ran - first.ran for first, account in pairs)
         return ran, sum(account.queued - first.queued for first, account in pairs)
-
-
-#: the signal, one that programs leave alone, and the file in the process's home
-SIGNAL, FILE = signal.SIGRTMAX - 2, "stack.txt"
-#: seconds to wait for a stack; a process that blocks the signal gives none
-_PATIENCE, _STEP = 0.5, 0.02
-#: innermost calls to name
-_CALLS = 5
-_FRAME = re.compile(r'  File "(?P<file>.*)", line (?P<line>\d+) in (?P<function>.*)')
-_RUNNER = re.compile(r"/(_pytest|pluggy)/")
-#: the inside, and the packages beside the core
-_OURS = re.compile(rf"/mutabot/runtime/|{re.escape(str(Path(__file__).parents[2]))}/mutabot_|<frozen ")
-
-
-def ask(pid: int, file: str, root: str) -> str | None:
-    """Where this process is, in words; None if it does not say. It must have arranged for the signal.
-
-    Args:
-        pid: the process.
-        file: the file that it writes its stack to.
-        root: the project's folder.
-    """
-    before = _size(file)
-    try:
-        os.kill(pid, SIGNAL)
-    except (ProcessLookupError, PermissionError):
-        return None
-    until = time.monotonic() + _PATIENCE
-    seen = before
-    while time.monotonic() < until:
-        time.sleep(_STEP)
-        size = _size(file)
-        if size > before and size == seen:
-            break
-        seen = size
-    if seen == before:
-        return None
-    return calls_in_words(Path(file).read_bytes()[before:].decode("utf-8", "replace"), root)
-
-
-def calls_in_words(text: str, root: str) -> str | None:
-    """The innermost calls of the user's in what ``faulthandler`` wrote, innermost first."""
-    current = text.rpartition("Current thread")[2]
-    frames = [match for line in current.splitlines() if (match := _FRAME.fullmatch(line)) is not None]
-    below = takewhile(lambda frame: not _RUNNER.search(frame["file"]), frames)
-    users = [frame for frame in below if not _OURS.search(frame["file"])]
-    calls = [f"{_short(frame['file'], root)}:{frame['line']} {frame['function']}" for frame in users[:_CALLS]]
-    return ", called from ".join(calls) or None
-
-
-def _short(file: str, root: str) -> str:
-    inside = file.startswith(root.rstrip(os.sep) + os.sep)
-    return os.path.relpath(file, root) if inside else Path(file).name
-
-
-def _size(file: str) -> int:
-    try:
-        return Path(file).stat().st_size
-    except OSError:
-        return 0

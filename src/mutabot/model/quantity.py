@@ -193,7 +193,7 @@ class Quantity:
         """
         value = self.path.get(start)
         if self.values is not None and is_member(value):
-            return written_of(value, self.values, self.name)
+            return written_of(value, self.values)
         if self.is_whole:
             return numbers_of(value, self._parts)
         return seconds_of(value) if self.kind is Kind.STAMP else value

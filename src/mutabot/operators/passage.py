@@ -42,8 +42,7 @@ def run(coroutine: Coroutine[Any, Any, T], *, operator: str) -> T:
     coroutine.close()
     raise OperatorError(
         f"operator {operator!r} waits for something in a plain call; "
-        "it may await proceed and call.current only",
-        operator=operator,
+        "it may await proceed and call.current only"
     )
 
 

@@ -55,7 +55,7 @@ def names() -> list[str]:
     for part in brought("operators").values():
         if part.name in own:
             text = f"operator {part.name!r} of package {part.owner!r} has the name of one of 'mutabot'"
-            raise OperatorError(text, operator=part.name)
+            raise OperatorError(text)
         found.append(part.name)
     return found
 
@@ -89,8 +89,8 @@ def operator(name: str) -> Operator:
         try:
             return part.make(Operator)  # type: ignore[type-abstract]
         except ExtensionError as error:
-            raise OperatorError(f"operator {error}", operator=name) from error
-    raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
+            raise OperatorError(f"operator {error}") from error
+    raise OperatorError(unknown_name_text("operator", name, names()))
 
 
 @cache

@@ -163,7 +163,7 @@ data_of = Encoder(
         Quantity: "kind axis unit frame mode",
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
-        "cpu simulated indistinguishable distance divergence way gaps compared commands engine stuck repeats "
+        "cpu simulated indistinguishable distance divergence way gaps compared commands engine repeats "
         "beside confirmed kills complete looked diverged",
         Diverged: "* worst",
         Score: "score check_score killed valid by_check timeouts counts=of_each",

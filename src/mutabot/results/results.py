@@ -264,17 +264,17 @@ def find_mutant(results: Results, name: str) -> MutantResult:
         if name in (result.mutant.id, str(result.mutant.number)):
             return result
     if not everything:
-        raise SelectionError("the journal holds no mutants", unknown=[name])
+        raise SelectionError("the journal holds no mutants")
     if name.isdigit():
         problem = f"there is no mutant {name}; they are numbered 1 to {everything[-1].mutant.number}"
-        raise SelectionError(problem, unknown=[name])
+        raise SelectionError(problem)
     found = [one for one in everything if name in one.mutant.id or fits(name, one.mutant)]
     if len(found) == 1:
         return found[0]
     if found:
-        raise SelectionError(_several(name, found), unknown=[name])
+        raise SelectionError(_several(name, found))
     problem = unknown_name_text("mutant", name, (result.mutant.id for result in everything))
-    raise SelectionError(problem, unknown=[name])
+    raise SelectionError(problem)
 
 
 def _several(name: str, found: Sequence[MutantResult]) -> str:

@@ -50,8 +50,7 @@ class Inspection:
 
     def path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
         """A path does not fit what a call was given, or what it returned."""
-        # only a path has names to choose from
-        finding = Finding(key, str(error), error.step if error.path else None, error.known)
+        finding = Finding(key, str(error), error.step, error.known)
 
         def tell() -> None:
             if key.partition(".")[2] not in self._fit.get(operation.target, ()):

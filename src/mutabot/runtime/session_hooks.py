@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import faulthandler
 import os
 import sys
 from collections.abc import Generator
@@ -14,7 +13,7 @@ import pytest
 
 from mutabot import extensions
 from mutabot.frozen import compile_all
-from mutabot.model import Mutant, Role, process_time
+from mutabot.model import Mutant, Role
 from mutabot.model.events import SessionEnd, TestEnd
 from mutabot.model.job import Branching, Job, read_job
 from mutabot.operators.registry import preload
@@ -84,7 +83,6 @@ class SessionHooks:
         home = os.path.dirname(job_file)
         job = read_job(home)
         extensions.use(job.extensions)
-        _say_where_on_signal(home)  # before anybody notes which files are open
         if job.memory is not None:
             limit_memory(job.memory)
         # what the program draws while it is imported is the same in all rounds: a server imports it once
@@ -136,12 +134,11 @@ class SessionHooks:
         compile_all()
         log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
         assert isinstance(pipe, EventFile)
-        stack = os.path.join(home, process_time.FILE)
         track_event_loops()
         parent = ForkParent(
             branching, self.job.tests or (), pipe,
             Isolation((log.st_dev, log.st_ino), home, self._files, self._not_private), self._become,
-            lambda pid: process_time.ask(pid, stack, self.job.root), has_nodes, members.have_begun,
+            has_nodes, members.have_begun,
         )  # fmt: skip
         self.session.grow(parent)
 
@@ -265,7 +262,6 @@ class SessionHooks:
             pipe.send(event)
         self._select(session.items)
         _keep_cache_in(session.config, home)
-        _say_where_on_signal(home)
         self._begin(home)
 
     @pytest.hookimpl(tryfirst=True)
@@ -304,10 +300,3 @@ def _keep_cache_in(config: pytest.Config, home: str) -> None:
     cache = getattr(config, "cache", None)
     if cache is not None:
         cache._cachedir = Path(home, "cache")
-
-
-def _say_where_on_signal(home: str) -> None:
-    """Let this process, and its forks, write their stack into their home on ``stack.SIGNAL``."""
-    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
-    descriptor = os.open(os.path.join(home, process_time.FILE), flags, 0o600)
-    faulthandler.register(process_time.SIGNAL, file=descriptor, all_threads=True)

@@ -133,7 +133,6 @@ def test_a_test_that_fails_in_all_rounds_is_an_error(tmp_path: Path, script: Scr
         BaselineError, match="1 test fails on the unmutated program in all 2 rounds"
     ) as caught:
         campaign(tmp_path, engine=engine, rounds=2)
-    assert caught.value.tests == (CHECKS,)
     assert f"repeat by MUTABOT_ROUND=1 pytest -o pythonpath=. {CHECKS}" in str(caught.value)
 
 

@@ -96,7 +96,7 @@ def test_a_test_of_the_trunk_that_cannot_be_used_is_left_to_replay(
 
 def test_an_error_of_the_disk_is_none_of_the_mutant(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(campaign: Any, one: Any) -> Any:
-        raise JournalError("the disk is full", path="journal")
+        raise JournalError("the disk is full")
 
     monkeypatch.setattr(verdict, "judge", full)
     with pytest.raises(JournalError):

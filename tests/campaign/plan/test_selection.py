@@ -59,9 +59,8 @@ def test_a_range_or_line_without_a_mutant_is_an_error(word: str) -> None:
 
 @pytest.mark.parametrize("option", ["only", "skip"])
 def test_a_word_that_fits_nothing_names_the_nearest_that_does(option: str) -> None:
-    with pytest.raises(SelectionError, match=f"--{option}.*'revers'.*'reverse'") as error:
+    with pytest.raises(SelectionError, match=f"--{option}.*'revers'.*'reverse'"):
         select(MUTANTS, **{option: ["revers"]})
-    assert error.value.unknown == ("revers",)
 
 
 def test_a_selection_file_chooses_mutants_which_keep_their_numbers(tmp_path: Path) -> None:
@@ -76,7 +75,7 @@ def test_a_selection_file_with_an_unknown_id_names_the_nearest(tmp_path: Path) -
     file.write_text(f"{REVERSE.id}\n{SKIP.id}x\nnowhere.py:f\n")
     with pytest.raises(SelectionError) as error:
         select(MUTANTS, selection_file=file)
-    assert error.value.unknown == (f"{SKIP.id}x", "nowhere.py:f")
+    assert "'nowhere.py:f'" in str(error.value)
     assert repr(SKIP.id) in str(error.value)
     assert str(file) in str(error.value)
 

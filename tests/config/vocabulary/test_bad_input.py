@@ -586,7 +586,7 @@ def test_all_mistakes_of_a_file_are_told_in_the_order_of_its_lines(tmp_path: Pat
         load(["robot.toml"], tmp_path)
     lines = str(caught.value).splitlines()
     assert [line.split(" · ")[0] for line in lines] == [f"robot.toml:{n}" for n in (1, 4, 4, 5)]
-    assert (caught.value.name, caught.value.nearest) == ("chekcs", "checks")
+    assert "'chekcs'; did you mean 'checks'" in lines[0]
     assert (caught.value.file, caught.value.key, caught.value.line) == ("robot.toml", "chekcs", 1)
 
 
@@ -677,7 +677,7 @@ def test_a_problem_with_a_name_becomes_an_unknown_name_with_its_place() -> None:
     )
     error = problem_error(problem)
     assert isinstance(error, UnknownNameError)
-    assert (error.file, error.line, error.name, error.nearest) == ("robot.toml", 12, "dz", "dx")
+    assert (error.file, error.line) == ("robot.toml", 12)
     assert str(error) == (
         "robot.toml:12 · robot:Arm.move · arguments.dz: "
         "robot:Arm.move has no argument 'dz'; did you mean 'dx'?"

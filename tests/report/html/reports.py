@@ -12,7 +12,7 @@ from typing import Any
 import mutabot
 from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, Track, TrackKind, to_bytes
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
-from mutabot.model.outcome import Apart, Diverged, Near
+from mutabot.model.outcome import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.texts import Cleaner, portable
 from mutabot.results.stored import StoredEvidence
@@ -64,8 +64,9 @@ def campaign(folder: Path, *, name: str = "box", **options: Any) -> tuple[Path, 
         Apart("box", "m", 5.0, 0.2, 5.0, 0.2, 0.2, 0.001),
         Apart("tool turned", "deg", 5.0, 2.0, 5.0, 0.0, None, 0.5),
     )
-    diverged = Diverged(samples.TEST, 5.0, f"{name} is not where it is", f"{name} slipped at 5.0 s", apart,
-                        (Near(name, "table", 0.01, 5.0, 0.1),), 5.0)  # fmt: skip
+    diverged = Diverged(
+        samples.TEST, 5.0, f"{name} is not where it is", f"{name} slipped at 5.0 s", apart, 5.0
+    )
     outcomes = options.pop("outcomes", samples.OUTCOMES)
     outcomes = tuple(
         replace(one, diverged=(diverged,), looked=samples.LOOKED)

@@ -25,7 +25,7 @@ from mutabot.campaign.comparison import strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.vocabulary import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.execution.task import ABNORMAL, Executor, Result, Task, at, death, said_in
+from mutabot.execution.task import ABNORMAL, Executor, Result, Task, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
 from mutabot.model import Instrumentation, Span
@@ -80,10 +80,7 @@ def refuse_failing(request: Request, failing: Failing) -> None:
     more = f"\n  … and {len(found) - 10} more" if len(found) > 10 else ""
     noun = "test fails" if len(found) == 1 else "tests fail"
     again = f"\nrepeat by {repeat_command(request, 0, found[0].test)}"
-    raise BaselineError(
-        f"{len(found)} {noun} on the unmutated program {where}:\n{shown}{more}{again}",
-        tests=[end.test for end in found],
-    )
+    raise BaselineError(f"{len(found)} {noun} on the unmutated program {where}:\n{shown}{more}{again}")
 
 
 def _first_line(end: TestEnd) -> str:
@@ -252,7 +249,6 @@ def _read(
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:
     """Stop at once if this run of the suite cannot be a baseline."""
-    running = [result.running] if result.running is not None else []
     if result.problems:
         errors = [problem_error(problem) for problem in result.problems]
         if len(errors) > 1:
@@ -261,12 +257,11 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
     if result.untrusted is not None:
         raise BaselineError(
             f"the tests cannot be run on the original: {result.untrusted}; do they write to descriptors that "
-            "they have not opened, or delete .mutabot?",
-            tests=running,
+            "they have not opened, or delete .mutabot?"
         )
     if result.end is None:
-        text = f"the tests cannot be run on the original: {death(result, said=False)}{at(result)}"
-        raise BaselineError(f"{text}{said_in(result.log)}", tests=running)
+        text = f"the tests cannot be run on the original: {death(result, said=False)}"
+        raise BaselineError(f"{text}{said_in(result.log)}")
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
     how = ABNORMAL.get(result.end.exit_status)
@@ -278,8 +273,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
     broken = [end for end in result.ends if end.failure is not None and end.outcome == "failed"]
     if broken:
         raise BaselineError(
-            f"{broken[0].test}: {broken[0].failure}; the original must run before mutants can",
-            tests=[end.test for end in broken],
+            f"{broken[0].test}: {broken[0].failure}; the original must run before mutants can"
         )
 
 

@@ -78,8 +78,7 @@ class Control:
             return None
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
             return f"the test passes although the {provider(self.provider).location} raises"
-        where = f"; it was at {outcome.stuck}" if outcome.stuck is not None else ""
-        return f"{outcome.verdict}: {outcome.message or 'it changed something'}{where}"
+        return f"{outcome.verdict}: {outcome.message or 'it changed something'}"
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
@@ -151,9 +150,7 @@ def settled(
     if wrong is not None:
         raise ControlError(
             f"the {control.name} control of {control.subject} at {control.place.site.place} ended wrongly: "
-            f"{wrong}; no verdict of this campaign could be believed",
-            control=control.name,
-            test_file=control.tests[0].partition("::")[0],
+            f"{wrong}; no verdict of this campaign could be believed"
         )
     campaign.proven.add((engine, *control.way))
 

@@ -16,7 +16,7 @@ from mutabot.campaign.baseline.baseline import observation, place_of
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.request import BRANCH
 from mutabot.campaign.verdict import Death, Run, judged, not_judged, refuse_others
-from mutabot.execution.task import Result, Task, at, death, how_ended
+from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.model import Instrumentation, Mutant, Outcome
 from mutabot.model.events import (
@@ -263,9 +263,7 @@ class _ForkParent:
     def finish(self, result: Result) -> Iterator[Outcome]:
         """The process is gone: settle what can be settled, and leave the rest to replay."""
         if result.end is None:
-            self._left.notes.append(
-                f"the fork parent of round {self._round + 1} died: {death(result)}{at(result)}"
-            )
+            self._left.notes.append(f"the fork parent of round {self._round + 1} died: {death(result)}")
         is_whole = len(self._own_ends) == len(self._tests) and not self._is_off
         simulated = [end.simulated for end in self._own_ends if end.simulated is not None]
         for fork in list(self._open.values()):
@@ -348,7 +346,6 @@ def _death_of(event: BranchDied) -> Death:
         overdue=event.overdue is not None,
         acted=event.acted,
         in_mutated_call=event.in_mutated_call,
-        where=event.where,
         hindered=event.hindered,
         is_starved=event.is_starved,
     )

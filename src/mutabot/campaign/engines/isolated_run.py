@@ -171,7 +171,6 @@ def _death(result: Result, tests: Collection[str]) -> Death | None:
         overdue=result.overdue is not None and (result.running is not None or "" in result.acted),
         acted=not {result.running, ""}.isdisjoint(result.acted),
         in_mutated_call=result.in_mutated_call,
-        where=result.where,
         hindered=result.hindered,
         is_starved=result.is_starved,
     )

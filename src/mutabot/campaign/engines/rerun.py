@@ -301,7 +301,7 @@ def refuse_flaky(request: Request, baseline: Baseline) -> None:
     """Raise UnstableError if more tests are flaky than the configuration allows."""
     flaky, limit = flaky_of(baseline), request.configuration.unstable_limit
     if flaky.share > limit:
-        raise UnstableError(flaky.text(limit), tests=[test for _, test in baseline.unstable])
+        raise UnstableError(flaky.text(limit))
 
 
 def clear_up(campaign: Campaign, suspects: Iterable[tuple[int, str]]) -> None:

@@ -210,9 +210,7 @@ def _subjects(
         try:
             subjects = list(rule.subjects(operation, pattern))
         except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
-            raise OperatorError(
-                f"operator {rule.name!r} fails on {operation.target}: {error!r}", operator=rule.name
-            ) from error
+            raise OperatorError(f"operator {rule.name!r} fails on {operation.target}: {error!r}") from error
         for subject in subjects:
             yield subject, rule
 
@@ -320,7 +318,7 @@ def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middlewar
         raise
     except Exception as error:  # as above: a plug-in's own fault
         raise OperatorError(
-            f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}", operator=rule.name
+            f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}"
         ) from error
     _check_promises(rule, subject, passage)
     return passage
@@ -334,7 +332,7 @@ def _check_promises(rule: Operator, subject: Subject, passage: CallRecord) -> No
         broken = "answers with call.idle, but Need.IDLE is none of its needs"
     if broken is not None:
         text = f"operator {rule.name!r} {broken} (on {subject.operation.target})"
-        raise OperatorError(text, operator=rule.name)
+        raise OperatorError(text)
 
 
 def _value(subject: Subject, hit: Hit) -> Any:

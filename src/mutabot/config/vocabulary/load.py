@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mutabot.config.document import Document
 from mutabot.config.mistakes import DocumentPlace, raise_errors
-from mutabot.errors import ConfigurationError, UnknownNameError
+from mutabot.errors import ConfigurationError, UnknownNameError, unknown_name_text
 from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
 from mutabot.faults import need_vocabulary
@@ -134,7 +134,7 @@ def _find(name: str, root: Path) -> tuple[Document, bool]:
     file = _shipped_files().get(name)
     if file is not None:
         return Document.read(file, name), True
-    raise UnknownNameError("vocabulary", name, _known_names(root))
+    raise UnknownNameError(unknown_name_text("vocabulary", name, _known_names(root)))
 
 
 def _known_names(root: Path) -> Iterable[str]:

@@ -159,9 +159,6 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
         at = f" at {diverged.at:.1f} s{clock}" if diverged.at is not None else ""
         fault = f" The fault acts at {diverged.fault:.1f} s." if diverged.fault is not None else ""
         yield f"First difference{at}: {diverged.what}.{fault}"
-    for one in diverged.near[:2]:
-        least = f"{1e3 * one.distance:.0f} mm, in the original {1e3 * one.original:.0f} mm"
-        yield f"Closest approach of {one.body} to {one.obstacle}: {least}, at {one.at:.1f} s."
 
 
 def _looked(result: MutantResult) -> Iterator[Section]:

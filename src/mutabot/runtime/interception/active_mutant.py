@@ -313,7 +313,7 @@ class _MutatedCall:
         if self.does_nothing:
             name = mutant.mutant.operator
             mutant.evidence.failure = f"operator {name} is to do nothing, but would have made the call"
-            raise OperatorError(mutant.evidence.failure, operator=name)
+            raise OperatorError(mutant.evidence.failure)
         is_changed = self.passage.changed_command
         mutant.count(call)
         if is_changed:

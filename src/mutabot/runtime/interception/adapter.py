@@ -303,8 +303,8 @@ class Adapter:
                 text = f"{argument} is {found[-1]}, for which mode says nothing; it knows {', '.join(known)}"
                 self._tell("mode", text)
 
-    def _tell(self, key: str, text: str, step: str = "") -> None:
-        self.on_problem(key, PathError(text, path="", step=step, found=""))
+    def _tell(self, key: str, text: str) -> None:
+        self.on_problem(key, PathError(text))
 
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
@@ -371,7 +371,7 @@ class Adapter:
         """Tell of a coroutine that nobody awaits, and of a call that went well against its signature."""
         if inspect.iscoroutine(result):
             text = f"{self.operation.target} returns a coroutine but is no coroutine function"
-            self._tell("call", f"{text}; name the coroutine function behind it", step="call")
+            self._tell("call", f"{text}; name the coroutine function behind it")
         if invocation.values is None and self.operation.signature is not None:
             given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
             text = f"{self.operation.signature} does not take the call ({', '.join(given)})"

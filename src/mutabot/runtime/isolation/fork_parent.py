@@ -62,7 +62,7 @@ class Child:
         limit: the seconds it was given for that test.
         used: how much of them it has used.
         until: moment (``time.monotonic``) at which its time is up.
-        overdue, where: whether its time was up, and where it was then.
+        overdue: whether its time was up.
         hindered, is_starved: as in ``BranchDied``.
     """
 
@@ -75,7 +75,6 @@ class Child:
     used: TimeUsed
     until: float
     overdue: bool = False
-    where: str | None = None
     hindered: str | None = None
     is_starved: bool = False
 
@@ -102,7 +101,6 @@ class ForkParent:
         pipe: the file of events.
         isolation: how a child is kept apart from this process.
         become: called in a child, with its mutant and its folder: it goes on as that mutant.
-        where_is: tells where a process is, in words, or None.
         has_nodes: whether nodes below a child would meet those below others.
         has_started: whether processes of the program were started, which have run it as the original.
         is_moment: whether a mutant acts at a call, given the call's number among those of its site in the
@@ -114,7 +112,6 @@ class ForkParent:
     pipe: EventFile
     isolation: Isolation
     become: Callable[[Mutant, str], None]
-    where_is: Callable[[int], str | None] = lambda _: None
     has_nodes: bool = False
     has_started: Callable[[], bool] = lambda: False
     is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
@@ -354,7 +351,6 @@ class ForkParent:
             self._note_progress(child, now)
             if child.is_out_of_time(now):
                 child.overdue = True
-                child.where = self.where_is(child.pid)
                 os.kill(child.pid, signal.SIGKILL)
         for descriptor in ready:
             ended = self._children.pop(descriptor, None)
@@ -383,6 +379,6 @@ class ForkParent:
             test = self._name_of(self._tests[slot])
             died = BranchDied(
                 child.mutant, test, code, overdue(child.limit, test) if child.overdue else None,
-                where=child.where, hindered=child.hindered, is_starved=child.is_starved,
+                hindered=child.hindered, is_starved=child.is_starved,
             )  # fmt: skip
         self.pipe.send(ForkEnded(child.fork, code, died))

@@ -125,7 +125,7 @@ class ClockReader:
                 why = f"{tick} has no argument {root!r}; it has {', '.join(known)}"
             except (TypeError, ValueError):
                 why = f"{tick} does not tell its arguments"
-        raise PathError(why, path=self.clock.time, step=root, found="", known=known)
+        raise PathError(why, step=root, known=known)
 
     def _wrong(self, text: str) -> None:
         self.on_problem(

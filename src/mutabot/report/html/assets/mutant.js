@@ -38,8 +38,8 @@
     return () => { gone = true; stops.forEach((stop) => stop()); };
   });
 
-  const NOTHING = { test: null, exception: null, message: null, place: null, away: {}, example: null, divergence: [], gaps: [], indistinguishable: null, repeats: 0, stuck: null, beside: null, kills: [], diverged: [], looked: [] };
-  const ALIKE = { at: null, what: "", story: "", apart: [], near: [], fault: null };
+  const NOTHING = { test: null, exception: null, message: null, place: null, away: {}, example: null, divergence: [], gaps: [], indistinguishable: null, repeats: 0, beside: null, kills: [], diverged: [], looked: [] };
+  const ALIKE = { at: null, what: "", story: "", apart: [], fault: null };
   /** The data of the page, with what they leave out where nothing is to be said. */
   function whole(one, page) {
     const { recordings, without } = mutabot.taken(`recordings ${one.number}`) || { recordings: [], without: 0 };
@@ -200,19 +200,11 @@
   }
 
   function apart(diverged) {
-    if (!diverged || !(diverged.apart.length || diverged.near.length)) return "";
-    const box = h("div", { class: "columns" });
-    if (diverged.apart.length) {
-      box.append(h("div", null, h("h3", null, "How far apart"), h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "How far apart" }, h("table", null,
+    if (!diverged || !diverged.apart.length) return "";
+    return h("div", { class: "columns" }, h("div", null, h("h3", null, "How far apart"), h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "How far apart" }, h("table", null,
         h("thead", null, h("tr", null, ["", "first", "largest", "at", "at the end", "off its way"].map((name, index) => h("th", { scope: "col", class: index ? "n" : null }, name || h("span", { class: "unseen" }, "what"))))),
         h("tbody", null, diverged.apart.map((each) => h("tr", null, h("th", { scope: "row" }, each.name), h("td", { class: "n" }, `${number(each.first, 3)} s`), h("td", { class: "n" }, amount(each.largest, each.unit)),
           h("td", { class: "n" }, `${number(each.at, 3)} s`), h("td", { class: "n" }, amount(each.final, each.unit)), h("td", { class: "n" }, each.aside === null || each.aside === undefined ? "–" : amount(each.aside, each.unit)))))))));
-    }
-    if (diverged.near.length) {
-      box.append(h("div", null, h("h3", null, "Closer to obstacles than in the original"), h("ul", { class: "plain" }, diverged.near.map((each) => h("li", null,
-        `${each.body} came within ${amount(each.distance, "m")} of ${each.obstacle} at ${number(each.at, 3)} s; in the original ${amount(each.original, "m")}`)))));
-    }
-    return box;
   }
 
   // Who looked, suggestion, rounds
@@ -279,8 +271,7 @@
       values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
         h("tbody", null, those.map((each) => [each, page.rounds[each]]).filter(([, each]) => each && each.example && each.example.length === 2).map(([each, found]) => h("tr", null, h("td", { class: "n" }, each + 1), h("td", { class: "n" }, value(found.example[0], one.unit)), h("td", { class: "n" }, value(found.example[1], one.unit))))))) : null,
       h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, `${count(outcome.tests, "test")} run`, outcome.indistinguishable && "no measured difference",
-        `${number(outcome.wall, 2)} s`, outcome.confirmed === false ? "not confirmed by the whole suite" : null, outcome.repeats ? `re-run ${count(outcome.repeats, "time")} with the same result` : null, outcome.beside ? `re-run alone, because beside others it exceeded the wall clock: ${outcome.beside}` : null, ...Object.entries(outcome.away).map(([why, many]) => `left ${count(many, "call")} unchanged: ${why}`)].filter(Boolean).join(" · ")),
-      outcome.stuck ? h("pre", { tabindex: "0", "aria-label": "Where it was stuck" }, outcome.stuck) : null);
+        `${number(outcome.wall, 2)} s`, outcome.confirmed === false ? "not confirmed by the whole suite" : null, outcome.repeats ? `re-run ${count(outcome.repeats, "time")} with the same result` : null, outcome.beside ? `re-run alone, because beside others it exceeded the wall clock: ${outcome.beside}` : null, ...Object.entries(outcome.away).map(([why, many]) => `left ${count(many, "call")} unchanged: ${why}`)].filter(Boolean).join(" · ")));
   }
   const value = (found, unit) => `${typeof found === "number" ? number(found, 7) : String(found)}${unit && typeof found === "number" ? ` ${unit}` : ""}`;
 })();
