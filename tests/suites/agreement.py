@@ -25,6 +25,7 @@ from mutabot.runtime.seeds import derive
 from .editor import Facts
 from .graded_editor import OPERATORS as GRADED_OPERATORS
 from .judge import IGNORED, MORE_DRAWS, Judge, Judgement, is_drawn, is_raced
+from .message_editor import is_named
 
 ENGINES = ("branch", "replay")
 PROJECTS = Path(__file__).resolve().parent / "projects"
@@ -227,14 +228,18 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Mutants of calls that the plan leaves out because they would change nothing, where they stand.
 
     The place is that of another mutant of the same call. Without one, and in text commands, it is not known.
+    One call of the program may set up a publisher and publish: its description says which of them is meant.
     """
-    places = {one["id"].rpartition(":")[0].rpartition(":")[0]: one for one in data["mutants"]}
+    places: dict[str, list[dict[str, Any]]] = {}
+    for one in data["mutants"]:
+        places.setdefault(one["id"].rpartition(":")[0].rpartition(":")[0], []).append(one)
     for item in data["left_out"]:
         subject, _, operator = item["id"].rpartition(":")
         if operator.partition("=")[0] in GRADED_OPERATORS:
             continue  # its magnitude is not told
         site, _, quantity = subject.rpartition(":")
-        other = places.get(site)
+        others = places.get(site, [])
+        other = next((one for one in reversed(others) if not is_named(one) or _is_about(item, one)), None)
         if (
             other
             and other["operation"]
@@ -254,6 +259,12 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
                 "rounds": [{"verdict": LEFT_OUT}],
                 **changed,
             }
+
+
+def _is_about(item: Mapping[str, Any], mutant: Mapping[str, Any]) -> bool:
+    """Whether what is left out is about the same name, in the same way, as a mutant."""
+    told = item["description"].partition(": ")[0]
+    return told.partition(" of ")[0] == str(mutant["operation"]).partition(" of ")[0]
 
 
 def verdict(

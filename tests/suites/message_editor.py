@@ -22,6 +22,8 @@ _ENTRIES = {"publish": ("topic", "fields"), "receive": ("topic", "fields"), "cal
 #: by form that sets something up: where the name stands among the arguments of ROS 1 and ROS 2
 _NAMES = {"advertise": ((0, "name"), (1, "topic")), "subscribe": ((0, "name"), (1, "topic")),
           "client": ((0, "name"), (1, "srv_name"))}  # fmt: skip
+#: by variant of wrong-deadline: seconds
+_DEADLINES = {"tight": 0.001, "none": None}
 
 
 def edits_of(facts: Facts, mutant: Mapping[str, Any]) -> list[Edit]:
@@ -168,7 +170,9 @@ class MessageEditor:
         return f"{MESSAGES}.{'quality(depth=1)' if self._is_ros2() else 'with_settings(queue_size=1)'}"
 
     def _flip_latch(self) -> str:
-        return f"{MESSAGES}.with_settings(latch=True)"
+        if self._is_ros2():
+            raise CannotWriteError("ROS 2 has no latch")
+        return f"{MESSAGES}.other_latch"
 
     def _wrong_reliability(self) -> str:
         return f"{MESSAGES}.other_quality('reliability', 'RELIABLE', 'BEST_EFFORT')"
@@ -177,7 +181,7 @@ class MessageEditor:
         return f"{MESSAGES}.other_quality('durability', 'VOLATILE', 'TRANSIENT_LOCAL')"
 
     def _wrong_deadline(self) -> str:
-        return f"{MESSAGES}.other_deadline(0.001)"
+        return f"{MESSAGES}.with_deadline({_DEADLINES[self.variant]})"
 
     # what they are made of
 

@@ -8,6 +8,7 @@ in its place.
 from __future__ import annotations
 
 import copy
+import functools
 import itertools
 import os
 import queue
@@ -17,6 +18,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,14 +30,59 @@ Wrapper = Callable[[Any], Any]
 Clock = Callable[[], float] | None
 
 _RANDOM = random.Random(int(os.environ.get("JUDGE_NOISE", "1")))
+#: where ``latch`` stands among the arguments of ``rospy.Publisher``
+_LATCH = 4
 #: which sites are being called now
 _armed: list[str] = []
-#: the site, if its command was the last of its kind
-_watched: list[str] = []
 #: calls of the mutated site until now, what they were given or brought, and what is held back
 _count = itertools.count(1)
 _earlier: list[Any] = []
 _held: list[Any] = []
+
+
+@dataclass
+class _Watch:
+    """Whose answers come now: the mutated command's, until the program gives the next one of its kind.
+
+    A mutated command may be sent several times. If only some of these were answered when the program gives
+    the next command, the others are answered first.
+    """
+
+    is_on: bool = False
+    is_past: bool = False
+    sent: int = 0
+    heard: int = 0
+
+    def begin(self) -> None:
+        """The mutated command is given."""
+        if not self.is_on:
+            self.sent = self.heard = 0
+        self.is_on, self.is_past = True, False
+
+    def pass_by(self) -> None:
+        """Another command of its kind is given."""
+        self.is_past = True
+        self.is_on = self.is_on and 0 < self.heard < self.sent
+
+    def hear(self) -> None:
+        """An answer has come."""
+        self.heard += 1
+        self.is_on = self.is_on and not (self.is_past and self.heard >= self.sent)
+
+    def counting(self, function: Any) -> Any:
+        """``function`` that counts how often it is called; it belongs to what it belonged to."""
+
+        @functools.wraps(function)
+        def called(*given: Any, **named: Any) -> Any:
+            self.sent += 1
+            return function(*given, **named)
+
+        if hasattr(function, "__self__"):
+            called.__self__ = function.__self__  # type: ignore[attr-defined]
+        return called
+
+
+_watch = _Watch()
 
 
 def armed(site: str, function: Any) -> Any:
@@ -56,20 +103,21 @@ def only_below(site: str, function: Any, wrapper: Wrapper) -> Any:
 
     What is refused from now on is the mutated command, until the next one of the kind.
     """
-    _watched.clear()
     if site not in _armed:
+        _watch.pass_by()
         return function
-    _watched.append(site)
-    return wrapper(function)
+    _watch.begin()
+    return wrapper(_watch.counting(function))
 
 
 def hearing(callback: Any, is_refused: Callable[[Any], bool]) -> Any:
     """A callback that notes when a message says that the robot refuses the mutated command."""
 
     def called(message: Any) -> Any:
-        if _watched and is_refused(message):
+        if _watch.is_on and is_refused(message):
             with Path(os.environ["JUDGE_NOTES"]).open("a") as notes:
                 notes.write("refused\n")
+        _watch.hear()
         return callback(message)
 
     return called
@@ -343,6 +391,18 @@ def with_settings(**settings: Any) -> Wrapper:
     return set_up(lambda given, named: named.update(settings))
 
 
+def other_latch(function: Any) -> Any:
+    """A publisher of ROS 1 that latches if it did not, and the other way round."""
+
+    def change(given: list[Any], named: dict[str, Any]) -> None:
+        if len(given) > _LATCH:
+            given[_LATCH] = not given[_LATCH]
+        else:
+            named["latch"] = not named.get("latch", False)
+
+    return set_up(change)(function)
+
+
 def quality(**qualities: Any) -> Wrapper:
     """With these qualities of ROS 2."""
     return _with_qualities(lambda profile: qualities)
@@ -358,15 +418,11 @@ def other_quality(name: str, one: str, another: str) -> Wrapper:
     return _with_qualities(change)
 
 
-def other_deadline(seconds: float) -> Wrapper:
-    """With a deadline where there is none, without one where there is."""
+def with_deadline(seconds: float | None) -> Wrapper:
+    """With a deadline of so many seconds, or without one."""
     duration: Any = sys.modules["rclpy.duration"]
-
-    def change(profile: Any) -> dict[str, Any]:
-        has_none = profile.deadline.nanoseconds in (0, duration.Infinite.nanoseconds)
-        return {"deadline": duration.Duration(seconds=seconds) if has_none else duration.Infinite}
-
-    return _with_qualities(change)
+    deadline = duration.Infinite if seconds is None else duration.Duration(seconds=seconds)
+    return _with_qualities(lambda profile: {"deadline": deadline})
 
 
 def done(answer: Any) -> Any:

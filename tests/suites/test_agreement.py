@@ -76,3 +76,26 @@ def test_what_the_plan_leaves_out_stands_where_other_mutants_of_the_call_stand()
     (found,) = left_out(data)
     assert (found["operator"], found["quantity"], found["span"]) == ("reverse", "dx", {"line": 7})
     assert found["rounds"] == [{"verdict": "left out"}]
+
+
+def test_what_is_left_out_under_a_name_is_about_the_operation_that_it_tells() -> None:
+    site = "mission.py:run:wait#1"
+    common = {"pattern": None, "variant": "", "quantity": None, "description": ""}
+    publish = {
+        **common,
+        "id": f"{site}:call:drop",
+        "operation": "publish /wait of /mission",
+        "operator": "drop",
+    }
+    advertise = {**common, "id": f"{site}:depth:short-queue", "operation": "advertise /wait of /mission",
+                 "operator": "short-queue"}  # fmt: skip
+    nothing = {
+        "id": f"{site}:deadline:wrong-deadline=none",
+        "description": "advertise /wait: deadline 0 s → 0 s",
+        "reason": "would change nothing in the call: it has none",
+    }
+    another = {**nothing, "description": "client /wait: deadline 0 s → 0 s"}
+    for mutants in ([publish, advertise], [advertise, publish]):
+        (found,) = left_out({"mutants": mutants, "left_out": [nothing, another]})
+        assert found["operation"] == advertise["operation"]
+        assert (found["operator"], found["variant"]) == ("wrong-deadline", "none")

@@ -154,3 +154,52 @@ def test_a_refusal_is_the_mutated_commands_until_the_next_one(
         noted.append((tmp_path / "notes").exists())
         (tmp_path / "notes").unlink(missing_ok=True)
     assert noted == [False, True, False]
+
+
+@pytest.mark.parametrize("answered", [1, 2])
+def test_of_a_command_that_is_sent_twice_the_second_answer_may_come_after_the_next_command(
+    planted: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answered: int
+) -> None:
+    monkeypatch.setenv("JUDGE_NOTES", str(tmp_path / "notes"))
+    hear = planted.hearing(lambda message: None, lambda message: message == "refused")
+
+    def publish() -> None:
+        planted.only_below("site", int, import_module("_planted").twice)()
+
+    planted.armed("site", publish)()
+    for _ in range(answered):
+        hear("done")
+    publish()
+    hear("refused")
+    hear("refused")
+    noted = (tmp_path / "notes").read_text().split() if (tmp_path / "notes").exists() else []
+    assert len(noted) == 2 - answered
+
+
+@pytest.mark.parametrize(
+    ("given", "named", "latched"),
+    [((), {}, True), ((), {"latch": True}, False), ((None, False, True), {}, False)],
+)
+def test_a_publisher_latches_or_not_as_it_did_not(
+    planted: ModuleType, given: tuple[Any, ...], named: dict[str, Any], latched: bool
+) -> None:
+    def publisher(
+        name: str, data_class: type, listener: Any = None, tcp: bool = False, latch: bool = False
+    ) -> bool:
+        return latch
+
+    assert planted.other_latch(publisher)("/arm/move", int, *given, **named) is latched
+
+
+@pytest.mark.parametrize(("variant", "deadline"), [("tight", "0.001"), ("none", "None")])
+def test_a_deadline_is_the_variants_whatever_it_was(facts: Facts, variant: str, deadline: str) -> None:
+    text = edited(facts, mutant("wrong-deadline", "advertise /colour", "deadline", variant))
+    assert text == f'{M}.armed("site", {M}.with_deadline({deadline})(see))'
+
+
+def test_what_the_middleware_does_not_have_cannot_be_edited(facts: Facts) -> None:
+    latch = mutant("flip-latch", "advertise /colour", "latch")
+    assert "other_latch" in edited(facts, latch)
+    facts.hints["ros2"] = True
+    with pytest.raises(CannotWriteError, match="latch"):
+        edits_of(facts, latch)
