@@ -27,7 +27,7 @@ from mutabot.model.codec import printable
 from .files import WriterLock, previous_of, refuse_tracked
 from .records import UNFIT, load
 
-SCHEMA_VERSION = 6
+SCHEMA_VERSION = 7
 
 TABLES = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
