@@ -36,7 +36,6 @@ class TestEnd(Event):
         outcome: as pytest counts it: ``passed``, ``failed``, ``skipped``, ``xfailed`` or ``xpassed``. Only
             ``failed`` makes the suite fail.
         by: what noticed, for a failure.
-        phase: ``setup``, ``call`` or ``teardown``: where it failed; ``collect`` if it never began.
         exception: type of the exception as ``module:Name``.
         message: first lines of the exception's text.
         place: ``file:line`` where the failure was noticed.
@@ -88,7 +87,6 @@ class TestEnd(Event):
     test: str
     outcome: str
     by: By | None = None
-    phase: str = "call"
     exception: str | None = None
     message: str | None = None
     place: str | None = None

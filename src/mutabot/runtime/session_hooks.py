@@ -14,7 +14,7 @@ import pytest
 from mutabot import extensions
 from mutabot.frozen import compile_all
 from mutabot.model import Mutant, Role
-from mutabot.model.events import SessionEnd, TestEnd
+from mutabot.model.events import SessionEnd
 from mutabot.model.job import Branching, Job, read_job
 from mutabot.operators.registry import preload
 from mutabot.runtime import seeds
@@ -33,8 +33,8 @@ from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.test_end import classify
-from mutabot.runtime.test_hooks import TestHooks, is_no_program
+from mutabot.runtime.test_end import classify, with_evidence
+from mutabot.runtime.test_hooks import TestHooks
 
 if TYPE_CHECKING:
     from mutabot.runtime.isolation.fork_server import ForkServer
@@ -219,13 +219,8 @@ class SessionHooks:
         tests = [test for test in self.job.tests or () if test.startswith(below)]
         for test in tests[:1] if self.job.stop_at_kill else tests:
             file = os.path.join(self.job.root, test.partition("::")[0])
-            ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
-            end = TestEnd(
-                test, "failed", ending.by, ending.phase, ending.exception, ending.message, ending.place,
-                failure=evidence.failure or ending.failure, refused=ending.refused or evidence.said,
-                invalid=evidence.invalid or is_no_program(evidence, ending),
-                hits=evidence.hits, acted=evidence.acted, example=evidence.example,
-            )  # fmt: skip
+            end = classify(error, test, file, self.locator, self.job.vocabulary, evidence)
+            end = with_evidence(end, evidence)
             if self.tests.fork is not None:
                 self.tests.fork.end_test(end)
             else:

@@ -5,20 +5,24 @@ from __future__ import annotations
 import os
 import re
 import sys
+from dataclasses import replace
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import pytest
 
 from mutabot.extensions import packages
-from mutabot.frozen import frozen
 from mutabot.model import By, Role, Vocabulary
+from mutabot.model.events import TestEnd
 from mutabot.model.path import class_name
 from mutabot.runtime import FOLDER
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.observation.checks import FILE as AROUND_COMPARISONS
 from mutabot.runtime.targets.target import is_named
+
+if TYPE_CHECKING:
+    import doctest
 
 #: where an object lies in memory differs from run to run and says nothing
 _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
@@ -30,46 +34,23 @@ PASSED, SKIPPED, XFAILED, XPASSED = "passed", "skipped", "xfailed", "xpassed"
 FAILED = "failed"
 
 
-@frozen
-class Ending:
-    """Why a test failed; the fields are those of ``TestEnd`` with the same names.
-
-    ``is_syntax`` says that some text was no program.
-    """
-
-    by: By
-    phase: str
-    exception: str | None
-    message: str
-    place: str | None
-    timeout: str | None = None
-    failure: str | None = None
-    refused: str | None = None
-    is_syntax: bool = False
-
-    @property
-    def is_raised(self) -> bool:
-        """Whether an exception ended the test that is no refusal."""
-        return self.exception is not None and self.refused is None
-
-
 def classify(
     error: BaseException,
-    phase: str,
+    test: str,
     test_file: str,
     locator: Locator,
     vocabulary: Vocabulary,
     evidence: Evidence,
-) -> Ending:
-    """The ending that this exception means.
+) -> TestEnd:
+    """The end of a test that this exception means: why it failed, and nothing else.
 
     Of exceptions that hold others, such as exception groups, what they hold decides: a refusal if all are, a
     check if all are that are no refusals; a time-out or a failure if one is.
 
     Args:
         error: what pytest caught.
-        phase: ``setup``, ``call`` or ``teardown``.
-        test_file: file of the test; its folder holds the test's own helpers.
+        test: node id of the test.
+        test_file: its file, whose folder holds the test's own helpers.
     """
     found = leaves(error)
     culprits = evidence.culprits
@@ -78,17 +59,43 @@ def classify(
     no_checks = [leaf for leaf in counting if not _is_check(leaf, test_file, locator, vocabulary)]
     overdue = next((leaf for leaf in found if _is_timeout(leaf)), None)
     shown = overdue or (no_checks or counting)[0]
-    kind = type(shown)
-    return Ending(
+    is_syntax = all(isinstance(leaf, SyntaxError) for leaf in found)
+    return TestEnd(
+        test,
+        FAILED,
         by=By.EXCEPTION if no_checks else By.CHECK,
-        phase=phase,
-        exception=class_name(kind),
+        exception=class_name(type(shown)),
         message=_text(shown, len(found)),
         place=_place(shown, locator),
         timeout=_lines(shown)[0] if overdue is not None else None,
         failure=failure_in(error, vocabulary.failures),
         refused=evidence.refusal if is_refused else None,
-        is_syntax=all(isinstance(leaf, SyntaxError) for leaf in found),
+        # a mutant of the program text made a text that is no program or no command
+        invalid=evidence.is_of_text and (is_syntax or (evidence.is_unknown and is_refused)),
+    )
+
+
+def with_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) -> TestEnd:
+    """The end of a test with what its mutant did.
+
+    ``cause``: what ended it otherwise: also what a test said that it would do.
+    """
+    cause = cause or end
+    refusal = evidence.refusal
+    if evidence.is_of_text and cause.refused is None:
+        refusal = None
+    # what follows a refusal that is data follows from what the program makes of it
+    is_caught = refusal is not None and evidence.said is None
+    return replace(
+        end,
+        failure=evidence.failure or cause.failure,
+        invalid=evidence.invalid or cause.invalid,
+        refused=refusal,
+        caught=is_caught and end.outcome == FAILED and cause.refused is None,
+        hits=evidence.hits,
+        acted=evidence.acted,
+        away=evidence.away,
+        example=evidence.example,
     )
 
 
@@ -111,11 +118,6 @@ def outcome_so_far(report: pytest.TestReport, before: str) -> str:
     return before
 
 
-def unexpected_pass(reason: str) -> Ending:
-    """The ending of a test that was to fail and did not; ``reason`` is pytest's text."""
-    return Ending(By.CHECK, "call", None, reason, None)
-
-
 def _text(error: BaseException, count: int) -> str:
     """What an exception says, shortly; ``count``: how many there are in its group."""
     lines = _lines(error)[:12]
@@ -125,9 +127,12 @@ def _text(error: BaseException, count: int) -> str:
 
 
 def _lines(error: BaseException) -> list[str]:
-    text = _mismatch(error) or str(error)
+    text = str(error)
     if isinstance(error, pytest.FixtureLookupError):
         text = error.msg or f"fixture {error.argname!r} not found"
+    elif _is_mismatch(error):
+        source, want, got = error.example.source.strip(), error.example.want.strip(), error.got.strip()
+        text = f"{source}: expected {want or 'nothing'}, got {got or 'nothing'}"
     return _ADDRESS.sub("0x…", text).strip().splitlines() or [type(error).__name__]
 
 
@@ -180,30 +185,16 @@ def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
 def _place(error: BaseException, locator: Locator) -> str | None:
     """The innermost line that is the user's own: the file lies under the root and is not installed."""
     lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
-    for filename, line in [*lines, *_place_of_mismatch(error)]:
+    if _is_mismatch(error) and error.test.filename is not None and error.test.lineno is not None:
+        lines.append((error.test.filename, error.test.lineno + error.example.lineno + 1))
+    for filename, line in lines:
         relative = locator.relative(filename)
         if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
             return f"{relative}:{line}"
     return None
 
 
-def _mismatch(error: BaseException) -> str | None:
-    """What a doctest expected and what it got, in one line; None for any other exception."""
-    if not _is_mismatch(error):
-        return None
-    failure: Any = error
-    source, want = failure.example.source.strip(), failure.example.want.strip()
-    return f"{source}: expected {want or 'nothing'}, got {failure.got.strip() or 'nothing'}"
-
-
-def _place_of_mismatch(error: BaseException) -> list[tuple[str, int]]:
-    """File and line of the example; empty for any other exception, and where doctest knows neither."""
-    failure: Any = error
-    if not _is_mismatch(error) or failure.test.filename is None or failure.test.lineno is None:
-        return []
-    return [(failure.test.filename, failure.test.lineno + failure.example.lineno + 1)]
-
-
-def _is_mismatch(error: BaseException) -> bool:
-    doctest = sys.modules.get("doctest")  # who raised it has imported it
-    return doctest is not None and isinstance(error, doctest.DocTestFailure)
+def _is_mismatch(error: Any) -> TypeGuard[doctest.DocTestFailure]:
+    """Whether an example of a doctest gave something else than it says."""
+    module = sys.modules.get("doctest")  # who raised it has imported it
+    return module is not None and isinstance(error, module.DocTestFailure)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Generator, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from itertools import islice
 from time import perf_counter, process_time  # tests may replace those of the module
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from mutabot.model import By
 from mutabot.model.events import TestEnd, TestStart
 from mutabot.model.process_time import TimeUsed
 from mutabot.model.source_units import Executed
@@ -29,11 +31,10 @@ from mutabot.runtime.session import Session
 from mutabot.runtime.test_end import (
     FAILED,
     PASSED,
-    Ending,
     classify,
     is_expected_failure,
     outcome_so_far,
-    unexpected_pass,
+    with_evidence,
 )
 
 #: parts that are looked at in what a fixture gives
@@ -67,8 +68,9 @@ class TestHooks:
         self.units = ExecutedUnits(session.job.root)
         self._address: str | None = None
         self._hears = False
-        self._ending: Ending | None = None
-        self._expected: Ending | None = None
+        self._failure: TestEnd | None = None
+        self._failed_in = ""
+        self._expected: TestEnd | None = None
         self._outcome = PASSED
         self._logged: bool | None = None
         self._reading = Reading()
@@ -105,7 +107,7 @@ class TestHooks:
         return result
 
     def _start(self, item: pytest.Item, test: str) -> None:
-        self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
+        self._failure, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self._address = self._logged = None
         self.looks.clear()
         if not self._hears:
@@ -168,7 +170,9 @@ class TestHooks:
         """Note the first thing that ended the test."""
         report = yield
         if report.failed:
-            self._note_failure(self._classified(item, call) or unexpected_pass(str(report.longrepr)))
+            # what was to fail and did not raises nothing
+            passed = TestEnd(node_id(item), FAILED, By.CHECK, message=str(report.longrepr))
+            self._note_failure(self._classified(item, call) or passed, call.when)
         elif self._outcome != FAILED:
             self._outcome = outcome_so_far(report, self._outcome)
             if is_expected_failure(report):
@@ -185,91 +189,66 @@ class TestHooks:
         is_mutant = self.session.job.mutant is not None or self.fork is not None
         return self.units.of_test(alone=is_mutant and not evidence.hits and self._outcome != FAILED)
 
-    def _note_failure(self, ending: Ending) -> None:
+    def _note_failure(self, end: TestEnd, phase: str) -> None:
         """The first failure counts; of several subtests, the first that is more than a refusal."""
-        first = self._ending
-        if first is None or (first.refused is not None and first.phase == ending.phase and ending.is_raised):
-            self._outcome, self._ending = FAILED, ending
+        first = self._failure
+        is_more = end.exception is not None and end.refused is None
+        if first is None or (first.refused is not None and self._failed_in == phase and is_more):
+            self._outcome, self._failure, self._failed_in = FAILED, end, phase
 
-    def _classified(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Ending | None:
+    def _classified(self, item: pytest.Item, call: pytest.CallInfo[None]) -> TestEnd | None:
         """What ended a phase of the test; None if nothing was raised."""
         if call.excinfo is None:
             return None
-        return classify(
-            call.excinfo.value,
-            call.when,
-            str(item.path),
-            self.locator,
-            self.session.job.vocabulary,
-            self.session.evidence,
-        )
-
-    def _hindered(self, ending: Ending | None) -> str | None:
-        """What the machine had to do with a time-out of the suite's own."""
-        is_overdue = ending is not None and ending.timeout is not None
-        return self._used.hindrance([os.getpid()]) if is_overdue else None
+        session = self.session
+        known = (self.locator, session.job.vocabulary, session.evidence)
+        return classify(call.excinfo.value, node_id(item), str(item.path), *known)
 
     def _test_end(self, test: str) -> TestEnd:
         if self._outcome == FAILED and self._logged is False:
-            self._ending, self._outcome = None, PASSED
-        session, evidence, ending = self.session, self.session.evidence, self._ending
+            self._failure, self._outcome = None, PASSED
+        session, evidence, meter, returns = (
+            self.session,
+            self.session.evidence,
+            self.session.meter,
+            self.session.returns,
+        )
         wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
-        meter, returns = session.meter, session.returns
         assert meter is not None
-        cause = ending or self._expected  # what a test said that it would do ends it as well
-        ended_by_refusal = cause is not None and cause.refused is not None
-        refusal = evidence.refusal
-        if evidence.is_of_text and not ended_by_refusal:
-            refusal = None
-        # what follows a refusal that is data follows from what the program makes of it
-        is_caught = refusal is not None and evidence.said is None
-        return TestEnd(
-            test=test,
-            outcome=self._outcome,
-            by=ending.by if ending else None,
-            phase=ending.phase if ending else "call",
-            exception=ending.exception if ending else None,
-            message=ending.message if ending else None,
-            place=ending.place if ending else None,
-            timeout=meter.exceeded or (ending.timeout if ending else None),
-            failure=evidence.failure or (cause.failure if cause else None),
-            invalid=evidence.invalid or is_no_program(evidence, cause),
-            refused=refusal,
+        end = self._failure or TestEnd(test, self._outcome)
+        end = with_evidence(end, evidence, self._failure or self._expected)
+        end = replace(
+            end,
+            timeout=meter.exceeded or end.timeout,
+            # what the machine had to do with a time-out of the suite's own
+            hindered=self._used.hindrance([os.getpid()]) if end.timeout is not None else None,
             refused_calls=tuple(session.refused_calls),
             live=tuple(sorted(session.live)),
-            caught=is_caught and self._outcome == FAILED and not ended_by_refusal,
-            hits=evidence.hits,
-            acted=evidence.acted,
-            away=evidence.away,
-            example=evidence.example,
             operations=meter.operations,
             commands=session.commands,
             wall=wall,
             cpu=cpu,
             simulated=meter.simulated,
-            trace=tuple(session.recorder.trace) if self.session.job.record else (),
             truncated=session.recorder.truncated,
-            returned=tuple(returns.entries) if returns is not None and self.session.job.record else (),
             prepared=returns.prepared if returns is not None else 0,
             probes=self._reading.values,
             unread=self._reading.unread,
             exclusive=self._address,
-            moments=tuple(session.along.entries) if self.session.job.record else (),
             reading=session.rehearsal.seconds,
             not_along=session.rehearsal.why_not,
-            checks=self.looks.checks if self.session.job.record else (),
             more_checks=self.looks.more,
             recording=session.recording.text(session.recorder.told()),
-            hindered=self._hindered(ending),
             executed=self._executed(evidence),
         )
-
-
-def is_no_program(evidence: Evidence, ending: Ending | None) -> bool:
-    """Whether a mutant of the program text made a text that is no program or no command."""
-    if not evidence.is_of_text or ending is None:
-        return False
-    return ending.is_syntax or (evidence.is_unknown and ending.refused is not None)
+        if not session.job.record:
+            return end
+        return replace(
+            end,
+            trace=tuple(session.recorder.trace),
+            returned=tuple(returns.entries) if returns is not None else (),
+            moments=tuple(session.along.entries),
+            checks=self.looks.checks,
+        )
 
 
 def objects_of_fixtures(item: pytest.Item) -> Iterator[Any]:

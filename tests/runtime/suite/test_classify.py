@@ -20,9 +20,10 @@ import pytest_timeout
 from hypothesis import strategies
 
 from mutabot.model import By, Vocabulary
+from mutabot.model.events import TestEnd
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, is_due_to, leaves
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.test_end import Ending, classify
+from mutabot.runtime.test_end import classify
 
 
 class Refused(Exception):  # noqa: N818  # as users name it
@@ -36,10 +37,12 @@ class Diverged(Exception):  # noqa: N818  # as users name it
 VOCABULARY = Vocabulary(operations=(), failures=(f"{__name__}:Diverged",))
 
 
-def ending(error: BaseException, *refusals: BaseException, root: Path = Path("/nowhere")) -> Ending:
+def ending(error: BaseException, *refusals: BaseException, root: Path = Path("/nowhere")) -> TestEnd:
     locator = Locator(str(root), ("mission.py",), ())
     evidence = Evidence(refusals=refusals)
-    return classify(error, "call", str(root / "tests" / "test_it.py"), locator, VOCABULARY, evidence)
+    return classify(
+        error, "tests/test_it.py::test_it", str(root / "tests" / "test_it.py"), locator, VOCABULARY, evidence
+    )
 
 
 def raised(act: Callable[[], Any]) -> BaseException:
