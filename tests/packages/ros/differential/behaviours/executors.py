@@ -373,7 +373,7 @@ class _Waiting(Waitable[int]):
         self.executed += taken_data
 
     def get_num_entities(self) -> NumberOfEntities:
-        return NumberOfEntities(num_guard_conditions=1, num_timers=1)
+        return NumberOfEntities(num_gcs=1, num_timers=1)
 
     def add_to_wait_set(self, wait_set: Any) -> None:
         self._guard_index = wait_set.add_guard_condition(self._guard.handle)
@@ -514,7 +514,7 @@ def a_node_is_destroyed_while_it_is_spun() -> Any:
         node.destroy_node()
         ticks.clear()
         graph.spin()
-        return sorted(set(ticks)), [one.get_name() for one in graph.executor.get_nodes()]
+        return sorted(set(ticks)), len(graph.executor.get_nodes()), raised(node.get_name)
 
 
 @behaviour()

@@ -33,7 +33,7 @@ def _judged(validate: Callable[[str], Any], names: list[str]) -> dict[str, Any]:
         try:
             found[name] = validate(name)
         except NameValidationException as error:
-            found[name] = error.invalid_index
+            found[name] = str(error).splitlines()[-1].index("^") - 3
     return found
 
 
