@@ -1,7 +1,7 @@
 """Record the behaviours, or compare two recordings.
 
-    python -m tests.packages.ros.differential run [--only NAME]… [--over simulation] > FILE
-    python -m tests.packages.ros.differential compare FILE FILE
+python -m tests.packages.ros.differential run [--only NAME]… [--over simulation] > FILE
+python -m tests.packages.ros.differential compare FILE FILE
 """
 
 from __future__ import annotations

@@ -77,7 +77,9 @@ def _one(name: str, over: str, seconds: float) -> Outcome:
             return Outcome(name, error=f"no record in {seconds} s")
         took = round(time.monotonic() - begin, 2)
         if not written.exists():
-            return Outcome(name, error=f"{done.stderr}\nno record, return code {done.returncode}", seconds=took)
+            return Outcome(
+                name, error=f"{done.stderr}\nno record, return code {done.returncode}", seconds=took
+            )
         return Outcome(name, seconds=took, **json.loads(written.read_text(encoding="utf-8")))
 
 
@@ -93,7 +95,7 @@ def _environment(number: int, folder: str) -> dict[str, str]:
         **kept,
         "PYTHONPATH": os.pathsep.join(part for part in path if part),
         "ROS_DOMAIN_ID": str(number),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
+        "FASTDDS_DEFAULT_PROFILES_FILE": str(ROOT / "examples" / "ros2" / "discovery.xml"),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",  # as the file says
         "ROS_LOG_DIR": folder,
     }

@@ -1,1 +1,1 @@
-"""The behaviours, as a robot program and its tests would cause them: they know rclpy and nothing of Mutabot."""
+"""The behaviours, as robot programs cause them: they know rclpy and nothing of Mutabot."""

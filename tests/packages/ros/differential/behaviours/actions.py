@@ -64,7 +64,9 @@ class Acting(Graph):
         """Send a goal and give its handle."""
         goal = Fibonacci.Goal(order=order)
         future = self.client.send_goal_async(
-            goal, feedback_callback=lambda message: self.fed.append(list(message.feedback.sequence)), **options
+            goal,
+            feedback_callback=lambda message: self.fed.append(list(message.feedback.sequence)),
+            **options,
         )
         return self.result(future)
 
@@ -180,9 +182,7 @@ def cancelling_is_rejected_by_default() -> Any:
         return (answer.return_code, len(answer.goals_canceling)), acting.end(handle)[0]
 
 
-@behaviour(
-    expected=[3, 0], source="action_msgs/CancelGoal: ERROR_GOAL_TERMINATED is 3"
-)
+@behaviour(expected=[3, 0], source="action_msgs/CancelGoal: ERROR_GOAL_TERMINATED is 3")
 def a_goal_that_has_ended_is_not_cancelled() -> Any:
     with Acting(count, cancel_callback=lambda handle: CancelResponse.ACCEPT) as acting:
         handle = acting.send()
@@ -300,7 +300,9 @@ def a_goal_is_cancelled_before_it_is_executed() -> Any:
         return answer.return_code, before, acting.end(handle)
 
 
-@behaviour(expected=["ABORTED", "SUCCEEDED"], source="rclpy examples, server_single_goal: the newer goal wins")
+@behaviour(
+    expected=["ABORTED", "SUCCEEDED"], source="rclpy examples, server_single_goal: the newer goal wins"
+)
 def a_newer_goal_aborts_the_one_before() -> Any:
     current: list[Any] = []
 
@@ -371,7 +373,9 @@ def an_action_client_knows_whether_its_server_is_there() -> Any:
         return seen
 
 
-@behaviour(expected=["SUCCEEDED", [0, 1]], source="rclpy.action.client.ActionClient.send_goal: sends and waits")
+@behaviour(
+    expected=["SUCCEEDED", [0, 1]], source="rclpy.action.client.ActionClient.send_goal: sends and waits"
+)
 def a_goal_is_sent_and_waited_for() -> Any:
     with Acting(count, threads=3) as acting:
         response = acting.client.send_goal(Fibonacci.Goal(order=2))
@@ -380,7 +384,7 @@ def a_goal_is_sent_and_waited_for() -> Any:
 
 @behaviour(
     expected=["TypeError", "TypeError"],
-    source="rclpy.action.client.ActionClient.send_goal_async: raises TypeError if the type is not the action's",
+    source="rclpy.action.client.ActionClient.send_goal_async: raises TypeError for another type",
 )
 def goals_and_feedback_of_another_type() -> Any:
     errors: list[str] = []
@@ -467,5 +471,6 @@ def an_action_is_services_and_topics() -> Any:
         services = dict(asker.get_service_names_and_types_by_node("server", "/"))
         topics = dict(asker.get_publisher_names_and_types_by_node("server", "/"))
         return [
-            sorted(name.rpartition("/")[2] for name in names if "/_action/" in name) for names in (services, topics)
+            sorted(name.rpartition("/")[2] for name in names if "/_action/" in name)
+            for names in (services, topics)
         ]

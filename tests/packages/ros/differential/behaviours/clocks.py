@@ -184,9 +184,7 @@ def sleeping_on_a_clock() -> Any:
     return found
 
 
-@behaviour(
-    expected=[True, 3.0], source="rclpy.clock.Clock.sleep_until: True if until was reached"
-)
+@behaviour(expected=[True, 3.0], source="rclpy.clock.Clock.sleep_until: True if until was reached")
 def sleeping_until_a_told_time() -> Any:
     with Told() as told:
         told.tell(1.0)

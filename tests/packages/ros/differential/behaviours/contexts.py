@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import threading
-import time
 from typing import Any
 
 import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.wait_for_message import wait_for_message
 from std_msgs.msg import Int32
 from std_srvs.srv import Empty
 
@@ -56,7 +53,9 @@ def ending_twice() -> Any:
     return raised(rclpy.shutdown, context=context), raised(rclpy.init, args=[], context=context), context.ok()
 
 
-@behaviour(expected="NotInitializedException", source="rclpy.exceptions.NotInitializedException; rclpy.node.Node")
+@behaviour(
+    expected="NotInitializedException", source="rclpy.exceptions.NotInitializedException; rclpy.node.Node"
+)
 def a_node_without_a_context() -> Any:
     return raised(rclpy.create_node, "node")
 
@@ -81,9 +80,7 @@ def a_node_after_the_end() -> Any:
     ]
 
 
-@behaviour(
-    expected=[True, False], source="rclpy.init: an InitContextManager that can be used to clean up"
-)
+@behaviour(expected=[True, False], source="rclpy.init: an InitContextManager that can be used to clean up")
 def a_context_manager_begins_and_ends() -> Any:
     with rclpy.init(args=[]) as manager:
         inside = manager.context.ok()
@@ -160,7 +157,8 @@ def domains_do_not_hear_each_other() -> Any:
 
 
 @behaviour(
-    expected=["RuntimeError", "RuntimeError"], source=CONTEXT + ".init: domain id should not be lower than zero"
+    expected=["RuntimeError", "RuntimeError"],
+    source=CONTEXT + ".init: domain id should not be lower than zero",
 )
 def domains_that_are_wrong() -> Any:
     return raised(rclpy.init, args=[], domain_id=-1), raised(Context().get_domain_id)
@@ -197,22 +195,19 @@ def everything_ends_with_its_node() -> Any:
         ]
 
 
-@behaviour(expected=[False, True], source="rclpy.wait_for_message: (False, None) if shutdown was triggered")
-def a_shutdown_ends_waiting_for_a_message() -> Any:
-    context = Context()
-    rclpy.init(args=[], context=context)
-    node = Node("node", context=context)
-    found: list[Any] = []
+@behaviour()
+def a_callback_ends_the_context() -> Any:
+    rclpy.init(args=[])
+    node = rclpy.create_node("node")
+    ticks: list[int] = []
 
-    def wait() -> None:
-        found.extend(wait_for_message(Int32, node, "numbers", time_to_wait=1.0))
+    def on_time() -> None:
+        ticks.append(1)
+        if len(ticks) == 2:
+            rclpy.shutdown()
 
-    thread = threading.Thread(target=wait, daemon=True)
-    thread.start()
-    time.sleep(0.2)
-    thread.join(5.0)
-    rclpy.shutdown(context=context)
-    return found[0], found[1] is None
+    node.create_timer(0.05, on_time)
+    return raised(rclpy.spin, node), len(ticks), rclpy.ok()
 
 
 @behaviour()

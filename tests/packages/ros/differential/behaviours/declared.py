@@ -22,9 +22,7 @@ class Behaviour:
     source: str = ""
 
 
-def behaviour(
-    expected: Any = None, source: str = ""
-) -> Callable[[Callable[[], Any]], Callable[[], Any]]:
+def behaviour(expected: Any = None, source: str = "") -> Callable[[Callable[[], Any]], Callable[[], Any]]:
     """Declare a behaviour; a record is expected only where a document says so."""
     if (expected is None) != (not source):
         raise ValueError("an expected record needs its source, and a source a record")

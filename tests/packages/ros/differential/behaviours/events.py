@@ -37,7 +37,10 @@ def _incompatible(offered: QoSProfile, requested: QoSProfile) -> Any:
             event_callbacks=SubscriptionEventCallbacks(incompatible_qos=tell("subscription")),
         )
         talker.create_publisher(
-            Int32, "numbers", offered, event_callbacks=PublisherEventCallbacks(incompatible_qos=tell("publisher"))
+            Int32,
+            "numbers",
+            offered,
+            event_callbacks=PublisherEventCallbacks(incompatible_qos=tell("publisher")),
         )
         graph.until(lambda: all(told.values()), 2.0)
         graph.spin()
@@ -249,7 +252,9 @@ def an_automatic_publisher_is_alive_until_it_ends() -> Any:
         with Graph("listener") as here, Graph() as there:
             (listener,) = here
             told: list[Any] = []
-            callbacks = SubscriptionEventCallbacks(liveliness=lambda event, told=told: told.append(_alive(event)))
+            callbacks = SubscriptionEventCallbacks(
+                liveliness=lambda event, told=told: told.append(_alive(event))
+            )
             listener.create_subscription(
                 Int32, "numbers", lambda message: None, lively, event_callbacks=callbacks
             )
@@ -268,11 +273,22 @@ def handlers_of_the_events_asked_for() -> Any:
     with Graph("node") as graph:
         (node,) = graph
         found = {}
-        for name in ("deadline", "incompatible_qos", "liveliness", "message_lost", "incompatible_type", "matched"):
+        for name in (
+            "deadline",
+            "incompatible_qos",
+            "liveliness",
+            "message_lost",
+            "incompatible_type",
+            "matched",
+        ):
             callbacks = SubscriptionEventCallbacks(**{name: print})
-            found[name] = len(node.create_subscription(Int32, "n", print, 1, event_callbacks=callbacks).event_handlers)
+            found[name] = len(
+                node.create_subscription(Int32, "n", print, 1, event_callbacks=callbacks).event_handlers
+            )
         for name in ("deadline", "incompatible_qos", "liveliness", "incompatible_type", "matched"):
-            made = node.create_publisher(Int32, "n", 1, event_callbacks=PublisherEventCallbacks(**{name: print}))
+            made = node.create_publisher(
+                Int32, "n", 1, event_callbacks=PublisherEventCallbacks(**{name: print})
+            )
             found[f"publisher's {name}"] = len(made.event_handlers)
         return found
 

@@ -75,7 +75,8 @@ def callbacks_in_groups() -> Any:
 
 
 @behaviour(
-    expected=True, source=GROUPS + ": callbacks of a reentrant group may run at the same time, also with themselves"
+    expected=True,
+    source=GROUPS + ": callbacks of a reentrant group may run at the same time, also with themselves",
 )
 def a_callback_runs_twice_at_once() -> Any:
     return _most_at_once(lambda: [ReentrantCallbackGroup()]) > 1
@@ -241,7 +242,9 @@ def an_exception_in_a_task() -> Any:
         return raised(graph.spin, 0.5)
 
 
-@behaviour(expected=["begin", "between", "end"], source="rclpy.task: a coroutine that awaits gives way to others")
+@behaviour(
+    expected=["begin", "between", "end"], source="rclpy.task: a coroutine that awaits gives way to others"
+)
 def a_coroutine_gives_way() -> Any:
     with Graph("node") as graph:
         (node,) = graph

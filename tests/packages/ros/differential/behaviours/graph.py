@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from types import TracebackType
 from typing import Any
 
@@ -97,10 +98,8 @@ class Graph:
             time.sleep(0.005)
 
     def _spin(self) -> None:
-        try:
+        with suppress(ExternalShutdownException):
             self.executor.spin()
-        except ExternalShutdownException:
-            pass
 
 
 def connect(graph: Graph, publisher: Any, subscriptions: int = 1) -> None:

@@ -82,7 +82,8 @@ def the_endpoints_of_a_node_that_is_not_there() -> Any:
 
 
 @behaviour(
-    expected=[[0, 0], [1, 2], [1, 1]], source="rclpy.node.Node: count_publishers and count_subscribers of a topic"
+    expected=[[0, 0], [1, 2], [1, 1]],
+    source="rclpy.node.Node: count_publishers and count_subscribers of a topic",
 )
 def endpoints_are_counted() -> Any:
     with Graph("node") as graph:
@@ -187,7 +188,9 @@ def the_description_of_a_type() -> Any:
         answer = graph.result(client.call_async(request))
         fields = answer.type_description.type_description.fields
         unknown = graph.result(
-            client.call_async(GetTypeDescription.Request(type_name="no/msg/Type", type_hash=request.type_hash))
+            client.call_async(
+                GetTypeDescription.Request(type_name="no/msg/Type", type_hash=request.type_hash)
+            )
         )
         return [
             answer.successful,

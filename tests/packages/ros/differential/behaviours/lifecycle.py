@@ -239,7 +239,8 @@ def the_whole_graph_of_transitions() -> Any:
         ready(graph, client)
         found = graph.result(client.call_async(GetAvailableTransitions.Request())).available_transitions
         return sorted(
-            (one.start_state.label, one.transition.label, one.transition.id, one.goal_state.label) for one in found
+            (one.start_state.label, one.transition.label, one.transition.id, one.goal_state.label)
+            for one in found
         )
 
 

@@ -52,7 +52,11 @@ def loggers_inherit_levels() -> Any:
 def names_of_loggers() -> Any:
     with Graph() as graph:
         node = graph.node("node", namespace="/ns")
-        return [node.get_logger().name, node.get_logger().get_child("child").name, graph.node("node").get_logger().name]
+        return [
+            node.get_logger().name,
+            node.get_logger().get_child("child").name,
+            graph.node("node").get_logger().name,
+        ]
 
 
 @behaviour(
@@ -78,7 +82,7 @@ def messages_are_filtered() -> Any:
 
 @behaviour(
     expected=["ValueError", "TypeError"],
-    source="rclpy.impl.rcutils_logger.RcutilsLogger.log: a call keeps its severity; raises TypeError on invalid filters",
+    source="rclpy.impl.rcutils_logger.RcutilsLogger.log: its severity cannot be changed",
 )
 def a_call_keeps_its_severity() -> Any:
     logger = get_logger("arm")
@@ -157,7 +161,8 @@ def what_was_logged_before_is_kept() -> Any:
 
 
 @behaviour(
-    expected=["DEBUG", "WARN"], source="docs.ros.org, Passing ROS arguments: --log-level, for all or for one logger"
+    expected=["DEBUG", "WARN"],
+    source="docs.ros.org, Passing ROS arguments: --log-level, for all or for one logger",
 )
 def levels_from_arguments() -> Any:
     args = ["--ros-args", "--log-level", "warn", "--log-level", "arm:=debug"]
@@ -182,7 +187,12 @@ def levels_by_services() -> Any:
         before = level()
         levels = [LoggerLevel(name="node", level=10), LoggerLevel(name="node", level=77)]
         results = graph.result(setter.call_async(SetLoggerLevels.Request(levels=levels))).results
-        return before, [one.successful for one in results], level(), node.get_logger().get_effective_level().name
+        return (
+            before,
+            [one.successful for one in results],
+            level(),
+            node.get_logger().get_effective_level().name,
+        )
 
 
 @behaviour()

@@ -48,7 +48,11 @@ def parameters_have_types() -> Any:
 
 
 @behaviour(
-    expected=["ParameterAlreadyDeclaredException", "ParameterNotDeclaredException", "ParameterNotDeclaredException"],
+    expected=[
+        "ParameterAlreadyDeclaredException",
+        "ParameterNotDeclaredException",
+        "ParameterNotDeclaredException",
+    ],
     source="rclpy.node.Node: declare_parameter, get_parameter and set_parameters raise",
 )
 def parameters_are_declared_once_and_before_use() -> Any:
@@ -68,7 +72,13 @@ def undeclared_parameters_can_be_allowed() -> Any:
         (node,) = graph
         unset = node.get_parameter("two")
         results = settled(node.set_parameters([Parameter("two", value=1)]))
-        return unset.type_.name, unset.value, results, node.get_parameter("two").value, node.has_parameter("three")
+        return (
+            unset.type_.name,
+            unset.value,
+            results,
+            node.get_parameter("two").value,
+            node.has_parameter("three"),
+        )
 
 
 @behaviour(
@@ -93,12 +103,16 @@ def an_integer_is_no_double() -> Any:
         (result,) = node.set_parameters([Parameter("speed", value=2)])
         overridden = Parameter("other", value=2)
         other = graph.node("other", parameter_overrides=[overridden])
-        return result.successful, node.get_parameter("speed").value, raised(other.declare_parameter, "other", 1.0)
+        return (
+            result.successful,
+            node.get_parameter("speed").value,
+            raised(other.declare_parameter, "other", 1.0),
+        )
 
 
 @behaviour(
     expected=[[False], 1, "ParameterImmutableException"],
-    source="rcl_interfaces/ParameterDescriptor, read_only: the value cannot change after it has been initialized",
+    source="rcl_interfaces/ParameterDescriptor, read_only: the value cannot change",
 )
 def a_parameter_can_be_read_only() -> Any:
     with Graph("node") as graph:
@@ -152,7 +166,7 @@ def setting_a_parameter_can_be_refused() -> Any:
 
 @behaviour(
     expected=[["pre", "on", "post"], 1, 2],
-    source="rclpy.node.Node: pre-set callbacks may change the list, on-set ones refuse, post-set ones come last",
+    source="rclpy.node.Node: pre-set callbacks may change the list, on-set ones refuse",
 )
 def callbacks_come_before_at_and_after_setting() -> Any:
     with Graph("node") as graph:
@@ -217,12 +231,16 @@ def a_parameter_is_undeclared() -> Any:
         (node,) = graph
         node.declare_parameter("one", 1)
         node.undeclare_parameter("one")
-        return node.has_parameter("one"), raised(node.undeclare_parameter, "one"), node.declare_parameter("one", "x").value
+        return (
+            node.has_parameter("one"),
+            raised(node.undeclare_parameter, "one"),
+            node.declare_parameter("one", "x").value,
+        )
 
 
 @behaviour(
     expected=["ParameterUninitializedException", 5],
-    source="rclpy.node.Node.get_parameter: raises ParameterUninitializedException if it is statically typed and unset",
+    source="rclpy.node.Node.get_parameter: raises if it is statically typed and unset",
 )
 def a_parameter_without_a_value() -> Any:
     with Graph("node") as graph:
@@ -305,7 +323,7 @@ def parameters_for_one_node() -> Any:
 
 @behaviour(
     expected=[[1, 5, "all"], [2, 0, "all"]],
-    source="docs.ros.org, Passing ROS arguments, parameter files: /** stands for all nodes, names for those nodes",
+    source="docs.ros.org, Passing ROS arguments, parameter files: /** stands for all nodes",
 )
 def parameters_come_from_a_file() -> Any:
     with tempfile.TemporaryDirectory() as folder:
@@ -315,11 +333,12 @@ def parameters_come_from_a_file() -> Any:
             "/arm/one:\n  ros__parameters:\n    n: 1\n    sub:\n      x: 5\n"
             "/arm/two:\n  ros__parameters:\n    n: 2\n"
         )
-        with Graph(
-            "one", "two", namespace="arm", args=["--ros-args", "--params-file", str(file)]
-        ) as graph:
+        with Graph("one", "two", namespace="arm", args=["--ros-args", "--params-file", str(file)]) as graph:
             return [
-                [node.declare_parameter(name, value).value for name, value in (("n", 0), ("sub.x", 0), ("who", ""))]
+                [
+                    node.declare_parameter(name, value).value
+                    for name, value in (("n", 0), ("sub.x", 0), ("who", ""))
+                ]
                 for node in graph
             ]
 
@@ -336,7 +355,11 @@ def overrides_of_the_program_and_of_the_command_line() -> Any:
 def an_override_of_another_type() -> Any:
     with Graph("node", args=["--ros-args", "-p", "n:=text"]) as graph:
         (node,) = graph
-        return raised(node.declare_parameter, "n", 0), raised(node.declare_parameter, "m", 0), node.has_parameter("n")
+        return (
+            raised(node.declare_parameter, "n", 0),
+            raised(node.declare_parameter, "m", 0),
+            node.has_parameter("n"),
+        )
 
 
 @behaviour()
@@ -352,7 +375,9 @@ def an_override_can_be_ignored() -> Any:
     with Graph("node", args=["--ros-args", "-p", "n:=2"]) as graph:
         (node,) = graph
         alone = graph.node("alone", use_global_arguments=False)
-        return node.declare_parameter("n", 1, ignore_override=True).value, alone.declare_parameter("n", 1).value
+        return node.declare_parameter("n", 1, ignore_override=True).value, alone.declare_parameter(
+            "n", 1
+        ).value
 
 
 @behaviour(
@@ -378,7 +403,9 @@ def parameter_events_are_published() -> Any:
         graph.until(lambda: len(told) == 3)
         return {
             "new": [(one.name, one.value.integer_value) for event in told for one in event.new_parameters],
-            "changed": [(one.name, one.value.integer_value) for event in told for one in event.changed_parameters],
+            "changed": [
+                (one.name, one.value.integer_value) for event in told for one in event.changed_parameters
+            ],
             "deleted": [one.name for event in told for one in event.deleted_parameters],
             "node": sorted({event.node for event in told}),
         }
@@ -452,7 +479,8 @@ def the_services_of_a_node_are_there_by_default() -> Any:
         (node,) = graph
         graph.node("bare", start_parameter_services=False)
         return [
-            sorted(name for name, _ in node.get_service_names_and_types_by_node(one, "/")) for one in ("node", "bare")
+            sorted(name for name, _ in node.get_service_names_and_types_by_node(one, "/"))
+            for one in ("node", "bare")
         ]
 
 

@@ -6,6 +6,7 @@ import time
 import warnings
 from typing import Any
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.duration import Duration, Infinite
 from rclpy.parameter import Parameter
 from rclpy.qos import (
@@ -71,7 +72,12 @@ def late(offered: QoSProfile, requested: QoSProfile, count: int = 5) -> list[int
     source=ABOUT_QOS + ", compatibility of reliability",
 )
 def reliability_matches() -> Any:
-    policies = [(BEST_EFFORT, BEST_EFFORT), (RELIABLE, BEST_EFFORT), (BEST_EFFORT, RELIABLE), (RELIABLE, RELIABLE)]
+    policies = [
+        (BEST_EFFORT, BEST_EFFORT),
+        (RELIABLE, BEST_EFFORT),
+        (BEST_EFFORT, RELIABLE),
+        (RELIABLE, RELIABLE),
+    ]
     return [meeting(profile(reliability=one), profile(reliability=two)) for one, two in policies]
 
 
@@ -293,7 +299,9 @@ def what_a_publisher_and_a_subscription_have() -> Any:
     with Graph("node") as graph:
         (node,) = graph
         node.create_publisher(Int32, "numbers", 7)
-        node.create_subscription(Int32, "numbers", print, profile(3, durability=LATCHED, reliability=BEST_EFFORT))
+        node.create_subscription(
+            Int32, "numbers", print, profile(3, durability=LATCHED, reliability=BEST_EFFORT)
+        )
         graph.until(lambda: node.count_publishers("numbers") and node.count_subscribers("numbers"))
         (offered,) = node.get_publishers_info_by_topic("/numbers")
         (requested,) = node.get_subscriptions_info_by_topic("/numbers")
@@ -306,9 +314,7 @@ def what_a_publisher_and_a_subscription_have() -> Any:
 )
 def the_best_available() -> Any:
     found = []
-    best = profile(
-        reliability=ReliabilityPolicy.BEST_AVAILABLE, durability=DurabilityPolicy.BEST_AVAILABLE
-    )
+    best = profile(reliability=ReliabilityPolicy.BEST_AVAILABLE, durability=DurabilityPolicy.BEST_AVAILABLE)
     for offered in (
         profile(reliability=RELIABLE, durability=LATCHED),
         profile(reliability=BEST_EFFORT, durability=VOLATILE),
@@ -351,7 +357,8 @@ def a_depth_instead_of_a_profile() -> Any:
     with Graph("node") as graph:
         (node,) = graph
         return [
-            raised(node.create_publisher, Int32, "topic", depth) for depth in (-1, "10", 1, QoSProfile(depth=1))
+            raised(node.create_publisher, Int32, "topic", depth)
+            for depth in (-1, "10", 1, QoSProfile(depth=1))
         ]
 
 
@@ -389,12 +396,12 @@ def a_profile_is_overridden_by_parameters() -> Any:
 @behaviour()
 def overriding_a_profile_can_be_refused() -> Any:
     def refuse(chosen: QoSProfile) -> Any:
-        from rcl_interfaces.msg import SetParametersResult
-
         return SetParametersResult(successful=chosen.depth == 10, reason="depth")
 
     options = QoSOverridingOptions.with_default_policies(callback=refuse)
-    with Graph("node", parameter_overrides=[Parameter("qos_overrides./two.publisher.depth", value=3)]) as graph:
+    with Graph(
+        "node", parameter_overrides=[Parameter("qos_overrides./two.publisher.depth", value=3)]
+    ) as graph:
         (node,) = graph
         return [
             raised(node.create_publisher, Int32, topic, 10, qos_overriding_options=options)

@@ -92,7 +92,7 @@ def requests_are_answered_in_order() -> Any:
 
 @behaviour(
     expected=[False, False, True, True],
-    source="rclpy.client.Client.wait_for_service: True if server became ready while waiting or False on a timeout",
+    source="rclpy.client.Client.wait_for_service: True if it became ready, False on a timeout",
 )
 def a_client_knows_whether_its_server_is_there() -> Any:
     with Graph("server", "asker") as graph:
@@ -151,8 +151,8 @@ def an_exception_in_a_service_leaves_the_executor() -> Any:
 
 @behaviour(
     expected=["TypeError", "TypeError"],
-    source="rclpy.client.Client.call_async: raises TypeError if the type of the passed request isn't an instance"
-    " of the Request type; rclpy.service.Service.send_response: likewise",
+    source="rclpy.client.Client.call_async: raises TypeError if it is no Request;"
+    " rclpy.service.Service.send_response: likewise",
 )
 def requests_and_responses_of_another_type() -> Any:
     with Graph("server", "asker") as graph:
@@ -187,7 +187,8 @@ def a_synchronous_call() -> Any:
 
 
 @behaviour(
-    expected="TimeoutError", source="rclpy.client.Client.call: raises TimeoutError if the response takes too long"
+    expected="TimeoutError",
+    source="rclpy.client.Client.call: raises TimeoutError if the response takes too long",
 )
 def a_synchronous_call_that_takes_too_long() -> Any:
     with Graph("asker", in_thread=True) as graph:
@@ -262,7 +263,7 @@ def _three_threads(**options: Any) -> MultiThreadedExecutor:
 
 @behaviour(
     expected=[[True], []],
-    source="docs.ros.org, Using callback groups: what is awaited must be in another group, or in a reentrant one",
+    source="docs.ros.org, Using callback groups: what is awaited is in another group",
 )
 def a_coroutine_awaits_an_answer() -> Any:
     found = []

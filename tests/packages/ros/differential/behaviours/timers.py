@@ -175,7 +175,9 @@ def periods_that_are_wrong() -> Any:
         ]
 
 
-@behaviour(expected="ZeroDivisionError", source="rclpy.executors.Executor.spin_once raises what a callback raises")
+@behaviour(
+    expected="ZeroDivisionError", source="rclpy.executors.Executor.spin_once raises what a callback raises"
+)
 def an_exception_in_a_timer_leaves_the_executor() -> Any:
     with Graph("node") as graph:
         (node,) = graph

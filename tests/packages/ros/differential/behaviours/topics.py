@@ -7,6 +7,7 @@ import time
 from typing import Any
 
 from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.subscription_content_filter_options import ContentFilterOptions
 from rclpy.wait_for_message import wait_for_message
 from std_msgs.msg import Int32, String
 
@@ -316,7 +317,9 @@ def two_contexts_hear_each_other() -> Any:
     with Graph("talker") as here, Graph("listener") as there:
         heard: list[int] = []
         (talker,), (listener,) = here, there
-        subscription = listener.create_subscription(Int32, "n", lambda message: heard.append(message.data), 10)
+        subscription = listener.create_subscription(
+            Int32, "n", lambda message: heard.append(message.data), 10
+        )
         publisher = talker.create_publisher(Int32, "n", 10)
         connect(here, publisher)
         there.until(lambda: subscription.get_publisher_count() == 1)
@@ -328,8 +331,6 @@ def two_contexts_hear_each_other() -> Any:
 
 @behaviour()
 def messages_are_filtered_by_content() -> Any:
-    from rclpy.subscription_content_filter_options import ContentFilterOptions
-
     with Graph("talker", "listener") as graph:
         talker, listener = graph
         heard: list[int] = []

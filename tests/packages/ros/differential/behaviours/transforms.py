@@ -17,7 +17,9 @@ STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 def transform(parent: str, child: str, x: float, second: int = 0) -> TransformStamped:
     """A translation along x."""
-    found = TransformStamped(header=Header(frame_id=parent, stamp=TimeMessage(sec=second)), child_frame_id=child)
+    found = TransformStamped(
+        header=Header(frame_id=parent, stamp=TimeMessage(sec=second)), child_frame_id=child
+    )
     found.transform.translation = Vector3(x=x)
     found.transform.rotation.w = 1.0
     return found
@@ -73,6 +75,10 @@ def a_moving_frame_under_a_static_one() -> Any:
         places = [buffer.x("camera", "map")]
         for second, x in ((2, 1.0), (4, 3.0), (3, 2.0)):
             moving.publish(transform("map", "base", x, second=second))
-            graph.until(lambda second=second: any(one.header.stamp.sec == second for one in buffer.moving.get("base", [])))
+            graph.until(
+                lambda second=second: any(
+                    one.header.stamp.sec == second for one in buffer.moving.get("base", [])
+                )
+            )
             places.append(buffer.x("camera", "map"))
         return places
