@@ -11,7 +11,7 @@ import json
 import sys
 from pathlib import Path
 
-from tests.packages.ros.differential.runner import WAYS, Outcome, run
+from tests.packages.ros.differential.runner import KEPT, WAYS, Outcome, read, run
 from tests.packages.ros.differential.worker import behaviours, record
 
 
@@ -30,7 +30,9 @@ def main(arguments: list[str]) -> int:
     one.add_argument("--to", type=Path, required=True)
     comparing = commands.add_parser("compare", help="say where two recordings differ")
     comparing.add_argument("first", type=Path)
-    comparing.add_argument("second", type=Path)
+    comparing.add_argument("second", type=Path, nargs="?", default=KEPT)
+    keeping = commands.add_parser("keep", help="keep the records in which all recordings agree")
+    keeping.add_argument("files", type=Path, nargs="+")
     commands.add_parser("list", help="name the behaviours")
     asked = parser.parse_args(arguments)
     if asked.command == "run":
@@ -38,7 +40,9 @@ def main(arguments: list[str]) -> int:
     if asked.command == "one":
         return record(asked.name, asked.over, asked.to)
     if asked.command == "compare":
-        return _compare(_read(asked.first), _read(asked.second))
+        return _compare(read(asked.first), read(asked.second))
+    if asked.command == "keep":
+        return _keep([read(file) for file in asked.files])
     print("\n".join(behaviours()))
     return 0
 
@@ -51,11 +55,6 @@ def _run(asked: argparse.Namespace) -> int:
     return int(failed > 0)
 
 
-def _read(path: Path) -> dict[str, Outcome]:
-    lines = path.read_text(encoding="utf-8").splitlines()
-    return {outcome.name: outcome for outcome in (Outcome(**json.loads(line)) for line in lines)}
-
-
 def _compare(first: dict[str, Outcome], second: dict[str, Outcome]) -> int:
     names = [name for name in first if name in second]
     different = [name for name in names if not first[name].equals(second[name])]
@@ -63,6 +62,17 @@ def _compare(first: dict[str, Outcome], second: dict[str, Outcome]) -> int:
         print(f"{name}\n  {first[name].told()}\n  {second[name].told()}")
     print(f"{len(names) - len(different)} of {len(names)} are equal")
     return int(bool(different))
+
+
+def _keep(recordings: list[dict[str, Outcome]]) -> int:
+    first = recordings[0]
+    agreed = [name for name in first if all(first[name].equals(other[name]) for other in recordings)]
+    lines = [json.dumps({"name": name, "record": first[name].record}) for name in agreed]
+    KEPT.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    for name in first:
+        if name not in agreed:
+            print(f"{name}: not the same in all recordings")
+    return int(len(agreed) < len(first))
 
 
 if __name__ == "__main__":
