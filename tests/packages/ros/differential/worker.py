@@ -26,7 +26,7 @@ def record(name: str, over: str, to: Path) -> int:
     """Let a behaviour happen and write its record; ends the process at once, whatever its threads do."""
     if over == "simulation":
         simulation = importlib.import_module("mutabot_ros.simulation")
-        simulation.install()
+        simulation.start([str(Path(__file__).with_name("behaviours"))])
     try:
         said = {"record": behaviours()[name].act()}
     except Exception:
