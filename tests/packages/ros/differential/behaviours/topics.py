@@ -267,7 +267,7 @@ def waiting_for_a_message() -> Any:
 
 
 @behaviour(
-    expected=[False, True, [0.5, True]],
+    expected=[False, True, True],
     source="rclpy.wait_for_message: (False, None) if message could not be obtained; time_to_wait: seconds",
 )
 def waiting_for_a_message_in_vain() -> Any:
@@ -276,7 +276,7 @@ def waiting_for_a_message_in_vain() -> Any:
         begin = time.monotonic()
         found, message = wait_for_message(Int32, listener, "numbers", time_to_wait=0.5)
         took = time.monotonic() - begin
-        return found, message is None, (round(took, 1), took >= 0.5)
+        return found, message is None, 0.49 < took < 3.0
 
 
 @behaviour()
