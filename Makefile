@@ -62,7 +62,7 @@ format: $(READY)
 ## write the generated pages of docs/ again
 docs: $(READY)
 	$(RUN) tools/make_docs.py
-	$(RUN) tools/make_classical_page.py
+	$(RUN) tools/make_conventional_page.py
 	cd benchmarks && ../$(RUN) -m comparison.page
 	$(RUN) tools/make_design_page.py
 
@@ -118,7 +118,7 @@ stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	    test ! -x $$ros/bin/python || { \
 	        $$ros/bin/python benchmarks/processes_in_a_row.py --examples ros1 ros2 --selection published.txt && \
 	        $$ros/bin/python benchmarks/processes_in_a_row.py --examples ros1 ros2 --count 2 --rounds 3 \
-	            --families robot,middleware,classical,text; } || exit; \
+	            --families robot,middleware,conventional,text; } || exit; \
 	done
 	$(RUN) benchmarks/flaky_campaigns.py
 

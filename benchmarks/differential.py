@@ -5,8 +5,8 @@ outcome says but what it cost. The tests of a mutant run one after the other unt
 outcomes stand for as many equal (mutant, test, round) outcomes as tests were run.
 
 Use: ``python benchmarks/differential.py [--examples paper …] [--rounds N]
-[--families classical …] [--json]``. Each example runs in a copy. The exit code is 1 if the engines disagree
-anywhere, or if there is nothing to compare.
+[--families conventional …] [--json]``. Each example runs in a copy. The exit code is 1 if the engines
+disagree anywhere, or if there is nothing to compare.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from mutabot.model.codec import to_data
 ROOT = Path(__file__).resolve().parent.parent
 #: example to its rounds; one round of pick_and_place takes replay minutes
 EXAMPLES = {"paper": 5, "pick_and_place": 1, "scales": 1}
-FAMILIES = ("robot", "classical", "text")
+FAMILIES = ("robot", "conventional", "text")
 ENGINES = ("branch", "replay")
 #: what two engines may differ in: what an outcome cost, and who found it
 COST = {"wall", "cpu", "shared", "engine", "repeats"}

@@ -51,15 +51,15 @@ def mutants(count: int) -> Iterator[Mutant]:
     for number in range(1, count + 1):
         file, line = number % FILES, 3 + number * 7 % (LINES - 6)
         operator = OPERATORS[number % len(OPERATORS)]
-        is_classical = operator.isupper()
+        is_conventional = operator.isupper()
         role = Role.ORACLE if file == FILES - 1 else Role.PROGRAM
         span = Span(f"cell/part_{file}.py", line, 4, line, 34, f"step_{line // 20}")
         yield Mutant(
             number,
-            "classical" if is_classical else "robot",
+            "conventional" if is_conventional else "robot",
             operator,
             Site(span, "arm.move_by", number, role),
-            "" if is_classical else "robot:Arm.move_by",
+            "" if is_conventional else "robot:Arm.move_by",
             None,
             None if operator in ("skip", "repeat") else "dx",
             "",
@@ -122,7 +122,7 @@ def build(folder: Path, count: int, rounds: int) -> Path:
         "seed": 1,
         "rounds": rounds,
         "engine": "branch",
-        "families": ["robot", "classical"],
+        "families": ["robot", "conventional"],
         "started": time.time(),
         "reaching": {"tests": tests, "sites": sites},
     }

@@ -25,16 +25,16 @@ sys.path.insert(0, str(ROOT / "tests"))
 from suites.agreement import ENGINES, Found, compare, corpus  # noqa: E402
 
 #: mutants of the program text of each project of the corpus
-CLASSICAL = 4
+CONVENTIONAL = 4
 #: projects of which all mutants of the catalogue are judged as well
 CATALOGUE = {"fault_catalogue"}
 #: example to the number of mutants of each family; what is not named runs whole
 EXAMPLES = {
-    "paper": {"classical": 40, "graded": 80, "catalogue": 20},
-    "scales": {"classical": 15, "text": 45, "graded": 60, "catalogue": 20},
-    "pick_and_place": {"robot": 40, "graded": 120, "classical": 40, "catalogue": 60},
-    "ros1": {"robot": 25, "middleware": 35, "classical": 10},
-    "ros2": {"robot": 25, "middleware": 35, "classical": 10},
+    "paper": {"conventional": 40, "graded": 80, "catalogue": 20},
+    "scales": {"conventional": 15, "text": 45, "graded": 60, "catalogue": 20},
+    "pick_and_place": {"robot": 40, "graded": 120, "conventional": 40, "catalogue": 60},
+    "ros1": {"robot": 25, "middleware": 35, "conventional": 10},
+    "ros2": {"robot": 25, "middleware": 35, "conventional": 10},
 }
 #: the styles of the table: a name, and patterns of the projects that have it; the first one counts
 STYLES = {
@@ -65,7 +65,7 @@ def main() -> int:
     )
     parser.add_argument("names", nargs="*", help="projects of the corpus, or examples")
     parser.add_argument("--engines", nargs="+", default=list(ENGINES), choices=ENGINES)
-    parser.add_argument("--classical", type=int, default=CLASSICAL, help="text mutants of each project")
+    parser.add_argument("--conventional", type=int, default=CONVENTIONAL, help="text mutants of each project")
     parser.add_argument("--cache", type=Path, help="folder that keeps what plain pytest said")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rounds", type=int, default=1, help="rounds of each campaign")
@@ -87,8 +87,8 @@ def main() -> int:
             print(f"{name}: not judged, since this Python has no {NEEDED[name]}")
             continue
         if name in projects:
-            families = ("robot", "classical") if given.classical else ("robot",)
-            only = {"classical": given.classical} if given.classical else None
+            families = ("robot", "conventional") if given.conventional else ("robot",)
+            only = {"conventional": given.conventional} if given.conventional else None
             families += ("catalogue",) if name in CATALOGUE else ()
             folder, limit = projects[name], 30.0
         else:

@@ -140,7 +140,7 @@ def _project(name: str, folder: Path) -> Path:
         f"[pytest]\ntestpaths = {tests}\npythonpath = . {Path(program).parent}\n"
     )
     (project / "mutabot.toml").write_text(
-        f'program = ["{program}"]\ntests = ["{tests}"]\nfamilies = ["classical"]\n'
+        f'program = ["{program}"]\ntests = ["{tests}"]\nfamilies = ["conventional"]\n'
     )
     return project
 

@@ -71,7 +71,7 @@ def _measure(length: int) -> dict[str, float]:
 def _write(project: Path, length: int) -> None:
     (project / "program.py").write_text("def twice(value):\n    return 2 * value\n")
     (project / "pytest.ini").write_text("[pytest]\npythonpath = .\n")
-    (project / "mutabot.toml").write_text('program = ["program.py"]\nfamilies = ["classical"]\n')
+    (project / "mutabot.toml").write_text('program = ["program.py"]\nfamilies = ["conventional"]\n')
     (project / "tests").mkdir()
     for first in range(0, length, _EACH):
         tests = "".join(

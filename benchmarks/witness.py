@@ -36,17 +36,17 @@ ROOT = Path(__file__).resolve().parent.parent
 CORPUS = ROOT / "tests" / "suites" / "projects"
 #: example -> rounds, and mutants of each family at most
 EXAMPLES: Mapping[str, tuple[int, Mapping[str, int]]] = {
-    "paper": (2, {"robot": 1000, "classical": 40, "catalogue": 30}),
-    "scales": (2, {"robot": 1000, "classical": 40, "text": 30, "catalogue": 30}),
-    "pick_and_place": (1, {"robot": 60, "classical": 20, "catalogue": 20}),
-    "loop": (1, {"robot": 30, "classical": 10}),
+    "paper": (2, {"robot": 1000, "conventional": 40, "catalogue": 30}),
+    "scales": (2, {"robot": 1000, "conventional": 40, "text": 30, "catalogue": 30}),
+    "pick_and_place": (1, {"robot": 60, "conventional": 20, "catalogue": 20}),
+    "loop": (1, {"robot": 30, "conventional": 10}),
     "ros1": (1, {"robot": 12, "middleware": 12}),
     "ros2": (1, {"robot": 12, "middleware": 12}),
 }
 #: examples whose messages cross DDS or a ROS master, and the module that they need
 ROS = {"ros1": "rospy", "ros2": "rclpy"}
 #: the same for a project of the corpus
-SMALL: Mapping[str, int] = {"robot": 60, "classical": 8}
+SMALL: Mapping[str, int] = {"robot": 60, "conventional": 8}
 #: what is kept of an outcome; of ROS the first alone
 FACTS = ("verdict", "by", "test", "exception", "message", "hits", "acted", "divergence", "gaps", "example")
 #: what differs between equal runs: addresses, temporary and installation folders, process numbers, times

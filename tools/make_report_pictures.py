@@ -33,7 +33,7 @@ def main(folder: Path) -> None:
     with tempfile.TemporaryDirectory() as name:
         project = Path(name) / "paper"
         shutil.copytree(ROOT / "examples" / "paper", project, ignore=shutil.ignore_patterns(".mutabot"))
-        _mutabot(project, "run", "--rounds", "2", "--family", "robot,classical")
+        _mutabot(project, "run", "--rounds", "2", "--family", "robot,conventional")
         _mutabot(project, "report", "--html", str(project / "report"))
         campaign = mutabot.open(project)
         line = (campaign.source("mission.py") or "").split("\n").index(LINE) + 1

@@ -23,7 +23,7 @@ from typing import Any
 #: one family of a comparison, and a whole comparison, as docs/compare.md describes them
 Family = Mapping[str, Any]
 Data = Mapping[str, Any]
-ROBOT, CONVENTIONAL = "robot", ("classical", "text")
+ROBOT, CONVENTIONAL = "robot", ("conventional", "text")
 
 
 class Stance(StrEnum):

@@ -6,10 +6,10 @@ from mutabot.extensions import INTERFACE, Extension
 
 PROVIDER = "source"
 
-CLASSICAL = "classical"
+CONVENTIONAL = "conventional"
 TEXT = "text"
 #: in the order of their numbers
-OF_TEXT = (CLASSICAL, TEXT)
+OF_TEXT = (CONVENTIONAL, TEXT)
 
 
 EXTENSION = Extension(interface=INTERFACE, faults={PROVIDER: "mutabot_source.provider:SourceFaults"})

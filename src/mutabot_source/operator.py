@@ -18,7 +18,7 @@ import libcst as cst
 from mutabot.model.mutant import Alternative
 from mutabot.operators.operator import Rule
 
-from .extension import CLASSICAL
+from .extension import CONVENTIONAL
 
 #: what the helper object is called in templates; an operator may call, and names what it raises by itself:
 #: ``absolute(value)``, whatever the program calls ``abs``; ``fail(name, text)``, which raises; and
@@ -88,7 +88,7 @@ def each(program: str, texts: str) -> tuple[str, ...]:
     return tuple(program.format(text) for text in texts.split(", "))
 
 
-class ClassicalOperator(Rule):
+class ConventionalOperator(Rule):
     """A rule that makes alternatives of program text.
 
     Class attributes, beside those of every ``Rule``:
@@ -97,7 +97,7 @@ class ClassicalOperator(Rule):
             scope at a place (``with_variables``).
     """
 
-    family: ClassVar[str] = CLASSICAL
+    family: ClassVar[str] = CONVENTIONAL
     examples: ClassVar[tuple[TextExample, ...]] = ()
     rank: ClassVar[int] = 1000
     asks_variables: ClassVar[bool] = False

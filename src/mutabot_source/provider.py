@@ -19,7 +19,7 @@ from mutabot.model.mutant import Place, ProgramText
 from .extension import OF_TEXT, PROVIDER
 
 if TYPE_CHECKING:
-    from .operator import ClassicalOperator
+    from .operator import ConventionalOperator
 
 
 class SourceFaults(FaultProvider):
@@ -29,7 +29,7 @@ class SourceFaults(FaultProvider):
     families = OF_TEXT
     location = "program text"
 
-    def rules(self) -> Sequence[ClassicalOperator]:
+    def rules(self) -> Sequence[ConventionalOperator]:
         """All operators on program text."""
         from .registry import load_all
 

@@ -13,7 +13,7 @@ from mutabot.model.mutant import Alternative, Choice, ProgramText, Sighting, Tex
 from . import registry
 from .extension import PROVIDER
 from .nodes import shortened
-from .operator import ClassicalOperator
+from .operator import ConventionalOperator
 
 
 def plant(texts: Iterable[ProgramText]) -> list[Planted]:
@@ -105,7 +105,7 @@ def refine(
 
 
 def _variables(
-    asking: Iterable[ClassicalOperator], place: TextPlace, seen: Sighting | None, declared: tuple[str, ...]
+    asking: Iterable[ConventionalOperator], place: TextPlace, seen: Sighting | None, declared: tuple[str, ...]
 ) -> list[Alternative]:
     if not place.variable or seen is None:
         return []

@@ -11,21 +11,21 @@ from mutabot.errors import OperatorError, unknown_name_text
 from mutabot.operators.registry import classes_in, modules_in
 
 from .extension import OF_TEXT
-from .operator import ClassicalOperator
+from .operator import ConventionalOperator
 
 _PACKAGE = f"{__package__}.operators"
 
 
 @cache
-def load_all() -> tuple[ClassicalOperator, ...]:
+def load_all() -> tuple[ConventionalOperator, ...]:
     """All operators, in the order of the documentation and of the alternatives at a place.
 
     Raises OperatorError when two have the same name, or one a family that is not of program text.
     """
-    owners: dict[str, ClassicalOperator] = {}
+    owners: dict[str, ConventionalOperator] = {}
     for module in modules_in(Path(__file__).parent / "operators"):
-        for kind in classes_in(import_module(f"{_PACKAGE}.{module}"), ClassicalOperator):
-            made: ClassicalOperator = kind()
+        for kind in classes_in(import_module(f"{_PACKAGE}.{module}"), ConventionalOperator):
+            made: ConventionalOperator = kind()
             if made.name in owners:
                 other = type(owners[made.name]).__module__
                 text = f"operator {made.name!r} stands in {other} and in {kind.__module__}"
@@ -42,7 +42,7 @@ def names(family: str | None = None) -> list[str]:
     return [each.name for each in load_all() if family in (None, each.family)]
 
 
-def operator(name: str) -> ClassicalOperator:
+def operator(name: str) -> ConventionalOperator:
     """The operator of this name. Raises OperatorError if there is none."""
     for each in load_all():
         if each.name == name:
@@ -50,7 +50,7 @@ def operator(name: str) -> ClassicalOperator:
     raise OperatorError(unknown_name_text("operator", name, names()))
 
 
-def chosen(wanted: Iterable[str] | None) -> list[ClassicalOperator]:
+def chosen(wanted: Iterable[str] | None) -> list[ConventionalOperator]:
     """The operators of these names, in the usual order; all for None. Raises OperatorError."""
     if wanted is None:
         return list(load_all())

@@ -20,10 +20,10 @@ from mutabot.languages.python import extent_of
 from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPlace
 
 from . import registry
-from .extension import CLASSICAL
+from .extension import CONVENTIONAL
 from .index import Index, ScopedNode
 from .nodes import Extents, is_variable, shortened, shown, surroundings, template
-from .operator import ClassicalOperator, Draft
+from .operator import ConventionalOperator, Draft
 
 #: characters of the longest expression that is worth an alternative; tables are longer
 LONGEST = 1000
@@ -34,11 +34,11 @@ def find_texts(
 ) -> tuple[ProgramText, ...]:
     """The places of these files (relative to ``root``), numbered from ``first`` on over all of them.
 
-    ``operators``: names; all of family ``classical`` if left out.
+    ``operators``: names; all of family ``conventional`` if left out.
 
     Raises SyntaxError for a file that is no Python, OperatorError for an unknown operator.
     """
-    rules = registry.chosen(registry.names(CLASSICAL) if operators is None else operators)
+    rules = registry.chosen(registry.names(CONVENTIONAL) if operators is None else operators)
     texts: list[ProgramText] = []
     number = first - 1
     for file in files:
@@ -53,7 +53,7 @@ def find_texts(
 
 
 def find_places(
-    source: bytes, file: str, rules: Iterable[ClassicalOperator], index: Index, *, first: int = 1
+    source: bytes, file: str, rules: Iterable[ConventionalOperator], index: Index, *, first: int = 1
 ) -> Iterator[TextPlace]:
     """The places of one file that any of the rules has to do with, in the order of the text."""
     finder = _Finder(_decoded(source), file, list(rules), index)
@@ -104,7 +104,7 @@ def _order(seed: _Seed) -> tuple[int, int, int, int]:
 class _Finder(cst.CSTVisitor):
     METADATA_DEPENDENCIES = (PositionProvider, ParentNodeProvider)
 
-    def __init__(self, text: str, file: str, rules: list[ClassicalOperator], index: Index) -> None:
+    def __init__(self, text: str, file: str, rules: list[ConventionalOperator], index: Index) -> None:
         super().__init__()
         self.wrapper = MetadataWrapper(cst.parse_module(text), unsafe_skip_copy=True)
         ranges = self.wrapper.resolve(PositionProvider)
@@ -153,7 +153,7 @@ class _Finder(cst.CSTVisitor):
             return self._index.expression(extent)
         return self._index.statements.get(extent[:2])
 
-    def _add(self, seed: _Seed, rule: ClassicalOperator, draft: Draft) -> None:
+    def _add(self, seed: _Seed, rule: ConventionalOperator, draft: Draft) -> None:
         nodes = [part for part in draft.parts if not isinstance(part, str)]
         extents = [self.extents.of(node) for node in nodes]
         if any(self._index.expressions.get(extent) is None for extent in extents):

@@ -19,7 +19,7 @@ TESTS = tuple(f"tests/test_mission.py::test_{letter}" for letter in "abc")
 KINDS = {
     ("robot", Role.PROGRAM): (30, (50, 10, 0, 20, 8, 10, 0, 2, 0, 2, 1, 1)),
     ("robot", Role.ORACLE): (12, (70, 0, 0, 10, 20, 0, 0, 0, 0, 0, 0, 0)),
-    ("classical", Role.PROGRAM): (120, (15, 25, 15, 8, 20, 8, 0, 3, 4, 2, 1, 1)),
+    ("conventional", Role.PROGRAM): (120, (15, 25, 15, 8, 20, 8, 0, 3, 4, 2, 1, 1)),
     ("text", Role.PROGRAM): (60, (2, 3, 80, 0, 0, 0, 15, 0, 0, 0, 0, 0)),
 }
 
@@ -75,7 +75,7 @@ def _outcome(mutant: str, round: int, kind: int, tests: list[str]) -> Outcome:
 
 def write(path: File, *, rounds: int = 3, luck: int = 1, complete: bool = True, **meta: Any) -> File:
     """The journal of such a campaign."""
-    facts = {"families": ["robot", "classical", "text"], "every_test": True, **meta}
+    facts = {"families": ["robot", "conventional", "text"], "every_test": True, **meta}
     return samples.write_journal(
         path,
         mutants=mutants(),

@@ -30,7 +30,7 @@ def test_there_is_a_column_for_each_family_and_role_in_the_order_asked_for(
     comparison: FamilyComparison,
 ) -> None:
     assert [(one.name, one.role) for one in comparison.families] == [
-        ("robot", "program"), ("robot", "oracle"), ("classical", "program"), ("text", "program"),
+        ("robot", "program"), ("robot", "oracle"), ("conventional", "program"), ("text", "program"),
     ]  # fmt: skip
 
 

@@ -99,21 +99,21 @@ def test_each_weakness_speaks_for_or_against_its_own_claim(data: Any, key: str, 
 
 def test_fewer_informative_mutants_speak_for_the_claim(data: Any) -> None:
     claim = CLAIMS[-1]
-    family(data, "classical")["informative"] = share(5, 100)
+    family(data, "conventional")["informative"] = share(5, 100)
     family(data, "robot")["informative"] = share(90, 100)
-    assert finding(claim, data, "classical").stance is Stance.FOR
+    assert finding(claim, data, "conventional").stance is Stance.FOR
     family(data, "robot")["informative"] = share(1, 100)
-    family(data, "classical")["informative"] = share(50, 100)
-    assert finding(claim, data, "classical").stance is Stance.AGAINST
+    family(data, "conventional")["informative"] = share(50, 100)
+    assert finding(claim, data, "conventional").stance is Stance.AGAINST
 
 
 @pytest.mark.parametrize(
     ("places", "stance"), [(3, Stance.FOR), (30, Stance.AGAINST), (10, Stance.UNDECIDED)]
 )
 def test_the_larger_number_of_places_decides(data: Any, places: int, stance: Stance) -> None:
-    family(data, "classical")["places"] = places
+    family(data, "conventional")["places"] = places
     assert family(data, "robot")["places"] == 10
-    assert finding(PLACES, data, "classical").stance is stance
+    assert finding(PLACES, data, "conventional").stance is stance
 
 
 def test_a_family_without_a_mutant_has_too_few_places_and_says_nothing_else(data: Any) -> None:
@@ -129,7 +129,7 @@ def test_a_family_that_was_not_run_says_nothing(data: Any) -> None:
 
 def test_a_sample_does_not_tell_how_many_places_there_are(data: Any) -> None:
     data["sample"] = {"size": "10%", "selected": 900}
-    assert finding(PLACES, data, "classical").stance is Stance.UNKNOWN
+    assert finding(PLACES, data, "conventional").stance is Stance.UNKNOWN
 
 
 def test_what_a_score_is_worth_without_an_oracle_follows_from_the_numbers(data: Any) -> None:
@@ -158,7 +158,7 @@ def test_the_page_holds_every_claim_family_and_example(data: Any) -> None:
 
 def test_the_table_in_short_and_the_sentences_agree(data: Any) -> None:
     text = tool.page({"paper": data})
-    short = re.findall(r"^\| [\w ]+ \| (?:classical|text) \| (.+) \|$", text, re.MULTILINE)
+    short = re.findall(r"^\| [\w ]+ \| (?:conventional|text) \| (.+) \|$", text, re.MULTILINE)
     long = re.findall(r"^- (\S+(?: measured)?), on paper: ", text, re.MULTILINE)
     assert sorted(short) == sorted(long)
 

@@ -62,8 +62,10 @@ def test_what_differs_between_equal_runs_is_not_recorded() -> None:
 
 
 def test_mutants_are_drawn_by_their_ids_alone() -> None:
-    mutants = [{"id": f"m{number}", "family": "classical"} for number in range(50)]
-    few = witness.drawn(mutants, {"classical": 5})
+    mutants = [{"id": f"m{number}", "family": "conventional"} for number in range(50)]
+    few = witness.drawn(mutants, {"conventional": 5})
     assert len(few) == 5
-    assert set(few) <= set(witness.drawn([*mutants, {"id": "new", "family": "classical"}], {"classical": 6}))
+    assert set(few) <= set(
+        witness.drawn([*mutants, {"id": "new", "family": "conventional"}], {"conventional": 6})
+    )
     assert witness.drawn(mutants, {"robot": 5}) == []

@@ -51,7 +51,7 @@ def test_without_checks_only_exceptions_kill(tmp_path: Path, monkeypatch: pytest
     bomb = "mission.py:near:return 1 / (x - 0.5) < 0#1:BSR"
     wanted = {
         "engine": "auto",
-        "families": ("classical",),
+        "families": ("conventional",),
         "only": (inverted, program, bomb),
         "fresh": True,
     }

@@ -61,8 +61,8 @@ def by_file(mutants: list[Mutant]) -> dict[str, set[str]]:
     "families",
     [
         ("robot", "graded", "catalogue"),
-        pytest.param(("classical",), marks=pytest.mark.needs("source")),
-        pytest.param(("robot", "classical"), marks=pytest.mark.needs("source")),
+        pytest.param(("conventional",), marks=pytest.mark.needs("source")),
+        pytest.param(("robot", "conventional"), marks=pytest.mark.needs("source")),
     ],
 )
 def test_modules_of_equal_text_have_the_same_mutants_each(tmp_path: Path, families: tuple[str, ...]) -> None:

@@ -277,7 +277,7 @@ def test_a_script_sees_itself_as_ever_when_its_text_is_mutated(tmp_path: Path) -
                                   capture_output=True, text=True, check=True).stdout
             assert told == "('__main__', None, None, 'What it does.', True, True) mission.py 3\\n"
     """
-    found = run(write_project(tmp_path, mission, tests), fresh=True, families=("classical",))
+    found = run(write_project(tmp_path, mission, tests), fresh=True, families=("conventional",))
     changed = [one for mutant, one in found.items() if ":3#1:" in mutant]
     assert changed
     assert {one.verdict for one in changed} == {Verdict.KILLED}

@@ -139,7 +139,7 @@ def test_a_skipped_call_of_which_nobody_knows_the_answer_is_left_out(
 def test_a_mutant_of_the_text_is_judged_by_the_tests_as_well(tmp_path: Path) -> None:
     """One number for another: the robot refuses either, and the test expects which."""
     write_project(tmp_path, MISSION, TESTS)
-    outcomes = by_branches(tmp_path, families=("classical",))
+    outcomes = by_branches(tmp_path, families=("conventional",))
     told = [one for (id, _), one in outcomes.items() if id.startswith("mission.py:too_far_told:5.0")]
     assert told
     refused_as_well = [one for one in told if "out of reach" in (one.message or "")]

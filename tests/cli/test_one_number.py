@@ -64,13 +64,13 @@ def test_mutants_of_the_text_alone_need_no_vocabulary(
     configuration = f'program = ["mission.py"]\n{vocabulary}\npytest_args = ["-o", "pythonpath=."]\n'
     write_project(tmp_path, MISSION, TESTS, configuration=configuration, vocabulary="")
     project = ["-C", str(tmp_path)]
-    found = printed(capsys, *project, "run", "--family", "classical")
+    found = printed(capsys, *project, "run", "--family", "conventional")
     assert found
-    assert main([*project, "run", "--family", "classical", "--family", "robot"]) == ExitCode.USAGE
+    assert main([*project, "run", "--family", "conventional", "--family", "robot"]) == ExitCode.USAGE
     err = capsys.readouterr().err
     assert "vocabulary" in err
     assert "empty" in err
     assert main([*project, "run"]) == ExitCode.USAGE
-    (tmp_path / "mutabot.toml").write_text(f'families = ["classical", "text"]\n{configuration}')
+    (tmp_path / "mutabot.toml").write_text(f'families = ["conventional", "text"]\n{configuration}')
     assert found.keys() <= printed(capsys, *project, "run").keys()
     assert main([*project, "replay", next(iter(found))]) == ExitCode.FINE

@@ -97,7 +97,7 @@ def test_its_text_has_no_mutants_and_that_is_told(site: Path, tmp_path: Path) ->
         "import sys, pathlib\n"
         "from mutabot.faults import Project\n"
         "from mutabot_source.provider import SourceFaults\n"
-        "project = Project(pathlib.Path(sys.argv[1]), ('program',), families=('classical',))\n"
+        "project = Project(pathlib.Path(sys.argv[1]), ('program',), families=('conventional',))\n"
         "prepared = SourceFaults().prepare(project, 1)\n"
         "print(prepared.texts, *prepared.notes)\n"
     )

@@ -58,10 +58,10 @@ TOO_MUCH = """
 ZERO = """
     import libcst as cst
 
-    from mutabot_source.operator import ClassicalOperator, Draft, TextExample
+    from mutabot_source.operator import ConventionalOperator, Draft, TextExample
 
 
-    class Zero(ClassicalOperator):
+    class Zero(ConventionalOperator):
         name = "CZR"
         summary = "A constant is zero."
         examples = (TextExample("x = 2\\n", ("x = 0\\n",)), TextExample("x = y\\n"))
@@ -94,7 +94,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def of_both_families(site: Path, folder: Path, *arguments: str) -> dict[str, Any]:
-    found = mutants(site, folder, *arguments, "--family", "robot,classical")
+    found = mutants(site, folder, *arguments, "--family", "robot,conventional")
     return {name.removeprefix("mission.py:run:"): one for name, one in found.items()}
 
 
@@ -104,7 +104,7 @@ def test_both_come_last_in_the_plan_and_the_others_keep_their_order(site: Path, 
     names = [one["operator"] for one in found.values()]
     assert [*dict.fromkeys(names)] == ["reverse", "skip", "repeat", "bit-off", "thrice", "BSR", "UOI", "CZR"]
     assert {one["family"] for one in found.values() if one["operator"] == "bit-off"} == {"robot"}
-    assert {one["family"] for one in found.values() if one["operator"] == "CZR"} == {"classical"}
+    assert {one["family"] for one in found.values() if one["operator"] == "CZR"} == {"conventional"}
 
 
 def test_both_get_verdicts(site: Path, tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_both_get_verdicts(site: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("page", "before", "name"),
-    [("make_docs", "bit-off", "thrice"), ("make_classical_page", "swap-characters", "CZR")],
+    [("make_docs", "bit-off", "thrice"), ("make_conventional_page", "swap-characters", "CZR")],
 )
 def test_both_have_the_last_section_in_the_documentation(
     page: str, before: str, name: str, site: Path

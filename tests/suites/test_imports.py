@@ -16,7 +16,7 @@ from tests.campaign.project import Quiet, outcomes, request_for
 
 from .agreement import compare
 
-CONFIGURATION = 'program = ["program"]\ntests = ["tests"]\nfamilies = ["classical"]\ntimeout_seconds = 5\n'
+CONFIGURATION = 'program = ["program"]\ntests = ["tests"]\nfamilies = ["conventional"]\ntimeout_seconds = 5\n'
 TABLE = """
     import re
 
@@ -306,7 +306,9 @@ def project(folder: Path, files: dict[str, str]) -> Path:
 @pytest.mark.parametrize("suite", [first, *(pytest.param(one, marks=pytest.mark.whole) for one in others)])
 def test_every_verdict_is_that_of_plain_pytest(tmp_path: Path, suite: str) -> None:
     folder = project(tmp_path / "imports", SUITES[suite])
-    found = compare(folder, families=("classical",), only={"classical": 8}, engines=("branch",), limit=8.0)
+    found = compare(
+        folder, families=("conventional",), only={"conventional": 8}, engines=("branch",), limit=8.0
+    )
     assert found.disagreements == []
     assert len(found.compared) >= 5
 
@@ -331,7 +333,7 @@ FACTS = ("verdict", "by", "test", "exception", "hits", "acted", "example", "kill
 
 def run(folder: Path, engine: str, only: tuple[str, ...] = ()) -> tuple[dict[str, Outcome], list[str]]:
     quiet = Quiet()
-    request = request_for(folder, engine=engine, families=("classical",), fresh=True, only=only)
+    request = request_for(folder, engine=engine, families=("conventional",), fresh=True, only=only)
     return {one.mutant: one for one in outcomes(run_campaign(request, quiet))}, quiet.lines
 
 

@@ -213,7 +213,7 @@ def test_a_mutant_of_the_text_is_what_its_description_says(
     facts = Facts.of(project(tmp_path, source))
     text = source.strip() if operator == "BSR" else "a + b"
     told = {"operator": operator, "variant": variant, "description": description, "operation": ""}
-    found = mutant(text, source, family="classical", **told)
+    found = mutant(text, source, family="conventional", **told)
     (edit,) = edits_for(facts, found)
     assert edit.applied(source.encode()).decode() == f"{expected}\n"
 
@@ -222,7 +222,7 @@ def test_a_mutant_of_the_text_is_what_its_description_says(
 def test_a_mutant_that_cannot_be_written_is_said_to_be_so(tmp_path: Path, description: str) -> None:
     facts = Facts.of(project(tmp_path, "x = a + b\n"))
     found = mutant(
-        "a + b", "x = a + b\n", family="classical", operator="AOR", description=description, operation=""
+        "a + b", "x = a + b\n", family="conventional", operator="AOR", description=description, operation=""
     )  # fmt: skip
     with pytest.raises(CannotWriteError):
         edits_for(facts, found)

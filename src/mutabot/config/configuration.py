@@ -125,7 +125,7 @@ class Settings(Table):
     vocabulary: _Texts = ()
     """Vocabulary files of the project, or names of vocabularies that come with
     mutabot; see [vocabulary](vocabulary.md). Mutants of calls need one; those of the program text
-    (`classical`, `text`) do not.
+    (`conventional`, `text`) do not.
 
         vocabulary = ["robot.toml"]
     """
@@ -221,10 +221,10 @@ class Settings(Table):
         when = ["every", "once", "from 10"]
     """
     families: _Families = USUAL
-    """Families of mutants to plant: `robot` in calls, `classical` and
+    """Families of mutants to plant: `robot` in calls, `conventional` and
     `text` in the program's text. `--family` goes before it.
 
-        families = ["robot", "classical"]
+        families = ["robot", "conventional"]
     """
     baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
     """How often the original is run per round; without it, as often as the engine

@@ -7,13 +7,13 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample, each
+from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample, each
 
 _TEXTS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
 _DISPLAYS = cst.List | cst.Tuple | cst.Dict | cst.Set | cst.ListComp | cst.SetComp | cst.DictComp
 
 
-class _BinaryOperator(ClassicalOperator):
+class _BinaryOperator(ConventionalOperator):
     """Replaces a binary operator by each other of its group, and the operation by its operands.
 
     Class attributes:
@@ -133,7 +133,7 @@ _BITS: _Signs = {
 _SHIFTS: _Signs = {cst.LeftShiftAssign: ("left", "<<="), cst.RightShiftAssign: ("right", ">>=")}
 
 
-class AssignmentReplacement(ClassicalOperator):
+class AssignmentReplacement(ConventionalOperator):
     """Replaces ``+=`` and its like."""
 
     name = "ASR"

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import HELPER, ClassicalOperator, Draft, Surroundings, TextExample
+from mutabot_source.operator import HELPER, ConventionalOperator, Draft, Surroundings, TextExample
 
 _SIMPLE = (
     cst.Assign
@@ -24,7 +24,7 @@ _SIMPLE = (
 _COMPOUND = cst.If | cst.For | cst.While | cst.Try | cst.TryStar | cst.With | cst.Match
 
 
-class Bomb(ClassicalOperator):
+class Bomb(ConventionalOperator):
     """Replaces a statement by one that raises."""
 
     name = "BSR"

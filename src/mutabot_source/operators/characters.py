@@ -15,7 +15,7 @@ from typing import ClassVar
 import libcst as cst
 
 from mutabot_source.extension import TEXT
-from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample
+from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample
 
 #: alternatives per text and operator
 LIMIT = 4
@@ -23,7 +23,7 @@ _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 _DIGITS = "0123456789"
 
 
-class _Characters(ClassicalOperator):
+class _Characters(ConventionalOperator):
     """Changes single characters of texts that are arguments of calls."""
 
     family = TEXT

@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample, each
+from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample, each
 
 
-class ConditionalReplacement(ClassicalOperator):
+class ConditionalReplacement(ConventionalOperator):
     """Replaces ``and`` and ``or``; drops operands."""
 
     name = "COR"
@@ -88,7 +88,7 @@ _SIGNS = _ORDERS | _IDENTITIES | _MEMBERSHIPS
 _WITHOUT_ORDER = ("None", "True", "False")
 
 
-class RelationalReplacement(ClassicalOperator):
+class RelationalReplacement(ConventionalOperator):
     """Replaces each operator of a comparison, and the comparison by a truth value."""
 
     name = "ROR"

@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import HELPER, ClassicalOperator, Draft, Surroundings, TextExample, is_scalar
+from mutabot_source.operator import HELPER, ConventionalOperator, Draft, Surroundings, TextExample, is_scalar
 
 
-class Absolute(ClassicalOperator):
+class Absolute(ConventionalOperator):
     """abs, negAbs and failOnZero around arithmetic values."""
 
     name = "ABS"
@@ -43,7 +43,7 @@ class Absolute(ClassicalOperator):
 _CONDITIONS = cst.Comparison | cst.BooleanOperation
 
 
-class UnaryInsertion(ClassicalOperator):
+class UnaryInsertion(ConventionalOperator):
     """Puts ``-``, ``~`` or ``not`` in front of a value of the right type."""
 
     name = "UOI"
@@ -82,7 +82,7 @@ class UnaryInsertion(ClassicalOperator):
             yield Draft("not", ("not ", node), "truth")
 
 
-class UnaryDeletion(ClassicalOperator):
+class UnaryDeletion(ConventionalOperator):
     """Drops ``-``, ``+``, ``~`` and ``not``."""
 
     name = "UOD"

@@ -12,10 +12,10 @@ from typing import ClassVar
 import libcst as cst
 
 from mutabot.model.mutant import Alternative
-from mutabot_source.operator import ClassicalOperator, Draft, Surroundings, TextExample
+from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample
 
 
-class VariableReplacement(ClassicalOperator):
+class VariableReplacement(ConventionalOperator):
     """Replaces a variable by each other one of the same type that is in scope."""
 
     name = "SVR"

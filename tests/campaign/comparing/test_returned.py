@@ -106,7 +106,7 @@ def test_notes_and_mutants_of_the_text_stand_in_the_same_functions(tmp_path: Pat
             mission.when(Arm(0.5))
     """
     folder = write_project(tmp_path, MISSION, tests, vocabulary=PROBED)
-    found = by_branches(folder, families=("robot", "classical"))
+    found = by_branches(folder, families=("robot", "conventional"))
     returned = [one.divergence for (mutant, _), one in found.items() if "arm" not in mutant]
     assert any("run returned" in line for lines in returned for line in lines)
     negate = next(one for (mutant, _), one in found.items() if ":when:" in mutant and "negate" in mutant)

@@ -32,7 +32,7 @@ MANY = [mutant(number) for number in range(1, 201)]
 MIXED = [
     *MANY[:60],
     *(mutant(number, role=Role.ORACLE) for number in range(300, 330)),
-    *(mutant(number, "classical") for number in range(400, 700)),
+    *(mutant(number, "conventional") for number in range(400, 700)),
 ]
 
 
@@ -84,7 +84,7 @@ def test_a_sample_keeps_order_and_numbers_and_draws_none_twice(size: str) -> Non
 @pytest.mark.parametrize("size", SIZES)
 def test_no_family_and_role_goes_away_empty_if_there_is_enough(size: str) -> None:
     found = Counter((one.family, one.site.role) for one in drawn(MIXED, size))
-    assert found["classical", Role.PROGRAM] > 0
+    assert found["conventional", Role.PROGRAM] > 0
     assert found["robot", Role.PROGRAM] > 0
     assert found["robot", Role.ORACLE] > 0 or size == "1"
 
@@ -94,7 +94,7 @@ def test_a_number_is_per_family_and_divided_as_its_roles_are() -> None:
     assert found == {
         ("robot", Role.PROGRAM): 20,
         ("robot", Role.ORACLE): 10,
-        ("classical", Role.PROGRAM): 30,
+        ("conventional", Role.PROGRAM): 30,
     }
 
 

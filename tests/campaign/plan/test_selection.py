@@ -116,5 +116,5 @@ def test_operators_of_all_families_can_be_chosen_by_name() -> None:
     for mutant in mutants:
         assert select(mutants, [mutant.operator]) == [mutant]
         assert mutant not in select(mutants, (), [mutant.operator])
-    for family in ("robot", "classical", "text"):
+    for family in ("robot", "conventional", "text"):
         assert select(mutants, [family]) == [one for one in mutants if one.family == family]

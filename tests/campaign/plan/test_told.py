@@ -42,7 +42,7 @@ TESTS = """
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> StoredCampaign:
     folder = write_project(tmp_path_factory.mktemp("told"), MISSION, TESTS)
-    run_campaign(request_for(folder, families=(ROBOT, "classical"), rounds=2), Quiet())
+    run_campaign(request_for(folder, families=(ROBOT, "conventional"), rounds=2), Quiet())
     return open_campaign(folder)
 
 

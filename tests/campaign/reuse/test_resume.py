@@ -339,7 +339,7 @@ def test_results_of_earlier_runs_are_marked_where_something_has_changed(project:
 @pytest.mark.needs("source")
 def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(project: Project) -> None:
     robots = {mutant for mutant, _ in project.run()}
-    texts = {mutant for mutant, _ in project.run(families=("classical",))}
+    texts = {mutant for mutant, _ in project.run(families=("conventional",))}
     shown = project.all_results()
     assert {one.mutant.id for one in shown.mutants} == robots | texts
     assert {one.mutant.id for one in shown.earlier} == robots
@@ -347,9 +347,9 @@ def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(pro
     numbers = [one.mutant.number for one in shown.mutants]
     assert len(numbers) == len(set(numbers))
     project.edit("robot.py", lambda text: text.replace("self.x = x", "'docstring'; self.x = x"))
-    project.run(families=("classical",))
+    project.run(families=("conventional",))
     assert {one.mutant.id for one in project.all_results().mutants if one.outdated} == robots
-    assert {mutant for mutant, _ in project.run(families=("robot", "classical"))} == robots
+    assert {mutant for mutant, _ in project.run(families=("robot", "conventional"))} == robots
 
 
 def test_mutants_that_the_program_has_no_longer_are_not_shown(project: Project) -> None:

@@ -6,9 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-SCRIPT = Path(__file__).parents[3] / "tools" / "make_classical_page.py"
+SCRIPT = Path(__file__).parents[3] / "tools" / "make_conventional_page.py"
 
 
-def test_docs_classical_md_is_up_to_date() -> None:
+def test_docs_conventional_md_is_up_to_date() -> None:
     done = subprocess.run([sys.executable, str(SCRIPT), "--check"], check=False)
-    assert done.returncode == 0, "run python tools/make_classical_page.py"
+    assert done.returncode == 0, "run python tools/make_conventional_page.py"

@@ -114,7 +114,7 @@ def test_a_mutant_of_the_program_text_has_the_new_text(tmp_path: Path) -> None:
     span = replace(samples.MOVE.span, column=16, end_column=22)
     site = replace(samples.MOVE, span=span, text="dx=0.2")
     mutant = replace(
-        samples.REVERSE, family="classical", operation="", quantity=None, site=site,
+        samples.REVERSE, family="conventional", operation="", quantity=None, site=site,
         description="dx=0.2 → dx=-0.2",
     )  # fmt: skip
     end = Outcome(mutant.id, 0, Verdict.KILLED, By.CHECK)

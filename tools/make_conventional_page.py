@@ -1,7 +1,7 @@
-"""Write docs/classical.md from the examples of the operators on program text.
+"""Write docs/conventional.md from the examples of the operators on program text.
 
-Use: ``python tools/make_classical_page.py``; with ``--check`` nothing is written, and the exit code is 1 if
-the page is out of date.
+Use: ``python tools/make_conventional_page.py``; with ``--check`` nothing is written, and the exit code is 1
+if the page is out of date.
 """
 
 from __future__ import annotations
@@ -10,22 +10,22 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from mutabot_source.operator import ClassicalOperator, TextExample
+from mutabot_source.operator import ConventionalOperator, TextExample
 from mutabot_source.registry import names, operator
 
-PAGE = Path(__file__).parents[1] / "docs" / "classical.md"
+PAGE = Path(__file__).parents[1] / "docs" / "conventional.md"
 
 HEAD = """\
 # Conventional operators on program text
 
-<!-- Written by tools/make_classical_page.py from the operators' own examples. Do not edit. -->
+<!-- Written by tools/make_conventional_page.py from the operators' own examples. Do not edit. -->
 
 The operators of textbooks change the text of a program and know nothing of robots. They are here to be
 compared with those that do ([operators](operators.md)).
 
-`mutabot run --family classical` (or `text`, or `robot,classical,text`; also for `list` and `check`) plants
-them, as does `families = ["robot", "classical"]` in the configuration. They run in the same engines, are
-judged and reported in the same way, and have scores of their own. Mutants of calls come first and keep their
+`mutabot run --family conventional` (or `text`, or `robot,conventional,text`; also for `list` and `check`)
+plants them, as does `families = ["robot", "conventional"]` in the configuration. They run in the same engines,
+are judged and reported in the same way, and have scores of their own. Mutants of calls come first and keep their
 numbers.
 
 No file is changed for it. While the program is imported, each place with alternatives is compiled as *the
@@ -71,7 +71,7 @@ def page() -> str:
     return "\n".join([*lines, "", COST])
 
 
-def _section(each: ClassicalOperator) -> Iterator[str]:
+def _section(each: ConventionalOperator) -> Iterator[str]:
     yield from ("", f"## {each.name}", "", each.summary, "")
     yield from ("| original | mutants | note |", "|---|---|---|")
     for example in each.examples:

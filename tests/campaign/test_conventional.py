@@ -101,7 +101,7 @@ SOME = (
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("classical")
+    folder = tmp_path_factory.mktemp("conventional")
     return write_project(folder, MISSION, TESTS, configuration=QUICK + "timeout_seconds = 3\n")
 
 
@@ -113,7 +113,7 @@ ENGINES = pytest.mark.parametrize("engine", ["auto", REPLAY])
 def ends(project: Path) -> dict[str, Outcome]:
     """All outcomes by mutant: branches, and processes of their own where these cannot be."""
     before = fingerprint(project)
-    found = run(project, engine="auto", families=("robot", "classical"), only=SOME, fresh=True)
+    found = run(project, engine="auto", families=("robot", "conventional"), only=SOME, fresh=True)
     assert fingerprint(project) == before
     return found
 
@@ -124,7 +124,7 @@ def end(ends: dict[str, Outcome], mutant: str) -> Outcome:
 
 @pytest.mark.whole
 def test_both_engines_agree_on_every_mutant(project: Path, ends: dict[str, Outcome]) -> None:
-    replayed = run(project, engine="replay", families=("robot", "classical"), only=SOME, fresh=True)
+    replayed = run(project, engine="replay", families=("robot", "conventional"), only=SOME, fresh=True)
     assert ends.keys() == replayed.keys()
     different = {
         mutant: (first, replayed[mutant])
@@ -197,7 +197,7 @@ def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_bran
     vocabulary = 'clock = { tick = "robot:Arm.tick", unit = "s" }\n' + dedent(VOCABULARY)
     project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
     only = ("mission.py:way:step*",)
-    ends = run(project, engine="branch", families=("classical",), only=only)
+    ends = run(project, engine="branch", families=("conventional",), only=only)
     zero, late = (f"mission.py:way:step#2:ABS={variant}" for variant in ("failOnZero", "abs"))
     idle, acting = ends[zero], ends[late]
     assert (idle.verdict, idle.hits, idle.acted, idle.engine) == (Verdict.NO_EFFECT, 4, 0, "branch")
@@ -223,7 +223,7 @@ def test_a_difference_in_a_process_that_the_test_forked_is_not_overlooked(tmp_pa
     """
     project = write_project(tmp_path, mission, tests)
     mutant = "mission.py:size:x#1:ABS=abs"
-    found = run(project, engine="auto", families=("classical",), only=(mutant,))[mutant]
+    found = run(project, engine="auto", families=("conventional",), only=(mutant,))[mutant]
     assert found.verdict is Verdict.KILLED
 
 
@@ -262,7 +262,7 @@ def test_a_refusal_that_the_program_handles_is_no_refusal(tmp_path: Path, engine
             assert mission.careful(robot.Arm(-0.5))
     """
     project = write_project(tmp_path, mission, tests)
-    found = run(project, engine=engine, families=("classical",), only=("UOI",))
+    found = run(project, engine=engine, families=("conventional",), only=("UOI",))
     assert found["mission.py:careful:0.3#1:UOI=neg"].verdict is Verdict.SURVIVED
     negative = found["mission.py:careful:0.5 + 0.3#1:UOI=neg"]
     assert (negative.verdict, negative.by) == (Verdict.KILLED, By.CHECK)
@@ -295,22 +295,22 @@ def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, Ou
 @pytest.mark.usefixtures("script")
 def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project: Path) -> None:
     alone, _ = plan_only(request_for(project), Quiet())
-    together, _ = plan_only(request_for(project, families=("robot", "classical", "text")), Quiet())
+    together, _ = plan_only(request_for(project, families=("robot", "conventional", "text")), Quiet())
     assert together[: len(alone)] == alone
     assert [mutant.number for mutant in together] == list(range(1, len(together) + 1))
     assert [mutant.family for mutant in together] == sorted(
-        (mutant.family for mutant in together), key=("robot", "classical", "text").index
+        (mutant.family for mutant in together), key=("robot", "conventional", "text").index
     )
 
 
 @pytest.mark.usefixtures("script")
 def test_families_operators_and_ids_select(project: Path) -> None:
     def chosen(**selection: Any) -> set[str]:
-        mutants, _ = plan_only(request_for(project, families=("robot", "classical"), **selection), Quiet())
+        mutants, _ = plan_only(request_for(project, families=("robot", "conventional"), **selection), Quiet())
         return {mutant.id for mutant in mutants}
 
     assert all(":BSR" in mutant for mutant in chosen(only=("BSR",)))
-    assert chosen(only=("classical",)).isdisjoint(chosen(only=("robot",)))
+    assert chosen(only=("conventional",)).isdisjoint(chosen(only=("robot",)))
     wild = "mission.py:far:0.5 * factor#1:AOR=add"
     assert chosen(only=(wild,)) == {wild}
     file = project / "chosen.txt"
@@ -323,15 +323,15 @@ def test_families_operators_and_ids_select(project: Path) -> None:
 def test_what_still_holds_is_reused_also_after_another_family_ran(tmp_path: Path) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
     only = ("BSR",)
-    first = run(project, families=("classical",), only=only)
+    first = run(project, families=("conventional",), only=only)
     other = Quiet()
     with pytest.raises(NothingToDoError):  # there is no call of the robot
         run_campaign(request_for(project, families=("robot",)), other)
     again = Quiet()
-    run_campaign(request_for(project, families=("classical",), only=only), again)
+    run_campaign(request_for(project, families=("conventional",), only=only), again)
     assert any(line.startswith(f"reused all {len(first)} outcomes") for line in again.lines)
     every = Quiet()
-    run_campaign(request_for(project, families=("classical",), only=only, every_test=True), every)
+    run_campaign(request_for(project, families=("conventional",), only=only, every_test=True), every)
     assert any("every test is new" in line for line in every.lines)
 
 
@@ -349,7 +349,7 @@ SMALL = """
 @ENGINES
 def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path, engine: str) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
-    found = run(project, engine=engine, families=("classical",), only=("ROR", "UOI"), every_test=True)
+    found = run(project, engine=engine, families=("conventional",), only=("ROR", "UOI"), every_test=True)
     inverted = found["mission.py:near:x < 0.5#1:UOI=not"]
     assert inverted.complete
     assert [kill.test.rpartition("::")[2] for kill in inverted.kills] == ["test_near", "test_far"]
@@ -361,7 +361,7 @@ def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path, engine:
 
 @ENGINES
 def test_controls_run_in_the_program_text_as_well(project: Path, engine: str) -> None:
-    request = request_for(project, families=("classical",), only=("mission.py:right:*",), engine=engine)
+    request = request_for(project, families=("conventional",), only=("mission.py:right:*",), engine=engine)
     assert check(request, Quiet()).data["controls"] >= 2
 
 
@@ -377,7 +377,7 @@ def test_a_file_without_its_alternatives_never_lets_its_mutants_survive(tmp_path
     """
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", tests)
     with pytest.raises(NothingToDoError, match="no mutants"):
-        run(project, families=("classical",))
+        run(project, families=("conventional",))
     _, left_out = plan_with_robot(project)
     assert {item.reason for item in left_out} == {"no test imports it"}
 
@@ -390,7 +390,7 @@ def plan_with_robot(project: Path) -> tuple[Any, list[LeftOut]]:
     )
     text = CONFIGURATION.replace('["mission.py"]', '["mission.py", "other.py"]')
     (project / "mutabot.toml").write_text(dedent(text), encoding="utf-8")
-    return plan_only(request_for(project, families=("classical",)), Quiet())
+    return plan_only(request_for(project, families=("conventional",)), Quiet())
 
 
 def test_a_file_that_was_imported_too_early_is_left_out_with_the_reason(tmp_path: Path) -> None:
@@ -401,12 +401,12 @@ def test_a_file_that_was_imported_too_early_is_left_out_with_the_reason(tmp_path
     )
     (project / "pytest.ini").write_text("[pytest]\npythonpath = .\n", encoding="utf-8")
     with pytest.raises(NothingToDoError, match="imported before"):
-        run(project, families=("classical",))
+        run(project, families=("conventional",))
 
 
 def test_a_mutant_that_was_not_in_the_program_is_an_error() -> None:
     mutant = Mutant(
-        1, "classical", "BSR", Site(Span("m.py", 1, 0, 1, 1, "f"), "x", 1, Role.PROGRAM), "", *NONE
+        1, "conventional", "BSR", Site(Span("m.py", 1, 0, 1, 1, "f"), "x", 1, Role.PROGRAM), "", *NONE
     )
     ends = [TestEnd("t.py::test", "passed")]
     run = Run(mutant, 0, ("t.py::test",), ends, problem="m.py: it has changed since its mutants were made")
