@@ -24,9 +24,9 @@ The operators of textbooks change the text of a program and know nothing of robo
 compared with those that do ([operators](operators.md)).
 
 `mutabot run --family conventional` (or `text`, or `robot,conventional,text`; also for `list` and `check`)
-plants them, as does `families = ["robot", "conventional"]` in the configuration. They run in the same engines,
-are judged and reported in the same way, and have scores of their own. Mutants of calls come first and keep their
-numbers.
+plants them, as does `families = ["robot", "conventional"]` in the configuration. They run in the same
+engines, are judged and reported in the same way, and have scores of their own. Mutants of calls come first
+and keep their numbers.
 
 No file is changed for it. While the program is imported, each place with alternatives is compiled as *the
 original, unless an alternative is chosen*, with the lines and columns of your text: tracebacks and
