@@ -1,0 +1,283 @@
+"""Runs all threads of a simulation in one native thread, in simulated time.
+
+Each simulated thread is a greenlet. One runs until it waits; the scheduler then picks the next one that can run.
+When none can, time jumps to the earliest deadline. So a run needs no wall time for waiting, its order of events
+depends on the schedule alone, and `os.fork` takes every thread along: a fork copies one native thread only,
+which is why the threads cannot be native.
+"""
+
+from __future__ import annotations
+
+import _thread
+from collections.abc import Callable
+from heapq import heappop, heappush
+from itertools import count
+from typing import TYPE_CHECKING, Any
+
+from greenlet import greenlet
+
+from mutabot_ros.simulation.schedules import FirstIn, Schedule
+
+if TYPE_CHECKING:
+    from mutabot_ros.simulation.processes import Process
+
+SECOND = 1_000_000_000
+#: what reading a clock costs, so that two readings are never equal
+READING = 1_000
+#: after so many fruitless polls in a row, a poll takes time: a loop that polls must not stop time
+PATIENCE = 64
+#: the longest time that one fruitless poll takes
+LONGEST_POLL = SECOND // 1_000
+#: alarms in a row that wake nobody before the graph counts as stuck
+FRUITLESS_ALARMS = 100_000
+
+
+class Deadlock(BaseException):
+    """All threads wait, and nothing will ever wake one.
+
+    Not an Exception, so that a program under test does not swallow it.
+    """
+
+
+class NeedsRealRos(RuntimeError):
+    """The simulation cannot do what was asked for; the message gives the reason."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"needs real ROS: {reason}")
+        if reason not in REASONS:
+            REASONS.append(reason)
+
+
+#: why this run cannot be trusted without real ROS, in the order in which it was found
+REASONS: list[str] = []
+
+
+class Task:
+    """A simulated thread."""
+
+    def __init__(self, number: int, run: greenlet, process: Process | None) -> None:
+        self.number = number
+        self.greenlet = run
+        self.process = process
+        self.waits = 0  # how often it has waited: tells an outdated deadline
+        self.is_parked = False
+        self.was_woken = False
+        self.is_over = False
+        self.pending: BaseException | None = None
+        self.reason = ""
+        self.sentinel: Any = None  # the lock that `Thread.join` waits for
+        self.polls = 0  # looks without a wait, since something last happened
+        self.seen_events = 0
+
+    def __repr__(self) -> str:
+        return f"<thread {self.number} of {self.process}>"
+
+
+class Alarm:
+    """A function that is called at a simulated time, unless cancelled."""
+
+    def __init__(self, function: Callable[[], None]) -> None:
+        self.function: Callable[[], None] | None = function
+
+    def cancel(self) -> None:
+        self.function = None
+
+
+class Scheduler:
+    """Simulated time, and the threads that share it."""
+
+    def __init__(self) -> None:
+        self.now = SECOND  # steady time, in nanoseconds
+        self.epoch = 1_700_000_000 * SECOND  # the system time at steady time 0
+        self.limit: int | None = None
+        self.schedule: Schedule = FirstIn()
+        self._numbers = count()
+        self._native_thread = _thread.get_ident()
+        self.main = Task(next(self._numbers), greenlet.getcurrent(), None)
+        self.current = self.main
+        self._hub = greenlet(self._serve)
+        self._ready: list[Task] = []
+        self._deadlines: list[tuple[int, int, Task | Alarm, int]] = []
+        self._order = count()
+        self._events = 0  # counts what makes another look worth while
+        self._dropped: list[Task] = []  # kept, because a greenlet that is freed runs its `finally` blocks
+        self.change_process: Callable[[Process | None, Process | None], None] = lambda old, new: None
+
+    @property
+    def system_time(self) -> int:
+        return self.now + self.epoch
+
+    # --- threads ---
+
+    def spawn(self, function: Callable[[], None], process: Process | None = None) -> Task:
+        """Start a thread; it runs when the schedule chooses it."""
+        task = Task(next(self._numbers), greenlet(None), process or self.current.process)
+        task.greenlet = greenlet(lambda: self._run(task, function), self._hub)
+        self._ready.append(task)
+        self.progress()
+        return task
+
+    def _run(self, task: Task, function: Callable[[], None]) -> None:
+        try:
+            if task.pending is None:
+                function()
+        except BaseException as error:  # noqa: BLE001  (nobody above it could tell of it)
+            self.interrupt(self.main, error)
+        finally:
+            task.is_over = True
+            if task.sentinel is not None and task.sentinel.locked():
+                task.sentinel.release()
+
+    def _serve(self, *_: object) -> None:
+        """Go on with another thread when one has ended: where ended greenlets return to."""
+        while True:
+            self._enter(self._next())
+
+    def drop(self, task: Task) -> None:
+        """Never let a thread run again, not even its `finally` blocks: what killing its process means."""
+        task.is_over = True
+        task.is_parked = False
+        if task in self._ready:
+            self._ready.remove(task)
+        self._dropped.append(task)
+        if task is self.current:
+            self._enter(self._next())
+
+    # --- waiting ---
+
+    def park(self, deadline: int | None = None, reason: str = "") -> bool:
+        """Let others run until this thread is woken (true) or the deadline has come (false)."""
+        self._require_own_thread()
+        task = self.current
+        task.waits += 1
+        task.is_parked, task.was_woken, task.reason = True, False, reason
+        task.polls = 0
+        if deadline is not None:
+            heappush(self._deadlines, (deadline, next(self._order), task, task.waits))
+        self._go_on(task)
+        return task.was_woken
+
+    def wake(self, task: Task) -> None:
+        """Let a waiting thread go on."""
+        if task.is_parked and not task.is_over:
+            task.is_parked, task.was_woken = False, True
+            self._ready.append(task)
+        self.progress()
+
+    def interrupt(self, task: Task, error: BaseException) -> None:
+        """Raise an error in a thread, where it waits or as soon as it waits."""
+        if task.pending is None:
+            task.pending = error
+        self.wake(task)
+
+    def sleep(self, duration: int) -> None:
+        """Let so much time pass, whoever wakes this thread meanwhile."""
+        end = self.now + max(duration, 0)
+        if duration <= 0:
+            self.pause()
+        while self.now < end:
+            self.park(end, "sleeps")
+
+    def pause(self) -> None:
+        """Let others that can run go first."""
+        self._require_own_thread()
+        task = self.current
+        self._collect_due()
+        if self._ready or task.pending is not None:
+            self._ready.append(task)
+            self._go_on(task)
+
+    def poll(self) -> None:
+        """Count a look that does not wait; when looks are all that happens, they take time."""
+        self.now += READING
+        task = self.current
+        if task.seen_events != self._events:
+            task.seen_events, task.polls = self._events, 0
+        task.polls += 1
+        if task.polls > PATIENCE:
+            polls = task.polls
+            self.park(self.now + min(LONGEST_POLL, READING << min((polls - PATIENCE) // 4, 20)), "polls")
+            task.polls = polls
+
+    def may_switch(self) -> None:
+        """Mark a place at which a native thread could lose the processor: some schedules switch here."""
+        if self.schedule.switches_here() and self._is_own_thread():
+            self.pause()
+
+    def progress(self) -> None:
+        """Say that something has happened, so another look is worth while."""
+        self._events += 1
+
+    # --- alarms ---
+
+    def call_at(self, deadline: int, function: Callable[[], None]) -> Alarm:
+        """Call a function at a simulated time. It must not wait."""
+        alarm = Alarm(function)
+        heappush(self._deadlines, (deadline, next(self._order), alarm, 0))
+        return alarm
+
+    # --- choosing ---
+
+    def _go_on(self, task: Task) -> None:
+        chosen = self._next()
+        if chosen is not task:
+            self._enter(chosen)
+        if task.pending is not None:
+            error, task.pending = task.pending, None
+            raise error
+
+    def _enter(self, task: Task) -> None:
+        if task.process is not self.current.process:
+            self.change_process(self.current.process, task.process)
+        self.current = task
+        task.greenlet.switch()
+
+    def _next(self) -> Task:
+        """The thread that goes on; time jumps if none can."""
+        for _ in range(FRUITLESS_ALARMS):
+            self._collect_due()
+            if self._ready:
+                return self._ready.pop(self.schedule.choose(len(self._ready)))
+            if not self._deadlines:
+                break
+            self.now = max(self.now, self._deadlines[0][0])
+            if self.limit is not None and self.now > self.limit:
+                self.limit = None
+                return self._stop("the test's limit of simulated time has passed")
+        return self._stop("all threads wait, and nothing will ever wake one")
+
+    def _collect_due(self) -> None:
+        deadlines = self._deadlines
+        while deadlines and deadlines[0][0] <= self.now:
+            _, _, what, waits = heappop(deadlines)
+            if isinstance(what, Alarm):
+                function, what.function = what.function, None
+                if function is not None:
+                    function()
+            elif what.is_parked and what.waits == waits and not what.is_over:
+                what.is_parked = False
+                self._ready.append(what)
+
+    def _stop(self, why: str) -> Task:
+        """End the test: its own thread gets the error."""
+        waiting = self.main.reason or "waits"
+        self.main.pending = Deadlock(f"{why}; the test's thread {waiting}")
+        self.main.is_parked = False
+        return self.main
+
+    # --- native threads ---
+
+    def _is_own_thread(self) -> bool:
+        return _thread.get_ident() == self._native_thread
+
+    def _require_own_thread(self) -> None:
+        if not self._is_own_thread():
+            raise NeedsRealRos("a native thread, started by a module outside the project, waits for a simulated one")
+
+    def after_fork(self) -> None:
+        """Go on in a forked process, whose native thread has another number on some systems."""
+        self._native_thread = _thread.get_ident()
+
+
+#: the one simulation of this process
+SCHEDULER = Scheduler()

@@ -1,0 +1,255 @@
+"""The standard library's modules that wait or tell time, in simulated time.
+
+Only `_thread` and `time` are written anew. `threading`, `queue`, `concurrent.futures` and `sched` are second copies of the
+library's own source above them, so they behave as they do everywhere.
+"""
+
+from __future__ import annotations
+
+import datetime as real_datetime
+import os
+import threading as real_threading
+import time as real_time
+import uuid as real_uuid
+from collections import deque
+from collections.abc import Callable
+from random import Random
+from types import ModuleType
+from typing import Any
+
+from mutabot_ros.simulation import who_asks
+from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND, NeedsRealRos, Task
+from mutabot_ros.simulation.who_asks import copied, provide, stand_in, varied
+
+_TIMEOUT_MAX = 9_000_000_000.0
+
+
+class Lock:
+    """`_thread.lock`, among simulated threads."""
+
+    def __init__(self) -> None:
+        self._is_held = False
+        self._waiting: deque[Task] = deque()
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        if not blocking and timeout != -1:
+            raise ValueError("can't specify a timeout for a non-blocking call")
+        if timeout < 0 and timeout != -1:
+            raise ValueError("timeout value must be a non-negative number")
+        SCHEDULER.may_switch()
+        if self._is_held and not (blocking and self._wait(timeout)):
+            return False
+        self._is_held = True
+        return True
+
+    def _wait(self, timeout: float) -> bool:
+        deadline = None if timeout == -1 else SCHEDULER.now + round(timeout * SECOND)
+        while self._is_held:
+            task = SCHEDULER.current
+            self._waiting.append(task)
+            try:
+                SCHEDULER.park(deadline, "waits for a lock or a condition")
+            finally:
+                if task in self._waiting:
+                    self._waiting.remove(task)
+            if self._is_held and deadline is not None and SCHEDULER.now >= deadline:
+                return False
+        return True
+
+    def release(self) -> None:
+        if not self._is_held:
+            raise RuntimeError("release unlocked lock")
+        self._is_held = False
+        if self._waiting:
+            SCHEDULER.wake(self._waiting.popleft())
+
+    def locked(self) -> bool:
+        return self._is_held
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+    def _at_fork_reinit(self) -> None:
+        self._is_held = False
+
+
+def _ident() -> int:
+    task = SCHEDULER.current
+    return real_threading.main_thread().ident or 0 if task is SCHEDULER.main else task.number
+
+
+def _start_new_thread(
+    function: Callable[..., object], args: tuple[object, ...], kwargs: dict[str, object] | None = None
+) -> int:
+    def run() -> None:
+        try:
+            function(*args, **(kwargs or {}))
+        except SystemExit:
+            pass
+
+    return SCHEDULER.spawn(run).number
+
+
+def _set_sentinel() -> Lock:
+    SCHEDULER.current.sentinel = lock = Lock()
+    return lock
+
+
+def _thread() -> ModuleType:
+    module = ModuleType("_thread")
+    module.__dict__.update(
+        error=RuntimeError, LockType=Lock, allocate_lock=Lock, allocate=Lock, TIMEOUT_MAX=_TIMEOUT_MAX,
+        get_ident=_ident, start_new_thread=_start_new_thread, start_new=_start_new_thread, _set_sentinel=_set_sentinel,
+        daemon_threads_allowed=lambda: True, stack_size=lambda size=0: 0, _is_main_interpreter=lambda: True,
+        interrupt_main=lambda signum=2: SCHEDULER.interrupt(SCHEDULER.main, KeyboardInterrupt()),
+        _excepthook=real_threading._excepthook,  # type: ignore[attr-defined]
+        _ExceptHookArgs=real_threading.ExceptHookArgs,
+    )  # fmt: skip
+    return module
+
+
+def _threading() -> ModuleType:
+    module = copied("threading")
+    module.excepthook = lambda args: real_threading.excepthook(args)
+    only_main = module.main_thread
+    module.main_thread = lambda: (SCHEDULER.current.process and SCHEDULER.current.process.main_thread) or only_main()
+    return module
+
+
+def _read() -> int:
+    SCHEDULER.poll()
+    return SCHEDULER.now
+
+
+def _read_system() -> int:
+    SCHEDULER.poll()
+    return SCHEDULER.system_time
+
+
+def _sleep(seconds: float) -> None:
+    if seconds < 0:
+        raise ValueError("sleep length must be non-negative")
+    SCHEDULER.sleep(round(seconds * SECOND))
+    if seconds == 0:
+        SCHEDULER.poll()
+
+
+def _time() -> ModuleType:
+    def now_if_none(convert: Callable[[float], Any]) -> Callable[..., Any]:
+        return lambda seconds=None: convert(_read_system() / SECOND if seconds is None else seconds)
+
+    return varied(
+        "time",
+        sleep=_sleep,
+        time=lambda: _read_system() / SECOND,
+        time_ns=_read_system,
+        **dict.fromkeys(("monotonic", "perf_counter", "process_time", "thread_time"), lambda: _read() / SECOND),
+        **dict.fromkeys(("monotonic_ns", "perf_counter_ns", "process_time_ns", "thread_time_ns"), _read),
+        localtime=now_if_none(real_time.localtime),
+        gmtime=now_if_none(real_time.gmtime),
+        ctime=now_if_none(real_time.ctime),
+        strftime=lambda text, when=None: real_time.strftime(
+            text, real_time.localtime(_read_system() / SECOND) if when is None else when
+        ),
+    )
+
+
+def _datetime() -> ModuleType:
+    class date(real_datetime.date):  # noqa: N801  (the names that it has there)
+        @classmethod
+        def today(cls) -> Any:
+            return cls.fromtimestamp(_read_system() / SECOND)
+
+    class datetime(real_datetime.datetime):  # noqa: N801
+        @classmethod
+        def now(cls, tz: real_datetime.tzinfo | None = None) -> Any:
+            return cls.fromtimestamp(_read_system() / SECOND, tz)
+
+        @classmethod
+        def today(cls) -> Any:
+            return cls.now()
+
+        @classmethod
+        def utcnow(cls) -> Any:
+            return cls.now(real_datetime.UTC).replace(tzinfo=None)
+
+    return varied("datetime", datetime=datetime, date=date)
+
+
+def _queue() -> ModuleType:
+    return copied("queue")
+
+
+def _c_queue() -> ModuleType:
+    """Without `SimpleQueue`, which would block the native thread: the library then has its own in Python."""
+    module = ModuleType("_queue")
+    module.Empty = __import__("queue").Empty  # type: ignore[attr-defined]
+    return module
+
+
+def _no_processes(*_: object, **__: object) -> None:
+    raise NeedsRealRos("a ProcessPoolExecutor runs on processors of its own")
+
+
+def _futures() -> ModuleType:
+    base = copied("concurrent.futures._base")
+    module = varied(
+        "concurrent.futures",
+        **{name: value for name, value in base.__dict__.items() if not name.startswith("_")},
+        _base=base,
+        ProcessPoolExecutor=_no_processes,
+    )
+    who_asks._built["concurrent.futures"] = module
+    thread = copied("concurrent.futures.thread")
+    module.__dict__.update(thread=thread, ThreadPoolExecutor=thread.ThreadPoolExecutor)
+    return module
+
+
+def _concurrent() -> ModuleType:
+    return varied("concurrent", futures=stand_in("concurrent.futures"))
+
+
+def _uuid() -> ModuleType:
+    """Identities drawn from a seed, so that two runs have the same."""
+    random = Random(0)
+
+    def drawn() -> real_uuid.UUID:
+        return real_uuid.UUID(int=random.getrandbits(128), version=4)
+
+    return varied("uuid", uuid4=drawn, uuid1=lambda node=None, clock_seq=None: drawn())
+
+
+def _os_of_library() -> ModuleType:
+    """Without hooks at forks: a fork takes simulated threads along, so nothing is to be mended after it."""
+    module = varied("os")
+    del module.register_at_fork
+    return module
+
+
+def install() -> None:
+    """Provide these modules to those who see the simulation."""
+    if not hasattr(real_threading, "_set_sentinel"):
+        raise NeedsRealRos(f"threads of Python {os.sys.version.split()[0]} are not simulated")  # type: ignore[attr-defined]
+    for name, build in {
+        "_thread": _thread,
+        "time": _time,
+        "os": _os_of_library,
+        "_threading_local": lambda: copied("_threading_local"),
+        "threading": _threading,
+        "_queue": _c_queue,
+        "queue": _queue,
+        "sched": lambda: copied("sched"),
+        "concurrent": _concurrent,
+        "concurrent.futures": _futures,
+        "concurrent.futures._base": lambda: stand_in("concurrent.futures")._base,
+        "concurrent.futures.thread": lambda: stand_in("concurrent.futures").thread,
+        "datetime": _datetime,
+        "uuid": _uuid,
+    }.items():
+        provide(name, build)
+    who_asks.install()
+    for name in ("threading", "queue", "concurrent.futures"):
+        stand_in(name)
