@@ -6,6 +6,7 @@ library's own source above them, so they behave as they do everywhere.
 
 from __future__ import annotations
 
+import _thread as real_thread
 import datetime as real_datetime
 import os
 import threading as real_threading
@@ -105,8 +106,7 @@ def _thread() -> ModuleType:
         get_ident=_ident, start_new_thread=_start_new_thread, start_new=_start_new_thread, _set_sentinel=_set_sentinel,
         daemon_threads_allowed=lambda: True, stack_size=lambda size=0: 0, _is_main_interpreter=lambda: True,
         interrupt_main=lambda signum=2: SCHEDULER.interrupt(SCHEDULER.main, KeyboardInterrupt()),
-        _excepthook=real_threading._excepthook,  # type: ignore[attr-defined]
-        _ExceptHookArgs=real_threading.ExceptHookArgs,
+        _excepthook=real_thread._excepthook, _ExceptHookArgs=real_thread._ExceptHookArgs,
     )  # fmt: skip
     return module
 
