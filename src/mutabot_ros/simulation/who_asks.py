@@ -34,7 +34,8 @@ def provide(name: str, build: Callable[[], ModuleType]) -> None:
 def stand_in(name: str) -> ModuleType:
     """The simulated module of a name; made when it is first asked for."""
     if name not in _built:
-        _built[name] = _builders[name]()
+        module = _builders[name]()
+        _built[name] = module
     return _built[name]
 
 
@@ -97,6 +98,7 @@ def copied(name: str, without: Sequence[str] = ()) -> ModuleType:
         raise ImportError(f"the module {name} has no source to copy")
     module = ModuleType(name, real.__doc__)
     module.__dict__.update({MARK: True, "__file__": file, "__package__": real.__package__, "__spec__": real.__spec__})
+    _built.setdefault(name, module)  # before its code runs: modules may import each other
     code = real.__spec__.loader.get_code(name)  # type: ignore[attr-defined]  # loaders of source files have it
     exec(code, module.__dict__)
     for attribute in without:
