@@ -1,0 +1,394 @@
+"""Who is there: contexts, nodes, and the ends of topics and services, with what nodes can ask about each other."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from itertools import count
+from typing import TYPE_CHECKING, Any
+
+from mutabot_ros.simulation import arguments, names
+from mutabot_ros.simulation.messages import type_name
+from mutabot_ros.simulation.qos import rmw_qos_profile_t
+from mutabot_ros.simulation.records import (
+    MODULE,
+    RCL_DEFAULT_DOMAIN_ID,
+    InvalidHandle,
+    NodeNameNonExistentError,
+    RCLError,
+)
+from mutabot_ros.simulation.scheduler import SCHEDULER, Task
+from mutabot_ros.simulation.type_descriptions import hash_of
+
+if TYPE_CHECKING:
+    from mutabot_ros.simulation.processes import Process
+
+PUBLISHER, SUBSCRIPTION = 1, 2
+_numbers = count(1)
+_DESTROYED = "cannot use Destroyable because destruction was requested"
+
+
+class Destroyable:
+    """A handle that is destroyed once nobody uses it any more."""
+
+    def __init__(self) -> None:
+        self.number = next(_numbers)
+        self._uses = 0
+        self.is_destroyed = False
+
+    @property
+    def pointer(self) -> int:
+        return self.number
+
+    def __enter__(self) -> None:
+        if self.is_destroyed:
+            raise InvalidHandle(_DESTROYED)
+        self._uses += 1
+
+    def __exit__(self, *_: object) -> None:
+        self._uses -= 1
+        if self.is_destroyed and not self._uses:
+            self._release()
+
+    def destroy_when_not_in_use(self) -> None:
+        if self.is_destroyed:
+            return
+        self.is_destroyed = True
+        if not self._uses:
+            self._release()
+
+    def _release(self) -> None:
+        """Take it out of the graph."""
+
+
+class Waitable(Destroyable):
+    """What a wait set can wait for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.watchers: list[Task] = []
+
+    @property
+    def is_ready(self) -> bool:
+        raise NotImplementedError
+
+    def changed(self) -> None:
+        """Let the threads go on that wait for this to become ready."""
+        SCHEDULER.progress()
+        for task in self.watchers:
+            SCHEDULER.wake(task)
+
+
+class Context(Destroyable):
+    """One start of ROS in a process: a participant of the network, with what its command line said."""
+
+    def __init__(self, args: list[str], domain_id: int) -> None:
+        super().__init__()
+        if domain_id == RCL_DEFAULT_DOMAIN_ID:
+            domain_id = int(os.environ.get("ROS_DOMAIN_ID") or 0)
+        self.domain = domain_id
+        try:
+            self.arguments = arguments.parse_strictly(list(args))
+        except RCLError as error:
+            raise RCLError(str(error).replace("Failed to parse ROS arguments", "failed to initialize rcl")) from None
+        self.is_up = True
+        self.process: Process | None = SCHEDULER.current.process
+        if self.process is not None:
+            self.process.contexts.append(self)
+
+    def get_domain_id(self) -> int:
+        return self.domain
+
+    def ok(self) -> bool:
+        return self.is_up
+
+    def shutdown(self) -> None:
+        if not self.is_up:
+            raise RCLError("failed to shutdown: context is not initialized or already shut down")
+        self.close()
+
+    def close(self) -> None:
+        """Be shut down, whoever asked for it."""
+        self.is_up = False
+        SCHEDULER.progress()
+
+
+class Node(Destroyable):
+    """A node: its names, and the ends that it has."""
+
+    def __init__(
+        self, name: str, namespace: str, context: Context, cli_args: list[str] | None, use_global_arguments: bool,
+        enable_rosout: bool, rosout_qos: Any,
+    ) -> None:  # fmt: skip
+        super().__init__()
+        if not context.is_up:
+            raise RCLError("error creating node: the given context is not valid, either rcl_init() was not called")
+        self.context = context
+        own = arguments.parse_strictly(list(cli_args or []))
+        self._sources = [own, *([context.arguments] if use_global_arguments else [])]
+        namespace = namespace if namespace.startswith("/") else "/" + namespace
+        for problem in (
+            names.rclpy_get_validation_error_for_node_name(name),
+            names.rclpy_get_validation_error_for_namespace(namespace),
+        ):
+            if problem is not None:
+                raise ValueError(f"{problem[0]}: {name!r} in {namespace!r}")
+        self.namespace = self._first(lambda source: source.remapped("__ns", name)) or namespace
+        self.name = self._first(lambda source: source.remapped("__node", name)) or name
+        self.full_name = f"{self.namespace.rstrip('/')}/{self.name}"
+        self.seen_at = WORLD.discovery()
+        self.enable_rosout, self.rosout_qos = enable_rosout, rosout_qos
+        WORLD.nodes.append(self)
+        for listener in WORLD.on_node:
+            listener(self)
+
+    def _first(self, ask: Callable[[arguments.Arguments], str | None]) -> str | None:
+        return next((answer for answer in map(ask, self._sources) if answer is not None), None)
+
+    def _release(self) -> None:
+        WORLD.nodes.remove(self)
+        for end in [end for end in WORLD.ends if end.node is self and end.is_internal]:
+            end.destroy_when_not_in_use()
+
+    def resolve(self, name: str, scheme: str = "rostopic", only_expand: bool = False) -> str:
+        """The full name of a topic or service in this node."""
+        full = names.expanded(name, self.name, self.namespace)
+        if only_expand:
+            return full
+        return self._first(lambda source: source.resolved(full, self.name, self.namespace, scheme)) or full
+
+    def get_fully_qualified_name(self) -> str:
+        return self.full_name
+
+    def logger_name(self) -> str:
+        return self.full_name.strip("/").replace("/", ".")
+
+    def get_node_name(self) -> str:
+        return self.name
+
+    def get_namespace(self) -> str:
+        return self.namespace
+
+    def get_parameters(self, parameter_class: Callable[..., Any]) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for source in reversed(self._sources):
+            found.update(source.parameters_of(self.full_name))
+        return {name: parameter_class(name, value=value) for name, value in found.items()}
+
+    def get_count_publishers(self, topic: str) -> int:
+        return sum(end.name == topic for end in WORLD.seen(self, "publisher"))
+
+    def get_count_subscribers(self, topic: str) -> int:
+        return sum(end.name == topic for end in WORLD.seen(self, "subscription"))
+
+    def get_count_clients(self, service: str) -> int:
+        return sum(end.name == service for end in WORLD.seen(self, "client"))
+
+    def get_count_services(self, service: str) -> int:
+        return sum(end.name == service for end in WORLD.seen(self, "service"))
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        return [(node.name, node.namespace) for node in WORLD.seen_nodes(self)]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        return [(node.name, node.namespace, "/") for node in WORLD.seen_nodes(self)]
+
+    def get_action_names_and_types(self) -> list[tuple[str, list[str]]]:
+        return _actions(WORLD.seen(self, "publisher") + WORLD.seen(self, "subscription"))
+
+    def get_action_server_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+        return _actions(_of_node(self, "publisher", name, namespace, "action server"))
+
+    def get_action_client_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+        return _actions(_of_node(self, "subscription", name, namespace, "action client"))
+
+
+class Endpoint(Waitable):
+    """One end of a topic or service."""
+
+    role = ""
+
+    def __init__(self, node: Node, kind: Any, name: str, scheme: str, profile: rmw_qos_profile_t) -> None:
+        super().__init__()
+        self.node = node
+        self.kind = kind
+        self.type_name = type_name(kind)
+        self.name = node.resolve(name, scheme)
+        self.profile = profile
+        self.is_internal = False
+        self.seen_at = WORLD.discovery()
+
+    def _others(self, role: str) -> Iterator[Any]:
+        """The ends of a role that this one could talk to, by domain, name and type."""
+        for end in WORLD.ends:
+            if end.role == role and end.name == self.name and end.type_name == self.type_name:
+                if end.node.context.domain == self.node.context.domain:
+                    yield end
+
+    def when_both_are_seen(self, other: Endpoint, meet: Callable[[], None]) -> None:
+        """Let two ends meet: at once in one context, after discovery otherwise."""
+
+        def meet_if_there() -> None:
+            if not self.is_destroyed and not other.is_destroyed:
+                meet()
+
+        at = max(self.seen_at, other.seen_at)
+        if self.node.context is other.node.context or at <= SCHEDULER.now:
+            meet_if_there()
+        else:
+            SCHEDULER.call_at(at, meet_if_there)
+
+    def get_logger_name(self) -> str:
+        return self.node.logger_name()
+
+    @property
+    def gid(self) -> list[int]:
+        return [*self.number.to_bytes(8, "big"), *self.node.context.number.to_bytes(8, "big")]
+
+
+class World:
+    """All nodes and ends that are there, in the order in which they came."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Node] = []
+        self.ends: list[Endpoint] = []
+        self.on_node: list[Callable[[Node], None]] = []
+
+    def discovery(self) -> int:
+        """When what is made now is seen by other contexts."""
+        return SCHEDULER.now + SCHEDULER.schedule.discovery()
+
+    def seen(self, by: Node, role: str) -> list[Endpoint]:
+        """The ends of a role that a node knows of."""
+        return [end for end in self.ends if end.role == role and _is_seen(by, end.node.context, end.seen_at)]
+
+    def seen_nodes(self, by: Node) -> list[Node]:
+        return [node for node in self.nodes if _is_seen(by, node.context, node.seen_at)]
+
+
+def _is_seen(by: Node, context: Context, seen_at: int) -> bool:
+    return context.domain == by.context.domain and (context is by.context or seen_at <= SCHEDULER.now)
+
+
+#: the one network of this process
+WORLD = World()
+
+Names = list[tuple[str, list[str]]]
+
+
+def _grouped(pairs: Iterable[tuple[str, str]]) -> Names:
+    found: dict[str, set[str]] = {}
+    for name, kind in pairs:
+        found.setdefault(name, set()).add(kind)
+    return [(name, sorted(kinds)) for name, kinds in sorted(found.items())]
+
+
+def _named(ends: Iterable[Endpoint]) -> Names:
+    return _grouped((end.name, end.type_name) for end in ends)
+
+
+def _of_node(node: Node, role: str, name: str, namespace: str, what: str) -> list[Endpoint]:
+    if not any((other.name, other.namespace) == (name, namespace) for other in WORLD.seen_nodes(node)):
+        if what.startswith("action"):
+            raise RCLError(f"Failed to get {what} names and type: error not set")
+        raise NodeNameNonExistentError(f"cannot get {what} names and types for nonexistent node: error not set")
+    return [end for end in WORLD.seen(node, role) if (end.node.name, end.node.namespace) == (name, namespace)]
+
+
+def _actions(ends: Iterable[Endpoint]) -> Names:
+    suffix, of_type = "/_action/feedback", "_FeedbackMessage"
+    return _grouped(
+        (end.name.removesuffix(suffix), end.type_name.removesuffix(of_type)) for end in ends if end.name.endswith(suffix)
+    )
+
+
+def _dds_type(name: str, part: str = "") -> str:
+    return "::".join([*name.split("/")[:-1], "dds_", f"{name.split('/')[-1]}{part}_"])
+
+
+def _dds_names(end: Endpoint) -> list[tuple[str, str]]:
+    """The topics of the network that an end stands for."""
+    if end.role in {"publisher", "subscription"}:
+        return [(f"rt{end.name}", _dds_type(end.type_name))]
+    return [
+        (f"rq{end.name}Request", _dds_type(end.type_name, "_Request")),
+        (f"rr{end.name}Reply", _dds_type(end.type_name, "_Response")),
+    ]
+
+
+def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> Names:
+    """All topics, by their names in ROS or those on the network."""
+    if no_demangle:
+        ends = [end for role in ("publisher", "subscription", "client", "service") for end in WORLD.seen(node, role)]
+        discovery = ("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_")
+        return _grouped([discovery, *(pair for end in ends for pair in _dds_names(end))])
+    return _named(WORLD.seen(node, "publisher") + WORLD.seen(node, "subscription"))
+
+
+def rclpy_get_service_names_and_types(node: Node) -> Names:
+    """All services that somebody offers or wants."""
+    return _named(WORLD.seen(node, "service") + WORLD.seen(node, "client"))
+
+
+def rclpy_get_publisher_names_and_types_by_node(node: Node, no_demangle: bool, name: str, namespace: str) -> Names:
+    """The topics that a node publishes."""
+    return _topics(_of_node(node, "publisher", name, namespace, "publisher"), no_demangle)
+
+
+def rclpy_get_subscriber_names_and_types_by_node(node: Node, no_demangle: bool, name: str, namespace: str) -> Names:
+    """The topics that a node hears."""
+    return _topics(_of_node(node, "subscription", name, namespace, "subscriber"), no_demangle)
+
+
+def _topics(ends: list[Endpoint], no_demangle: bool) -> Names:
+    return _grouped(pair for end in ends for pair in _dds_names(end)) if no_demangle else _named(ends)
+
+
+def rclpy_get_service_names_and_types_by_node(node: Node, name: str, namespace: str) -> Names:
+    """The services that a node offers."""
+    return _named(_of_node(node, "service", name, namespace, "service"))
+
+
+def rclpy_get_client_names_and_types_by_node(node: Node, name: str, namespace: str) -> Names:
+    """The services that a node wants."""
+    return _named(_of_node(node, "client", name, namespace, "client"))
+
+
+def rclpy_get_publishers_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
+    """Who publishes a topic, and how."""
+    return _infos(node, "publisher", PUBLISHER, topic, no_mangle)
+
+
+def rclpy_get_subscriptions_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
+    """Who hears a topic, and how."""
+    return _infos(node, "subscription", SUBSCRIPTION, topic, no_mangle)
+
+
+def _infos(node: Node, role: str, number: int, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
+    return [
+        {
+            "node_name": end.node.name,
+            "node_namespace": end.node.namespace,
+            "topic_type": _dds_type(end.type_name) if no_mangle else end.type_name,
+            "topic_type_hash": hash_of(end.type_name),
+            "endpoint_type": number,
+            "endpoint_gid": end.gid,
+            "qos_profile": end.profile.as_discovered(),
+        }
+        for end in WORLD.seen(node, role)
+        if topic == (f"rt{end.name}" if no_mangle else end.name)
+    ]
+
+
+def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
+    """The full name of a topic or service in a node."""
+    return node.resolve(name, "rosservice" if is_service else "rostopic", only_expand)
+
+
+def rclpy_remap_topic_name(node: Node, name: str) -> str:
+    """What remapping makes of a full name."""
+    return node.resolve(name)
+
+
+for _kind in (Destroyable, Context, Node):
+    _kind.__module__ = MODULE

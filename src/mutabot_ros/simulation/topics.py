@@ -1,0 +1,375 @@
+"""Topics: publishers, subscriptions, their matching by quality of service, and the events of it."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+from mutabot_ros.simulation import records
+from mutabot_ros.simulation.graph import WORLD, Endpoint, Node, Waitable
+from mutabot_ros.simulation.messages import converted, type_name
+from mutabot_ros.simulation.qos import (
+    AUTOMATIC,
+    MANUAL_BY_TOPIC,
+    TRANSIENT_LOCAL,
+    mismatch,
+    rmw_qos_profile_t,
+)
+from mutabot_ros.simulation.records import (
+    MODULE,
+    RMW_DURATION_INFINITE,
+    RCLError,
+    rcl_publisher_event_type_t,
+    rcl_subscription_event_type_t,
+)
+from mutabot_ros.simulation.scheduler import SCHEDULER, Alarm, NeedsRealRos
+from mutabot_ros.simulation.serialization import rclpy_deserialize, rclpy_serialize
+
+_ON_PUBLISHER, _ON_SUBSCRIPTION = rcl_publisher_event_type_t, rcl_subscription_event_type_t
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A message on its way."""
+
+    message: Any
+    stamp: int  # the system time at which it was published
+    number: int  # among its publisher's
+    expires: int | None  # the system time from which nobody hears it any more
+
+
+class Status:
+    """What has happened since an event was last taken; counted whether or not anybody asks."""
+
+    def __init__(self, record: Any) -> None:
+        self.values = record()
+        self.has_changed = False
+        self.handles: list[EventHandle] = []
+
+    def count(self, **changes: Any) -> None:
+        """Add to the counts; each `name` that counts has a `name_change` beside it."""
+        for name, change in changes.items():
+            if name == "last_policy_kind":
+                self.values.last_policy_kind = change
+                continue
+            setattr(self.values, name, getattr(self.values, name) + change)
+            setattr(self.values, f"{name}_change", getattr(self.values, f"{name}_change") + change)
+        self.has_changed = True
+        for handle in self.handles:
+            handle.changed()
+
+    def take(self) -> Any:
+        taken = type(self.values)(*(getattr(self.values, field) for field in self.values.fields))
+        for field in self.values.fields:
+            if field.endswith("_change"):
+                setattr(self.values, field, 0)
+        self.has_changed = False
+        return taken
+
+
+class _Topic(Endpoint):
+    """What publishers and subscriptions have in common."""
+
+    def __init__(self, node: Node, kind: Any, topic: str, profile: Any) -> None:
+        what = self.role
+        try:
+            full = node.resolve(topic)
+        except RCLError:
+            raise ValueError(f"Failed to create {what} due to invalid topic name '{topic}'") from None
+        for end in WORLD.ends:
+            if end.role in {"publisher", "subscription"} and end.name == full and end.node.context is node.context:
+                if end.type_name != type_name(kind):
+                    raise RCLError(
+                        f"Failed to create {what}: create_{what}() called for existing topic name rt{full} "
+                        f"with incompatible type {kind.__name__}"
+                    )
+        super().__init__(node, kind, topic, "rostopic", profile)
+        self.matched: list[Any] = []
+        self.statuses: dict[Any, Status] = {}
+        self._deadline_alarm: Alarm | None = None
+        WORLD.ends.append(self)
+
+    def get_topic_name(self) -> str:
+        return self.name
+
+    def _release(self) -> None:
+        if self in WORLD.ends:
+            WORLD.ends.remove(self)
+        self._rearm_deadline(None)
+        for other in self.matched:
+            other.lose(self)
+        self.matched.clear()
+
+    def find(self, end: Any) -> None:
+        """Match another end that has been discovered."""
+        self.matched.append(end)
+        self.statuses[self._match_event].count(total_count=1, current_count=1)
+
+    def lose(self, end: Any) -> None:
+        """Forget another end that is gone."""
+        if end in self.matched and not self.is_destroyed:
+            self.matched.remove(end)
+            self.statuses[self._match_event].count(total_count=0, current_count=-1)
+
+    _match_event: Any = None
+    _deadline_event: Any = None
+
+    def _rearm_deadline(self, period: int | None) -> None:
+        if self._deadline_alarm is not None:
+            self._deadline_alarm.cancel()
+            self._deadline_alarm = None
+        if period is not None and period < RMW_DURATION_INFINITE:
+            self._deadline_alarm = SCHEDULER.call_at(SCHEDULER.now + period, self._miss_deadline)
+
+    def _miss_deadline(self) -> None:
+        self.statuses[self._deadline_event].count(total_count=1)
+        self._rearm_deadline(self.profile.deadline)
+
+
+def _meet(publisher: Publisher, subscription: Subscription) -> None:
+    policy = mismatch(publisher.profile, subscription.profile)
+    if policy is not None:
+        publisher.statuses[_ON_PUBLISHER.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS].count(
+            total_count=1, last_policy_kind=policy
+        )
+        subscription.statuses[_ON_SUBSCRIPTION.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS].count(
+            total_count=1, last_policy_kind=policy
+        )
+        return
+    publisher.find(subscription)
+    subscription.find(publisher)
+
+
+class Publisher(_Topic):
+    """The end of a topic that speaks."""
+
+    role = "publisher"
+    _match_event = _ON_PUBLISHER.RCL_PUBLISHER_MATCHED
+    _deadline_event = _ON_PUBLISHER.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED
+
+    def __init__(self, node: Node, kind: Any, topic: str, profile: Any = None) -> None:
+        wanted = profile or rmw_qos_profile_t.predefined("qos_profile_default")
+        super().__init__(node, kind, topic, wanted)
+        self.profile = wanted.resolved(True, [end.profile for end in self._others("subscription")])
+        self.statuses = {
+            self._deadline_event: Status(records.rmw_offered_deadline_missed_status_t),
+            _ON_PUBLISHER.RCL_PUBLISHER_LIVELINESS_LOST: Status(records.rmw_liveliness_lost_status_t),
+            _ON_PUBLISHER.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: Status(
+                records.rmw_requested_qos_incompatible_event_status_t
+            ),
+            _ON_PUBLISHER.RCL_PUBLISHER_INCOMPATIBLE_TYPE: Status(records.rmw_incompatible_type_status_t),
+            self._match_event: Status(records.rmw_matched_status_t),
+        }
+        self.kept: deque[Sample] = deque(maxlen=self.profile.kept)
+        self.is_alive = self.profile.liveliness == AUTOMATIC
+        self._published = 0
+        self._lease_alarm: Alarm | None = None
+        for subscription in list(self._others("subscription")):
+            self.when_both_are_seen(subscription, lambda other=subscription: _meet(self, other))
+
+    @property
+    def is_ready(self) -> bool:
+        return False
+
+    def get_subscription_count(self) -> int:
+        return len(self.matched)
+
+    def publish(self, message: Any) -> None:
+        """Send a message to all subscriptions that match now."""
+        if isinstance(message, bytes):
+            self.publish_raw(message)
+            return
+        self._send(converted(message, self.kind))
+
+    def publish_raw(self, data: bytes) -> None:
+        self._send(rclpy_deserialize(data, self.kind))
+
+    def _send(self, message: Any) -> None:
+        SCHEDULER.may_switch()
+        self._published += 1
+        now = SCHEDULER.system_time
+        lifespan = self.profile.lifespan
+        sample = Sample(message, now, self._published, now + lifespan if lifespan < RMW_DURATION_INFINITE else None)
+        if self.profile.durability == TRANSIENT_LOCAL:
+            self.kept.append(sample)
+        self.assert_liveliness()
+        self._rearm_deadline(self.profile.deadline)
+        for subscription in list(self.matched):
+            subscription.receive(sample, self)
+
+    def find(self, end: Any) -> None:
+        super().find(end)
+        if self.profile.durability == TRANSIENT_LOCAL and end.profile.durability == TRANSIENT_LOCAL:
+            for sample in self.kept:
+                end.receive(sample, self)
+
+    def wait_for_all_acked(self, timeout: Any) -> bool:
+        return True
+
+    def assert_liveliness(self) -> None:
+        """Say that it is alive, and will have to say so again within its lease."""
+        if self.profile.liveliness != MANUAL_BY_TOPIC or self.profile.lease == RMW_DURATION_INFINITE:
+            return
+        if not self.is_alive:
+            self.is_alive = True
+            for subscription in self.matched:
+                subscription.hear_of_life(self)
+        if self._lease_alarm is not None:
+            self._lease_alarm.cancel()
+        self._lease_alarm = SCHEDULER.call_at(SCHEDULER.now + self.profile.lease, self.lose_liveliness)
+
+    def lose_liveliness(self) -> None:
+        """Count as dead: it has not said in time that it is alive."""
+        if self.is_alive and not self.is_destroyed:
+            self.is_alive = False
+            self.statuses[_ON_PUBLISHER.RCL_PUBLISHER_LIVELINESS_LOST].count(total_count=1)
+            for subscription in self.matched:
+                subscription.hear_of_death(self)
+
+    def _release(self) -> None:
+        if self._lease_alarm is not None:
+            self._lease_alarm.cancel()
+        super()._release()
+
+
+class Subscription(_Topic):
+    """The end of a topic that hears."""
+
+    role = "subscription"
+    _match_event = _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_MATCHED
+    _deadline_event = _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED
+
+    def __init__(
+        self, node: Node, kind: Any, topic: str, profile: Any = None, content_filter_options: Any = None
+    ) -> None:
+        if content_filter_options is not None:
+            raise NeedsRealRos("a subscription filters by content, which the middleware evaluates")
+        wanted = profile or rmw_qos_profile_t.predefined("qos_profile_default")
+        super().__init__(node, kind, topic, wanted)
+        self.profile = wanted.resolved(False, [end.profile for end in self._others("publisher")])
+        self.statuses = {
+            self._deadline_event: Status(records.rmw_requested_deadline_missed_status_t),
+            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: Status(records.rmw_liveliness_changed_status_t),
+            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: Status(
+                records.rmw_requested_qos_incompatible_event_status_t
+            ),
+            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_MESSAGE_LOST: Status(records.rmw_message_lost_status_t),
+            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: Status(records.rmw_incompatible_type_status_t),
+            self._match_event: Status(records.rmw_matched_status_t),
+        }
+        self.queue: deque[tuple[Sample, int, int]] = deque(maxlen=self.profile.kept)
+        self._received = 0
+        self._last_arrivals: dict[int, int] = {}
+        for publisher in list(self._others("publisher")):
+            self.when_both_are_seen(publisher, lambda other=publisher: _meet(other, self))
+
+    def receive(self, sample: Sample, publisher: Publisher) -> None:
+        """Take a message into the queue, now or when it has been under way."""
+        transit = SCHEDULER.schedule.transit()
+        at = max(SCHEDULER.now + transit, self._last_arrivals.get(publisher.number, 0))  # none overtakes another
+        if at <= SCHEDULER.now:
+            self._arrive(sample)
+        else:
+            self._last_arrivals[publisher.number] = at
+            SCHEDULER.call_at(at, lambda: self._arrive(sample))
+
+    def _arrive(self, sample: Sample) -> None:
+        if self.is_destroyed:
+            return
+        self._received += 1
+        self.queue.append((sample, SCHEDULER.system_time, self._received))
+        self._rearm_deadline(self.profile.deadline)
+        self.changed()
+
+    @property
+    def is_ready(self) -> bool:
+        while self.queue:
+            expires = self.queue[0][0].expires
+            if expires is None or expires > SCHEDULER.system_time:
+                return True
+            self.queue.popleft()
+        return False
+
+    def take_message(self, kind: Any, raw: bool) -> tuple[Any, dict[str, Any]] | None:
+        """The oldest message, as a new object, and what is known of it; None if there is none."""
+        if not self.is_ready:
+            return None
+        sample, received, number = self.queue.popleft()
+        message = rclpy_serialize(sample.message, self.kind) if raw else converted(sample.message, kind)
+        return message, {
+            "source_timestamp": sample.stamp,
+            "received_timestamp": received,
+            "publication_sequence_number": sample.number,
+            "reception_sequence_number": None,
+        }
+
+    def get_publisher_count(self) -> int:
+        return len(self.matched)
+
+    def find(self, end: Any) -> None:
+        super().find(end)
+        if end.is_alive:
+            self.hear_of_life(end)
+
+    def lose(self, end: Any) -> None:
+        if end in self.matched and not self.is_destroyed and self._follows_liveliness:
+            gone = {"alive_count": -1} if end.is_alive else {"not_alive_count": -1}
+            self._liveliness.count(**gone)
+        super().lose(end)
+
+    @property
+    def _follows_liveliness(self) -> bool:
+        return self.profile.lease < RMW_DURATION_INFINITE
+
+    @property
+    def _liveliness(self) -> Status:
+        return self.statuses[_ON_SUBSCRIPTION.RCL_SUBSCRIPTION_LIVELINESS_CHANGED]
+
+    def hear_of_life(self, publisher: Publisher) -> None:
+        if self._follows_liveliness:
+            again = publisher.statuses[_ON_PUBLISHER.RCL_PUBLISHER_LIVELINESS_LOST].values.total_count > 0
+            self._liveliness.count(alive_count=1, not_alive_count=-1 if again else 0)
+
+    def hear_of_death(self, publisher: Publisher) -> None:
+        if self._follows_liveliness:
+            self._liveliness.count(alive_count=-1, not_alive_count=1)
+
+    def is_cft_enabled(self) -> bool:
+        return False
+
+    def set_content_filter(self, expression: str, parameters: list[str]) -> None:
+        raise NeedsRealRos("a subscription filters by content, which the middleware evaluates")
+
+    def get_content_filter(self) -> Any:
+        raise RCLError("failed to get content filter: subscription has none")
+
+
+class EventHandle(Waitable):
+    """Tells of one kind of event of a publisher or a subscription."""
+
+    def __init__(self, end: Publisher | Subscription, event: Any) -> None:
+        super().__init__()
+        if event not in end.statuses:
+            raise TypeError(f"__init__(): incompatible constructor arguments: no {event!r} of a {end.role}")
+        self._status = end.statuses[event]
+        self._status.handles.append(self)
+
+    def _release(self) -> None:
+        self._status.handles.remove(self)
+
+    @property
+    def is_ready(self) -> bool:
+        return self._status.has_changed
+
+    def take_event(self) -> Any:
+        return self._status.take()
+
+
+def rclpy_assert_liveliness(publisher: Publisher) -> None:
+    """Say that a publisher is alive."""
+    publisher.assert_liveliness()
+
+
+for _kind in (Publisher, Subscription, EventHandle):
+    _kind.__module__ = MODULE

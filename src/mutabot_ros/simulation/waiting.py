@@ -1,0 +1,334 @@
+"""Clocks, timers, guard conditions, and the wait sets in which executors wait for them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mutabot_ros.simulation.graph import Context, Destroyable, Waitable
+from mutabot_ros.simulation.records import (
+    MODULE,
+    ClockChange,
+    ClockType,
+    RCLError,
+    TimerCancelledError,
+    rcl_time_point_t,
+)
+from mutabot_ros.simulation.scheduler import SCHEDULER
+
+
+class Clock(Destroyable):
+    """System, steady or ROS time; the last follows `/clock` while it is overridden."""
+
+    def __init__(self, kind: int) -> None:
+        super().__init__()
+        try:
+            self.kind = ClockType(int(kind))
+        except ValueError:
+            raise RCLError("failed to initialize clock: error not set") from None
+        self.is_overridden = False
+        self._override = 0
+        self._callbacks: list[tuple[Any, bool, int, int]] = []
+        self.timers: list[Timer] = []
+        self.events: list[ClockEvent] = []
+
+    def now(self) -> int:
+        """Its time in nanoseconds; looking at it takes no time."""
+        if self.is_overridden:
+            return self._override
+        return SCHEDULER.now if self.kind is ClockType.STEADY_TIME else SCHEDULER.system_time
+
+    def steady_time_of(self, time: int) -> int | None:
+        """When, in steady time, it will show a time; None if that depends on `/clock`."""
+        return None if self.is_overridden else SCHEDULER.now + time - self.now()
+
+    def get_now(self) -> rcl_time_point_t:
+        SCHEDULER.poll()
+        return rcl_time_point_t(self.now(), self.kind)
+
+    def get_ros_time_override_is_enabled(self) -> bool:
+        return self.is_overridden
+
+    def set_ros_time_override_is_enabled(self, enabled: bool) -> None:
+        if self.kind is not ClockType.ROS_TIME:
+            raise RCLError("failed to set ROS time override: clock is not of type ROS_TIME")
+        if enabled == self.is_overridden:
+            return
+        change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
+        concerned = [entry for entry in self._callbacks if entry[1]]
+        credits = [(timer, timer.next_call - self.now()) for timer in self.timers if self.now()]
+        self._before(concerned)
+        self.is_overridden = enabled
+        for timer, credit in credits:
+            timer.change_epoch(credit)
+        self._after(concerned, change, 0)
+
+    def set_ros_time_override(self, time: rcl_time_point_t) -> None:
+        delta = time.nanoseconds - self._override
+        if not self.is_overridden:
+            self._override = time.nanoseconds
+            return
+        concerned = [
+            entry for entry in self._callbacks if (entry[2] and delta >= entry[2]) or (entry[3] and delta <= entry[3])
+        ]
+        self._before(concerned)
+        self._override = time.nanoseconds
+        for timer in self.timers:
+            timer.follow_jump()
+        self._after(concerned, ClockChange.ROS_TIME_NO_CHANGE, delta)
+
+    @staticmethod
+    def _before(concerned: list[tuple[Any, bool, int, int]]) -> None:
+        for handle, *_ in concerned:
+            if handle._pre_callback:
+                handle._pre_callback()
+
+    def _after(self, concerned: list[tuple[Any, bool, int, int]], change: Any, delta: int) -> None:
+        for handle, *_ in concerned:
+            if handle._post_callback:
+                handle._post_callback({"clock_change": change, "delta": delta})
+        for waiting in (*self.timers, *self.events):
+            waiting.changed()
+
+    def add_clock_callback(self, handle: Any, on_clock_change: bool, forward: int, backward: int) -> None:
+        self._callbacks.append((handle, on_clock_change, forward, backward))
+
+    def remove_clock_callback(self, handle: Any) -> None:
+        self._callbacks = [entry for entry in self._callbacks if entry[0] is not handle]
+
+
+class ClockEvent(Waitable):
+    """What a thread sleeps on until a clock shows a time, or until somebody sets it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._is_set = False
+
+    def set(self) -> None:
+        self._is_set = True
+        self.changed()
+
+    def clear(self) -> None:
+        self._is_set = False
+
+    def is_set(self) -> bool:
+        return self._is_set
+
+    @property
+    def is_ready(self) -> bool:
+        return self._is_set
+
+    def _wait_until(self, clock: Clock, until: rcl_time_point_t) -> None:
+        task = SCHEDULER.current
+        clock.events.append(self)
+        self.watchers.append(task)
+        try:
+            while not self._is_set and clock.now() < until.nanoseconds:
+                SCHEDULER.park(clock.steady_time_of(until.nanoseconds), "sleeps until a clock shows a time")
+        finally:
+            self.watchers.remove(task)
+            clock.events.remove(self)
+
+    wait_until_steady = wait_until_system = wait_until_ros = _wait_until
+
+
+class Timer(Waitable):
+    """Is due once in each period of a clock."""
+
+    def __init__(self, clock: Clock, context: Context, period: int, autostart: bool = True) -> None:
+        super().__init__()
+        if period < 0:
+            raise RCLError("failed to create timer: timer period must be non-negative")
+        self.clock = clock
+        self._period = int(period)
+        self._is_cancelled = not autostart
+        self._last_call = clock.now()
+        self.next_call = self._last_call + self._period
+        clock.timers.append(self)
+
+    def _release(self) -> None:
+        self.clock.timers.remove(self)
+
+    @property
+    def is_ready(self) -> bool:
+        return not self._is_cancelled and self.clock.now() >= self.next_call
+
+    @property
+    def deadline(self) -> int | None:
+        """When, in steady time, it will be due; None if never, or as `/clock` says."""
+        return None if self._is_cancelled else self.clock.steady_time_of(self.next_call)
+
+    def is_timer_ready(self) -> bool:
+        return self.is_ready
+
+    def call_timer_with_info(self) -> dict[str, int]:
+        if self._is_cancelled:
+            raise TimerCancelledError("failed to call timer: timer is canceled")
+        now = self.clock.now()
+        expected, self._last_call = self.next_call, now
+        self.next_call += self._period
+        if self.next_call < now:  # late by more than a period: those that were missed are left out
+            missed = 1 + (now - self.next_call - 1) // self._period if self._period else 0
+            self.next_call = self.next_call + missed * self._period if self._period else now
+        return {"expected_call_time": expected, "actual_call_time": now}
+
+    def call_timer(self) -> None:
+        if self._is_cancelled:
+            raise RCLError("failed to call timer: timer is canceled")
+        self.call_timer_with_info()
+
+    def cancel_timer(self) -> None:
+        self._is_cancelled = True
+
+    def is_timer_canceled(self) -> bool:
+        return self._is_cancelled
+
+    def reset_timer(self) -> None:
+        self._is_cancelled = False
+        self.next_call = self.clock.now() + self._period
+        self.changed()
+
+    def change_timer_period(self, period: int) -> None:
+        self._period = int(period)
+
+    def get_timer_period(self) -> int:
+        return self._period
+
+    def time_since_last_call(self) -> int:
+        return self.clock.now() - self._last_call
+
+    def time_until_next_call(self) -> int | None:
+        return None if self._is_cancelled else self.next_call - self.clock.now()
+
+    def change_epoch(self, credit: int) -> None:
+        """Go on with the rest of the period when the clock's source has changed."""
+        now = self.clock.now()
+        if now:
+            self.next_call = now + credit
+            self._last_call = self.next_call - self._period
+
+    def follow_jump(self) -> None:
+        """Start its period anew when the clock has jumped back behind its last call."""
+        now = self.clock.now()
+        if now < self._last_call:
+            self._last_call, self.next_call = now, now + self._period
+
+
+class GuardCondition(Waitable):
+    """Wakes a wait set by hand."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__()
+        self._is_triggered = False
+
+    def trigger_guard_condition(self) -> None:
+        self._is_triggered = True
+        self.changed()
+
+    @property
+    def is_ready(self) -> bool:
+        return self._is_triggered
+
+    def reset(self) -> None:
+        self._is_triggered = False
+
+
+KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
+
+
+class WaitSet(Destroyable):
+    """What an executor waits for."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__()
+        *sizes, self._context = arguments
+        self._sizes = dict(zip(KINDS, sizes, strict=True))
+        self._members: dict[str, list[Any]] = {}
+        self._ready: dict[str, list[bool]] = {}
+        self.clear_entities()
+
+    def clear_entities(self) -> None:
+        self._members = {kind: [] for kind in KINDS}
+        self._ready = {kind: [False] * size for kind, size in self._sizes.items()}
+
+    def _add(self, kind: str, member: Any) -> int:
+        members = self._members[kind]
+        if len(members) >= self._sizes[kind]:
+            raise RCLError(f"failed to add {kind} to wait set: {kind}s set is full")
+        members.append(member)
+        self._ready[kind][len(members) - 1] = True
+        return len(members) - 1
+
+    def add_subscription(self, member: Any) -> int:
+        return self._add("subscription", member)
+
+    def add_guard_condition(self, member: GuardCondition) -> int:
+        return self._add("guard_condition", member)
+
+    def add_timer(self, member: Timer) -> int:
+        return self._add("timer", member)
+
+    def add_client(self, member: Any) -> int:
+        return self._add("client", member)
+
+    def add_service(self, member: Any) -> int:
+        return self._add("service", member)
+
+    def add_event(self, member: Any) -> int:
+        return self._add("event", member)
+
+    def wait(self, timeout: int) -> None:
+        """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
+        members = [member for kind in KINDS for member in self._members[kind]]
+        if not members:
+            raise RCLError("failed to wait on wait set: wait set is empty")
+        if timeout == 0:
+            SCHEDULER.poll()
+        elif not any(member.is_ready for member in members):
+            self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
+        else:
+            SCHEDULER.may_switch()
+        self._note_ready(members)
+
+    def _park(self, members: list[Any], end: int | None) -> None:
+        task = SCHEDULER.current
+        for member in members:
+            member.watchers.append(task)
+        try:
+            while not any(member.is_ready for member in members) and (end is None or SCHEDULER.now < end):
+                dues = [timer.deadline for timer in self._members["timer"]]
+                deadlines = [due for due in (*dues, end) if due is not None]
+                SCHEDULER.park(min(deadlines, default=None), "waits for ROS")
+        finally:
+            for member in members:
+                member.watchers.remove(task)
+
+    def _note_ready(self, members: list[Any]) -> None:
+        ready = [member for member in members if member.is_ready]
+        if len(ready) > 1:
+            kept = SCHEDULER.schedule.keeps(len(ready))
+            ready = [member for member, is_kept in zip(ready, kept, strict=True) if is_kept]
+        chosen = {member.number for member in ready}
+        for kind in KINDS:
+            flags = [member.number in chosen for member in self._members[kind]]
+            self._ready[kind] = flags + [False] * (self._sizes[kind] - len(flags))
+        for guard in self._members["guard_condition"]:
+            if guard.number in chosen:
+                guard.reset()
+
+    def is_ready(self, kind: str, index: int) -> bool:
+        flags = self._ready.get(kind)
+        if flags is None:
+            raise RuntimeError(f"'{kind}' is not a known entity")
+        if index >= len(flags):
+            raise IndexError("wait set index too big")
+        return flags[index]
+
+    def get_ready_entities(self, kind: str) -> list[int]:
+        if kind not in KINDS or kind == "event":
+            raise RuntimeError(f"'{kind}' is not a known entity")
+        pairs = zip(self._members[kind], self._ready[kind], strict=False)
+        return [member.number for member, is_ready in pairs if is_ready]
+
+
+for _kind in (Clock, ClockEvent, Timer, GuardCondition, WaitSet):
+    _kind.__module__ = MODULE
