@@ -1,0 +1,45 @@
+"""ROS 2 in one process: simulated time, deterministic, forkable.
+
+`start` puts a middleware written in Python in the place of rclpy's C extension, and simulated time in the place of
+`time`, `threading` and so on, for modules of the project and for rclpy. rclpy's own Python, the project and its tests
+stay as they are. What cannot be simulated raises `NeedsRealRos`; `reasons()` gives all that was found.
+"""
+
+from __future__ import annotations
+
+__all__ = ["is_running", "reasons", "start"]
+
+_is_running = False
+
+
+def start(roots: list[str], schedule: str = "first-in", seed: int = 0) -> None:
+    """Simulate ROS in this process from now on. Raises NeedsRealRos if that cannot be."""
+    global _is_running  # noqa: PLW0603  (there is one simulation in a process)
+    # greenlet and rclpy are needed only where the simulation runs
+    from mutabot_ros.simulation import extension, processes, programs, standard_library, who_asks  # noqa: PLC0415
+    from mutabot_ros.simulation.scheduler import SCHEDULER  # noqa: PLC0415
+    from mutabot_ros.simulation.schedules import schedule_named  # noqa: PLC0415
+
+    SCHEDULER.schedule = schedule_named(schedule, seed)
+    for root in roots:
+        who_asks.add_root(root)
+    if not _is_running:
+        programs.install()
+        standard_library.install()
+        processes.install()
+        extension.install()
+        _is_running = True
+
+
+def is_running() -> bool:
+    """Whether ROS is simulated in this process."""
+    return _is_running
+
+
+def reasons() -> list[str]:
+    """Why what has run so far cannot be trusted without real ROS; empty if it can."""
+    if not _is_running:
+        return []
+    from mutabot_ros.simulation.scheduler import REASONS  # noqa: PLC0415
+
+    return list(REASONS)

@@ -6,7 +6,9 @@ ROS: numbers lose their upper bits, `1` is not `True`, and an `int` in a floatin
 
 from __future__ import annotations
 
+import importlib
 import operator
+import re
 import struct
 from array import array
 from collections.abc import Callable
@@ -56,7 +58,11 @@ def converted(message: Any, kind: type) -> Any:
 
 def class_of(of: Any) -> type:
     """The message class of a nested type."""
-    module = __import__(".".join(of.namespaces), fromlist=[of.name])
+    package = ".".join(of.namespaces)
+    module = importlib.import_module(package)
+    if not hasattr(module, of.name):  # a part of a service or an action, such as `Fibonacci_Goal`
+        snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", of.name.partition("_")[0]).lower()
+        module = importlib.import_module(f"{package}._{snake}")
     return getattr(module, of.name)  # type: ignore[no-any-return]
 
 

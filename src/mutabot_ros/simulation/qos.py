@@ -68,27 +68,24 @@ class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
 
     def to_dict(self) -> dict[str, Any]:
         """The arguments of rclpy's own QoSProfile."""
-        given = {"lifespan": self.lifespan, "deadline": self.deadline, "liveliness_lease_duration": self.lease}
-        return {
-            **self._policies(self.depth, self.history, self.liveliness),
-            **{name: _duration(0 if time == RMW_DURATION_INFINITE else time) for name, time in given.items()},
-        }
+        times = [0 if time == RMW_DURATION_INFINITE else time for time in (self.lifespan, self.deadline, self.lease)]
+        return self._told(self.depth, self.history, self.liveliness, times)
 
     def as_discovered(self) -> dict[str, Any]:
         """The same as others see it: depth and history are not told on the network, and defaults are resolved."""
-        times = {"lifespan": self.lifespan, "deadline": self.deadline, "liveliness_lease_duration": self.lease}
-        return {
-            **self._policies(0, UNKNOWN, self.liveliness or AUTOMATIC),
-            **{name: _duration(time) for name, time in times.items()},
-        }
+        return self._told(0, UNKNOWN, self.liveliness or AUTOMATIC, [self.lifespan, self.deadline, self.lease])
 
-    def _policies(self, depth: int, history: int, liveliness: int) -> dict[str, Any]:
+    def _told(self, depth: int, history: int, liveliness: int, times: list[int]) -> dict[str, Any]:
+        lifespan, deadline, lease = map(_duration, times)
         return {
             "depth": depth,
             "history": history,
             "reliability": self.reliability,
             "durability": self.durability,
+            "lifespan": lifespan,
+            "deadline": deadline,
             "liveliness": liveliness,
+            "liveliness_lease_duration": lease,
             "avoid_ros_namespace_conventions": self.avoid_ros_namespace_conventions,
         }
 

@@ -64,6 +64,7 @@ class Task:
         self.was_woken = False
         self.is_over = False
         self.pending: BaseException | None = None
+        self.calls: list[Callable[[], object]] = []
         self.reason = ""
         self.sentinel: Any = None  # the lock that `Thread.join` waits for
         self.polls = 0  # looks without a wait, since something last happened
@@ -97,6 +98,7 @@ class Scheduler:
         self.current = self.main
         self._hub = greenlet(self._serve)
         self._ready: list[Task] = []
+        self._tasks: list[Task] = []
         self._deadlines: list[tuple[int, int, Task | Alarm, int]] = []
         self._order = count()
         self._events = 0  # counts what makes another look worth while
@@ -114,6 +116,7 @@ class Scheduler:
         task = Task(next(self._numbers), greenlet(None), process or self.current.process)
         task.greenlet = greenlet(lambda: self._run(task, function), self._hub)
         self._ready.append(task)
+        self._tasks.append(task)
         self.progress()
         return task
 
@@ -125,6 +128,7 @@ class Scheduler:
             self.interrupt(self.main, error)
         finally:
             task.is_over = True
+            self._tasks.remove(task)
             if task.sentinel is not None and task.sentinel.locked():
                 task.sentinel.release()
 
@@ -133,15 +137,21 @@ class Scheduler:
         while True:
             self._enter(self._next())
 
-    def drop(self, task: Task) -> None:
-        """Never let a thread run again, not even its `finally` blocks: what killing its process means."""
-        task.is_over = True
-        task.is_parked = False
-        if task in self._ready:
-            self._ready.remove(task)
-        self._dropped.append(task)
-        if task is self.current:
-            self._enter(self._next())
+    def drop_process(self, process: Process) -> None:
+        """Never let the threads of a process run again, not even their `finally` blocks; the running one ends itself."""
+        for task in [task for task in self._tasks if task.process is process and task is not self.current]:
+            task.is_over, task.is_parked = True, False
+            if task in self._ready:
+                self._ready.remove(task)
+            self._tasks.remove(task)
+            self._dropped.append(task)
+
+    def end_thread(self) -> None:
+        """Leave the running thread for ever."""
+        self._dropped.append(self.current)
+        self._tasks.remove(self.current)
+        self.current.is_over = True
+        self._hub.switch()
 
     # --- waiting ---
 
@@ -168,6 +178,11 @@ class Scheduler:
         """Raise an error in a thread, where it waits or as soon as it waits."""
         if task.pending is None:
             task.pending = error
+        self.wake(task)
+
+    def run_in(self, task: Task, function: Callable[[], object]) -> None:
+        """Run a function in a thread where it waits, as Python runs the handlers of signals; it then waits on."""
+        task.calls.append(function)
         self.wake(task)
 
     def sleep(self, duration: int) -> None:
@@ -222,6 +237,8 @@ class Scheduler:
         chosen = self._next()
         if chosen is not task:
             self._enter(chosen)
+        while task.calls:
+            task.calls.pop(0)()
         if task.pending is not None:
             error, task.pending = task.pending, None
             raise error

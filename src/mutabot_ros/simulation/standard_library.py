@@ -91,6 +91,9 @@ def _start_new_thread(
         except SystemExit:
             pass
 
+    owner = getattr(function, "__self__", None)  # the Thread, if it is one
+    if owner is not None:
+        owner.process = SCHEDULER.current.process
     return SCHEDULER.spawn(run).number
 
 
@@ -222,13 +225,6 @@ def _uuid() -> ModuleType:
     return varied("uuid", uuid4=drawn, uuid1=lambda node=None, clock_seq=None: drawn())
 
 
-def _os_of_library() -> ModuleType:
-    """Without hooks at forks: a fork takes simulated threads along, so nothing is to be mended after it."""
-    module = varied("os")
-    del module.register_at_fork
-    return module
-
-
 def install() -> None:
     """Provide these modules to those who see the simulation."""
     if not hasattr(real_threading, "_set_sentinel"):
@@ -236,7 +232,6 @@ def install() -> None:
     for name, build in {
         "_thread": _thread,
         "time": _time,
-        "os": _os_of_library,
         "_threading_local": lambda: copied("_threading_local"),
         "threading": _threading,
         "_queue": _c_queue,

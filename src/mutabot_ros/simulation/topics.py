@@ -183,7 +183,8 @@ class Publisher(_Topic):
         self._send(converted(message, self.kind))
 
     def publish_raw(self, data: bytes) -> None:
-        self._send(rclpy_deserialize(data, self.kind))
+        """Send a message that is serialized already; a subscription finds out whether it is one."""
+        self._send(bytes(data))
 
     def _send(self, message: Any) -> None:
         SCHEDULER.may_switch()
@@ -296,7 +297,11 @@ class Subscription(_Topic):
         if not self.is_ready:
             return None
         sample, received, number = self.queue.popleft()
-        message = rclpy_serialize(sample.message, self.kind) if raw else converted(sample.message, kind)
+        message = sample.message
+        if isinstance(message, bytes):
+            message = message if raw else rclpy_deserialize(message, kind)
+        else:
+            message = rclpy_serialize(message, self.kind) if raw else converted(message, kind)
         return message, {
             "source_timestamp": sample.stamp,
             "received_timestamp": received,

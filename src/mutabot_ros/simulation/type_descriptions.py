@@ -9,6 +9,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from mutabot_ros.simulation.messages import class_of
+
 
 @cache
 def _description(type_name: str) -> dict[str, Any] | None:
@@ -34,3 +36,36 @@ def hash_of(type_name: str) -> dict[str, Any]:
     if text is None:
         return {"version": 0, "value": bytes(32)}
     return {"version": int(text[4:6]), "value": bytes.fromhex(text[7:])}
+
+
+def answer_about(request: Any, response: Any) -> Any:
+    """Fill in the answer of a node's `get_type_description` service."""
+    found = _description(request.type_name)
+    if found is None:
+        response.failure_reason = "type not currently in use by this node"
+        return response
+    wanted = {entry["type_name"]: entry["hash_string"] for entry in found["type_hashes"]}.get(request.type_name)
+    if request.type_hash and request.type_hash != wanted:
+        response.failure_reason = f"requested type hash {request.type_hash} does not match {wanted}"
+        return response
+    _fill(response.type_description, found["type_description_msg"])
+    response.successful = True
+    return response
+
+
+def _fill(message: Any, values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        if isinstance(value, dict):
+            _fill(getattr(message, name), value)
+        elif isinstance(value, list):
+            kind = dict(zip(message.__slots__, message.SLOT_TYPES, strict=False))[f"_{name}"].value_type
+            for inner in value:
+                getattr(message, name).append(_made(kind, inner))
+        else:
+            setattr(message, name, value)
+
+
+def _made(kind: Any, values: dict[str, Any]) -> Any:
+    made = class_of(kind)()
+    _fill(made, values)
+    return made

@@ -1,0 +1,58 @@
+"""A pytest plug-in that runs a suite over simulated ROS: `python -m pytest -p mutabot_ros.simulation.plugin`.
+
+`--ros-schedule random --ros-seed 7` draws the order of ready callbacks; the same seed gives the same order. In the
+environment, `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` say the same.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import pytest
+
+from mutabot_ros import simulation
+from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND
+
+#: simulated seconds after which a test counts as stuck
+LIMIT = 3600
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("simulated ROS")
+    group.addoption(
+        "--ros-schedule",
+        choices=("first-in", "random"),
+        default=os.environ.get("MUTABOT_ROS_SCHEDULE", "first-in"),
+        help="the order in which callbacks and threads that are ready go on",
+    )
+    group.addoption(
+        "--ros-seed",
+        type=int,
+        default=int(os.environ.get("MUTABOT_ROS_SEED", "0")),
+        help="what a random order is drawn from",
+    )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
+    """Start before the project's first module is imported."""
+    options = early_config.known_args_namespace
+    roots = [str(early_config.rootpath), str(early_config.invocation_params.dir)]
+    simulation.start(roots, options.ros_schedule, options.ros_seed)
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_protocol() -> Iterator[None]:
+    """Let no test run for ever in simulated time."""
+    SCHEDULER.limit = SCHEDULER.now + LIMIT * SECOND
+    try:
+        return (yield)
+    finally:
+        SCHEDULER.limit = None
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say what the simulation could not do."""
+    for reason in simulation.reasons():
+        terminalreporter.write_line(f"needs real ROS: {reason}", yellow=True)
