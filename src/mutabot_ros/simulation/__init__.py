@@ -16,7 +16,15 @@ def start(roots: list[str], schedule: str = "first-in", seed: int = 0) -> None:
     """Simulate ROS in this process from now on. Raises NeedsRealRos if that cannot be."""
     global _is_running  # noqa: PLW0603  (there is one simulation in a process)
     # greenlet and rclpy are needed only where the simulation runs
-    from mutabot_ros.simulation import extension, processes, programs, standard_library, who_asks  # noqa: PLC0415
+    from mutabot_ros.simulation import (  # noqa: PLC0415
+        event_loops,
+        extension,
+        multiprocess,
+        processes,
+        programs,
+        standard_library,
+        who_asks,
+    )
     from mutabot_ros.simulation.scheduler import SCHEDULER  # noqa: PLC0415
     from mutabot_ros.simulation.schedules import schedule_named  # noqa: PLC0415
 
@@ -25,6 +33,8 @@ def start(roots: list[str], schedule: str = "first-in", seed: int = 0) -> None:
         who_asks.add_root(root)
     if not _is_running:
         programs.install()
+        event_loops.install()
+        multiprocess.install()
         standard_library.install()
         processes.install()
         extension.install()

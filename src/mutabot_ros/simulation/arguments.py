@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -14,7 +14,11 @@ from mutabot_ros.simulation.names import expanded
 from mutabot_ros.simulation.records import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
 
 SEVERITIES = {"UNSET": 0, "DEBUG": 10, "INFO": 20, "WARN": 30, "ERROR": 40, "FATAL": 50}
-_SWITCHES = {f"--{state}-{what}-logs" for state in ("enable", "disable") for what in ("rosout", "stdout", "external-lib")}
+_SWITCHES = {
+    f"--{word}-{what}-logs": (attribute, word == "enable")
+    for word in ("enable", "disable")
+    for what, attribute in (("rosout", "has_rosout"), ("stdout", "has_console"), ("external-lib", "has_library"))
+}
 
 
 @dataclass
@@ -33,6 +37,9 @@ class Arguments:
     remaps: list[RemapRule] = field(default_factory=list)
     parameters: list[tuple[str, str, Any]] = field(default_factory=list)  # pattern of nodes, name, value
     levels: dict[str, int] = field(default_factory=dict)
+    has_rosout: bool = True
+    has_console: bool = True
+    has_library: bool = True  # a log file, which nobody writes here
     others: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
 
@@ -93,7 +100,10 @@ def _read_option(found: Arguments, word: str, rest: Iterator[str]) -> None:
         if value is None:
             raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: Couldn't parse trailing {word} flag. {what}")
         read(found, word, value)
-    elif word not in _SWITCHES:
+    elif word in _SWITCHES:
+        what, value = _SWITCHES[word]
+        setattr(found, what, value)
+    else:
         found.unknown.append(word)
 
 
@@ -130,27 +140,33 @@ def _value(text: str) -> Any:
 
 def _read_file(found: Arguments, word: str, value: str) -> None:
     try:
-        content = yaml.safe_load(Path(value).read_text())
+        document = yaml.compose(Path(value).read_text(), Loader=yaml.SafeLoader)
     except (OSError, yaml.YAMLError) as error:
         raise RCLError(f"failed to initialize rcl: Couldn't parse params file: '{word} {value}'. Error: {error}") from None
-    for node, name, setting in _parameters_in(content or {}, ""):
+    for node, name, setting in _parameters_in(document, ""):
         found.parameters.append((node, name, setting))
 
 
-def _parameters_in(content: Mapping[str, Any], path: str) -> Iterator[tuple[str, str, Any]]:
-    for key, inner in content.items():
+def _pairs(node: Any) -> Iterator[tuple[str, Any]]:
+    """The keys and values of a mapping of YAML; a key may stand there twice, which YAML's own mappings would lose."""
+    if isinstance(node, yaml.MappingNode):
+        yield from ((str(key.value), value) for key, value in node.value)
+
+
+def _parameters_in(node: Any, path: str) -> Iterator[tuple[str, str, Any]]:
+    for key, inner in _pairs(node):
         if key == "ros__parameters":
-            yield from ((path, name, value) for name, value in _flat(inner or {}, ""))
-        elif isinstance(inner, Mapping):
+            yield from ((path, name, value) for name, value in _flat(inner, ""))
+        else:
             yield from _parameters_in(inner, f"{path}/{key.strip('/')}")
 
 
-def _flat(settings: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
-    for key, value in settings.items():
-        if isinstance(value, Mapping):
+def _flat(node: Any, prefix: str) -> Iterator[tuple[str, Any]]:
+    for key, value in _pairs(node):
+        if isinstance(value, yaml.MappingNode):
             yield from _flat(value, f"{prefix}{key}.")
         else:
-            yield f"{prefix}{key}", value
+            yield f"{prefix}{key}", yaml.safe_load(yaml.serialize(value))
 
 
 def _read_level(found: Arguments, word: str, value: str) -> None:

@@ -87,6 +87,8 @@ class Context(Destroyable):
         if domain_id == RCL_DEFAULT_DOMAIN_ID:
             domain_id = int(os.environ.get("ROS_DOMAIN_ID") or 0)
         self.domain = domain_id
+        for word in args:
+            word.encode()  # as the real one: what is no text raises
         try:
             self.arguments = arguments.parse_strictly(list(args))
         except RCLError as error:

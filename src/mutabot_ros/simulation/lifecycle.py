@@ -47,6 +47,8 @@ class LifecycleStateMachine(Destroyable):
         from lifecycle_msgs.msg import TransitionEvent  # noqa: PLC0415
 
         super().__init__()
+        if not isinstance(communicates, bool):
+            raise TypeError("__init__(): incompatible constructor arguments: whether it communicates is no bool")
         self._state = 1
         self._services: dict[str, Service] = {}
         self._events: Publisher | None = None
@@ -69,24 +71,24 @@ class LifecycleStateMachine(Destroyable):
             self._events.destroy_when_not_in_use()
 
     @property
-    def service_change_state(self) -> Service:
-        return self._services["change_state"]
+    def service_change_state(self) -> Service | None:
+        return self._services.get("change_state")
 
     @property
-    def service_get_state(self) -> Service:
-        return self._services["get_state"]
+    def service_get_state(self) -> Service | None:
+        return self._services.get("get_state")
 
     @property
-    def service_get_available_states(self) -> Service:
-        return self._services["get_available_states"]
+    def service_get_available_states(self) -> Service | None:
+        return self._services.get("get_available_states")
 
     @property
-    def service_get_available_transitions(self) -> Service:
-        return self._services["get_available_transitions"]
+    def service_get_available_transitions(self) -> Service | None:
+        return self._services.get("get_available_transitions")
 
     @property
-    def service_get_transition_graph(self) -> Service:
-        return self._services["get_transition_graph"]
+    def service_get_transition_graph(self) -> Service | None:
+        return self._services.get("get_transition_graph")
 
     @property
     def current_state(self) -> tuple[int, str]:

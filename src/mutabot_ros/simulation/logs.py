@@ -14,6 +14,8 @@ _NAMES = {number: name for name, number in SEVERITIES.items()}
 _DEFAULT_LEVEL = 20
 _levels: dict[str, int] = {}
 _publishers: dict[str, Publisher] = {}
+#: whether lines go to the standard error
+has_console = [True]
 _sublogger_users: dict[str, int] = {}
 
 
@@ -22,7 +24,8 @@ def log(severity: int, name: str, text: str, function: str = "", file: str = "",
     now = SCHEDULER.system_time
     label = _NAMES.get(int(severity), "UNSET")
     row = f"[{label}] [{now // SECOND}.{now % SECOND:09d}] [{name}]: {text}\n"
-    _write(row)
+    if has_console[0]:
+        _write(row)
     publisher = _publishers.get(name)
     if publisher is not None and not publisher.is_destroyed:
         message = publisher.kind(level=int(severity), name=name, msg=text, file=file, function=function, line=line)
@@ -39,7 +42,7 @@ def _write(row: str) -> None:
 
 
 def _start_rosout(node: Node) -> None:
-    if not node.enable_rosout:
+    if not node.enable_rosout or not node.context.arguments.has_rosout:
         return
     from rcl_interfaces.msg import Log  # noqa: PLC0415  (only where there is ROS)
 
@@ -88,7 +91,7 @@ def rclpy_logging_get_logger_effective_level(name: str) -> int:
         if _levels.get(name):
             return _levels[name]
         name = name.rpartition(".")[0]
-    return _levels.get("") or _DEFAULT_LEVEL
+    return _levels.get("", _DEFAULT_LEVEL)
 
 
 def rclpy_logging_logger_is_enabled_for(name: str, severity: Any) -> bool:
@@ -124,6 +127,7 @@ def rclpy_logging_rosout_remove_sublogger(logger: str, sublogger: str) -> None:
 def rclpy_logging_configure(context: Context) -> None:
     """Take the levels that a command line sets."""
     _levels.update(context.arguments.levels)
+    has_console[0] = context.arguments.has_console
 
 
 def rclpy_logging_fini() -> None:

@@ -266,9 +266,10 @@ def _is_own(name: str, module: Any) -> bool:
     return isinstance(file, str) and is_of_project(file)
 
 
-def _change(old: Process | None, new: Process | None) -> None:
-    (old or MAIN).leave()
-    (new or MAIN).enter()
+def _change(old: Task, new: Task) -> None:
+    if old.process is not new.process:
+        (old.process or MAIN).leave()
+        (new.process or MAIN).enter()
 
 
 #: the process of the tests
@@ -290,4 +291,4 @@ def install() -> None:
     MAIN.main_task = SCHEDULER.main
     SCHEDULER.main.process = MAIN
     MAIN.enter()
-    SCHEDULER.change_process = _change
+    SCHEDULER.on_switch.append(_change)

@@ -103,7 +103,7 @@ class Scheduler:
         self._order = count()
         self._events = 0  # counts what makes another look worth while
         self._dropped: list[Task] = []  # kept, because a greenlet that is freed runs its `finally` blocks
-        self.change_process: Callable[[Process | None, Process | None], None] = lambda old, new: None
+        self.on_switch: list[Callable[[Task, Task], None]] = []  # what changes when another thread goes on
 
     @property
     def system_time(self) -> int:
@@ -244,8 +244,8 @@ class Scheduler:
             raise error
 
     def _enter(self, task: Task) -> None:
-        if task.process is not self.current.process:
-            self.change_process(self.current.process, task.process)
+        for change in self.on_switch:
+            change(self.current, task)
         self.current = task
         task.greenlet.switch()
 

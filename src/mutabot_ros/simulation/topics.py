@@ -44,6 +44,8 @@ class Status:
 
     def __init__(self, record: Any) -> None:
         self.values = record()
+        if hasattr(self.values, "last_policy_kind"):
+            self.values.last_policy_kind = records.rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
         self.has_changed = False
         self.handles: list[EventHandle] = []
 
