@@ -1,8 +1,9 @@
 """ROS 2 in one process: simulated time, deterministic, forkable.
 
-`start` puts a middleware written in Python in the place of rclpy's C extension, and simulated time in the place of
-`time`, `threading` and so on, for modules of the project and for rclpy. rclpy's own Python, the project and its tests
-stay as they are. What cannot be simulated raises `NeedsRealRos`; `reasons()` gives all that was found.
+`start` puts a middleware in Python in the place of rclpy's C extension. For modules of the project and of
+rclpy, it puts simulated time in the place of `time`, `threading` and so on. rclpy's own Python, the project
+and its tests stay as they are. What cannot be simulated raises `NeedsRealRos`; `reasons()` gives all that
+was found.
 """
 
 from __future__ import annotations

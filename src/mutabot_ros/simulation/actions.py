@@ -60,8 +60,9 @@ class ActionClient(_ActionEnd):
     kind_name = "client"
 
     def __init__(
-        self, node: Node, kind: Any, name: str, goal: Any, result: Any, cancel: Any, feedback: Any, status: Any
-    ) -> None:
+        self, node: Node, kind: Any, name: str, goal: Any, result: Any, cancel: Any, feedback: Any,
+        status: Any,
+    ) -> None:  # fmt: skip
         super().__init__(node, name)
         impl = kind.Impl
         self._goal = Client(node, impl.SendGoalService, f"{self._base}/send_goal", goal)
@@ -132,7 +133,7 @@ class ActionServer(_ActionEnd):
 
     kind_name = "server"
 
-    def __init__(
+    def __init__(  # noqa: PLR0917  (as rclpy calls it)
         self, node: Node, clock: Clock, kind: Any, name: str,
         goal: Any, result: Any, cancel: Any, feedback: Any, status: Any, result_timeout: float,
     ) -> None:  # fmt: skip
@@ -231,7 +232,9 @@ class ActionServer(_ActionEnd):
     def expire_goals(self, most: int) -> tuple[Any, ...]:
         """Forget the goals whose results have been kept long enough."""
         now = self.clock.now()
-        over = [goal for goal in self.goals.values() if goal.expires_at is not None and goal.expires_at <= now][:most]
+        over = [
+            goal for goal in self.goals.values() if goal.expires_at is not None and goal.expires_at <= now
+        ][:most]
         for goal in over:
             del self.goals[goal.uuid]
         self._set_expiry()

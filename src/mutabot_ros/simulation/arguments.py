@@ -17,7 +17,11 @@ SEVERITIES = {"UNSET": 0, "DEBUG": 10, "INFO": 20, "WARN": 30, "ERROR": 40, "FAT
 _SWITCHES = {
     f"--{word}-{what}-logs": (attribute, word == "enable")
     for word in ("enable", "disable")
-    for what, attribute in (("rosout", "has_rosout"), ("stdout", "has_console"), ("external-lib", "has_library"))
+    for what, attribute in (
+        ("rosout", "has_rosout"),
+        ("stdout", "has_console"),
+        ("external-lib", "has_library"),
+    )
 }
 
 
@@ -98,11 +102,13 @@ def _read_option(found: Arguments, word: str, rest: Iterator[str]) -> None:
         what, read = option
         value = next(rest, None)
         if value is None:
-            raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: Couldn't parse trailing {word} flag. {what}")
+            raise RCLInvalidROSArgsError(
+                f"Failed to parse ROS arguments: Couldn't parse trailing {word} flag. {what}"
+            )
         read(found, word, value)
     elif word in _SWITCHES:
-        what, value = _SWITCHES[word]
-        setattr(found, what, value)
+        attribute, is_on = _SWITCHES[word]
+        setattr(found, attribute, is_on)
     else:
         found.unknown.append(word)
 
@@ -142,13 +148,15 @@ def _read_file(found: Arguments, word: str, value: str) -> None:
     try:
         document = yaml.compose(Path(value).read_text(), Loader=yaml.SafeLoader)
     except (OSError, yaml.YAMLError) as error:
-        raise RCLError(f"failed to initialize rcl: Couldn't parse params file: '{word} {value}'. Error: {error}") from None
+        raise RCLError(
+            f"failed to initialize rcl: Couldn't parse params file: '{word} {value}'. Error: {error}"
+        ) from None
     for node, name, setting in _parameters_in(document, ""):
         found.parameters.append((node, name, setting))
 
 
 def _pairs(node: Any) -> Iterator[tuple[str, Any]]:
-    """The keys and values of a mapping of YAML; a key may stand there twice, which YAML's own mappings would lose."""
+    """The keys and values of a mapping of YAML, where a key may stand twice."""
     if isinstance(node, yaml.MappingNode):
         yield from ((str(key.value), value) for key, value in node.value)
 
@@ -185,7 +193,9 @@ _OPTIONS: dict[str, tuple[str, Callable[[Arguments, str, str], None]]] = {
     **dict.fromkeys(("-p", "--param"), ("No parameter override rule found.", _read_parameter)),
     "--params-file": ("No file path provided.", _read_file),
     "--log-level": ("No log level found.", _read_level),
-    **dict.fromkeys(("-e", "--enclave", "--log-config-file", "--log-file-name"), ("No value found.", _ignore)),
+    **dict.fromkeys(
+        ("-e", "--enclave", "--log-config-file", "--log-file-name"), ("No value found.", _ignore)
+    ),
 }
 
 

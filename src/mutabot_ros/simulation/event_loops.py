@@ -1,4 +1,4 @@
-"""asyncio in simulated time: its own event loop, that waits with the scheduler instead of the operating system.
+"""asyncio in simulated time: an event loop that waits with the scheduler instead of the operating system.
 
 Tasks, futures and all else of asyncio are the real ones.
 """
@@ -58,13 +58,17 @@ class SimulatedEventLoop(asyncio.SelectorEventLoop):
         if self._waits_in.waiting is not None:
             SCHEDULER.wake(self._waits_in.waiting)
 
-    def run_in_executor(self, executor: Any, func: Callable[..., Any], *args: Any) -> Any:
+    def run_in_executor(  # type: ignore[override]  # any executor will do
+        self, executor: Any, func: Callable[..., Any], *args: Any
+    ) -> Any:
         pool = executor or self._threads()
         return _awaitable(pool.submit(func, *args), self)
 
     def _threads(self) -> Any:
         if self._default_executor is None:  # type: ignore[has-type]
-            self._default_executor = stand_in("concurrent.futures").ThreadPoolExecutor(thread_name_prefix="asyncio")
+            self._default_executor = stand_in("concurrent.futures").ThreadPoolExecutor(
+                thread_name_prefix="asyncio"
+            )
         return self._default_executor
 
     async def shutdown_default_executor(self, timeout: float | None = None) -> None:

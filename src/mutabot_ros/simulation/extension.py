@@ -1,4 +1,4 @@
-"""The module in the place of `rclpy._rclpy_pybind11`: all names that the real one exports, and that rclpy's Python uses."""
+"""The module in the place of `rclpy._rclpy_pybind11`: all names that the real one exports."""
 
 from __future__ import annotations
 
@@ -30,15 +30,17 @@ from mutabot_ros.simulation.records import MODULE
 from mutabot_ros.simulation.scheduler import NeedsRealRos
 
 _SOURCES: tuple[ModuleType, ...] = (
-    actions, arguments, graph, lifecycle, logs, names, qos, records, serialization, services, signals, topics, waiting,
+    actions, arguments, graph, lifecycle, logs, names, qos, records, serialization, services, signals,
+    topics, waiting,
 )  # fmt: skip
-#: what the real extension of a release exports, by its name: `Publisher`, `rclpy_serialize`, `RCLError` …
+#: what the extension exports, by its name: `rclpy_serialize`, `RCLError` …
 _EXPORTED = re.compile(
     r"rclpy_\w+|rcl_\w+|rmw_\w+|RCL_\w+|RMW_\w+|RCUTILS_\w+|\w+_signal_handlers\w*|\w+_sigint_guard_condition"
     r"|service_introspection|[A-Z][A-Za-z]*(Error|Handle)|NotImplementedError"
 )
 _CLASSES = (
-    "ActionClient", "ActionGoalHandle", "ActionServer", "Client", "Clock", "ClockChange", "ClockEvent", "ClockType",
+    "ActionClient", "ActionGoalHandle", "ActionServer", "Client", "Clock", "ClockChange", "ClockEvent",
+    "ClockType",
     "Context", "Destroyable", "EventHandle", "GoalEvent", "GuardCondition", "LifecycleStateMachine", "Node",
     "Publisher", "QoSCheckCompatibleResult", "QoSCompatibility", "RCUTILS_LOG_SEVERITY", "Service",
     "SignalHandlerOptions", "Subscription", "Timer", "TransitionCallbackReturnType", "TypeDescriptionService",
@@ -91,7 +93,7 @@ _hashes = count(1)
 
 
 def _number_in_sets(node: graph.Node) -> None:
-    """Give rclpy's objects that stand in sets a hash by age: by address, their order would differ from run to run."""
+    """Order rclpy's objects in sets by age: by address, their order would differ from run to run."""
     for module, name in (("rclpy.node", "Node"), ("rclpy.lifecycle.managed_entity", "ManagedEntity")):
         kind = getattr(sys.modules.get(module), name, None)
         if kind is not None and kind.__hash__ is object.__hash__:

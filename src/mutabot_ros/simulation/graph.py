@@ -1,4 +1,4 @@
-"""Who is there: contexts, nodes, and the ends of topics and services, with what nodes can ask about each other."""
+"""Who is there: contexts, nodes, the ends of topics and services, and what nodes can ask about each other."""
 
 from __future__ import annotations
 
@@ -92,7 +92,9 @@ class Context(Destroyable):
         try:
             self.arguments = arguments.parse_strictly(list(args))
         except RCLError as error:
-            raise RCLError(str(error).replace("Failed to parse ROS arguments", "failed to initialize rcl")) from None
+            raise RCLError(
+                str(error).replace("Failed to parse ROS arguments", "failed to initialize rcl")
+            ) from None
         self.is_up = True
         self.process: Process | None = SCHEDULER.current.process
         if self.process is not None:
@@ -119,12 +121,15 @@ class Node(Destroyable):
     """A node: its names, and the ends that it has."""
 
     def __init__(
-        self, name: str, namespace: str, context: Context, cli_args: list[str] | None, use_global_arguments: bool,
+        self, name: str, namespace: str, context: Context, cli_args: list[str] | None,
+        use_global_arguments: bool,
         enable_rosout: bool, rosout_qos: Any,
     ) -> None:  # fmt: skip
         super().__init__()
         if not context.is_up:
-            raise RCLError("error creating node: the given context is not valid, either rcl_init() was not called")
+            raise RCLError(
+                "error creating node: the given context is not valid, either rcl_init() was not called"
+            )
         self.context = context
         own = arguments.parse_strictly(list(cli_args or []))
         self._sources = [own, *([context.arguments] if use_global_arguments else [])]
@@ -198,10 +203,14 @@ class Node(Destroyable):
     def get_action_names_and_types(self) -> list[tuple[str, list[str]]]:
         return _actions(WORLD.seen(self, "publisher") + WORLD.seen(self, "subscription"))
 
-    def get_action_server_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+    def get_action_server_names_and_types_by_node(
+        self, name: str, namespace: str
+    ) -> list[tuple[str, list[str]]]:
         return _actions(_of_node(self, "publisher", name, namespace, "action server"))
 
-    def get_action_client_names_and_types_by_node(self, name: str, namespace: str) -> list[tuple[str, list[str]]]:
+    def get_action_client_names_and_types_by_node(
+        self, name: str, namespace: str
+    ) -> list[tuple[str, list[str]]]:
         return _actions(_of_node(self, "subscription", name, namespace, "action client"))
 
 
@@ -222,10 +231,10 @@ class Endpoint(Waitable):
 
     def _others(self, role: str) -> Iterator[Any]:
         """The ends of a role that this one could talk to, by domain, name and type."""
+        wanted = (role, self.name, self.type_name, self.node.context.domain)
         for end in WORLD.ends:
-            if end.role == role and end.name == self.name and end.type_name == self.type_name:
-                if end.node.context.domain == self.node.context.domain:
-                    yield end
+            if (end.role, end.name, end.type_name, end.node.context.domain) == wanted:
+                yield end
 
     def when_both_are_seen(self, other: Endpoint, meet: Callable[[], None]) -> None:
         """Let two ends meet: at once in one context, after discovery otherwise."""
@@ -293,19 +302,24 @@ def _of_node(node: Node, role: str, name: str, namespace: str, what: str) -> lis
     if not any((other.name, other.namespace) == (name, namespace) for other in WORLD.seen_nodes(node)):
         if what.startswith("action"):
             raise RCLError(f"Failed to get {what} names and type: error not set")
-        raise NodeNameNonExistentError(f"cannot get {what} names and types for nonexistent node: error not set")
+        raise NodeNameNonExistentError(
+            f"cannot get {what} names and types for nonexistent node: error not set"
+        )
     return [end for end in WORLD.seen(node, role) if (end.node.name, end.node.namespace) == (name, namespace)]
 
 
 def _actions(ends: Iterable[Endpoint]) -> Names:
     suffix, of_type = "/_action/feedback", "_FeedbackMessage"
     return _grouped(
-        (end.name.removesuffix(suffix), end.type_name.removesuffix(of_type)) for end in ends if end.name.endswith(suffix)
+        (end.name.removesuffix(suffix), end.type_name.removesuffix(of_type))
+        for end in ends
+        if end.name.endswith(suffix)
     )
 
 
 def _dds_type(name: str, part: str = "") -> str:
-    return "::".join([*name.split("/")[:-1], "dds_", f"{name.split('/')[-1]}{part}_"])
+    *folders, last = name.split("/")
+    return "::".join([*folders, "dds_", f"{last}{part}_"])
 
 
 def _dds_names(end: Endpoint) -> list[tuple[str, str]]:
@@ -321,7 +335,11 @@ def _dds_names(end: Endpoint) -> list[tuple[str, str]]:
 def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> Names:
     """All topics, by their names in ROS or those on the network."""
     if no_demangle:
-        ends = [end for role in ("publisher", "subscription", "client", "service") for end in WORLD.seen(node, role)]
+        ends = [
+            end
+            for role in ("publisher", "subscription", "client", "service")
+            for end in WORLD.seen(node, role)
+        ]
         discovery = ("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_")
         return _grouped([discovery, *(pair for end in ends for pair in _dds_names(end))])
     return _named(WORLD.seen(node, "publisher") + WORLD.seen(node, "subscription"))
@@ -332,12 +350,16 @@ def rclpy_get_service_names_and_types(node: Node) -> Names:
     return _named(WORLD.seen(node, "service") + WORLD.seen(node, "client"))
 
 
-def rclpy_get_publisher_names_and_types_by_node(node: Node, no_demangle: bool, name: str, namespace: str) -> Names:
+def rclpy_get_publisher_names_and_types_by_node(
+    node: Node, no_demangle: bool, name: str, namespace: str
+) -> Names:
     """The topics that a node publishes."""
     return _topics(_of_node(node, "publisher", name, namespace, "publisher"), no_demangle)
 
 
-def rclpy_get_subscriber_names_and_types_by_node(node: Node, no_demangle: bool, name: str, namespace: str) -> Names:
+def rclpy_get_subscriber_names_and_types_by_node(
+    node: Node, no_demangle: bool, name: str, namespace: str
+) -> Names:
     """The topics that a node hears."""
     return _topics(_of_node(node, "subscription", name, namespace, "subscriber"), no_demangle)
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from mutabot_ros.simulation.graph import Destroyable, Node
 from mutabot_ros.simulation.logs import log
 from mutabot_ros.simulation.records import MODULE, RCLError
@@ -12,7 +10,8 @@ from mutabot_ros.simulation.services import Service
 from mutabot_ros.simulation.topics import Publisher
 
 STATES = {
-    0: "unknown", 1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized", 10: "configuring", 11: "cleaningup",
+    0: "unknown", 1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized", 10: "configuring",
+    11: "cleaningup",
     12: "shuttingdown", 13: "activating", 14: "deactivating", 15: "errorprocessing",
 }  # fmt: skip
 #: number, label, from which state, to which
@@ -48,7 +47,9 @@ class LifecycleStateMachine(Destroyable):
 
         super().__init__()
         if not isinstance(communicates, bool):
-            raise TypeError("__init__(): incompatible constructor arguments: whether it communicates is no bool")
+            raise TypeError(
+                "__init__(): incompatible constructor arguments: whether it communicates is no bool"
+            )
         self._state = 1
         self._services: dict[str, Service] = {}
         self._events: Publisher | None = None
@@ -110,7 +111,11 @@ class LifecycleStateMachine(Destroyable):
         for transition in TRANSITIONS:
             if transition[2] == self._state and wanted in transition[:2]:
                 return transition
-        log(30, "rcl_lifecycle", f"No transition matching {wanted} found for current state {STATES[self._state]}")
+        log(
+            30,
+            "rcl_lifecycle",
+            f"No transition matching {wanted} found for current state {STATES[self._state]}",
+        )
         return None
 
     def get_transition_by_label(self, label: str) -> int:
@@ -122,7 +127,9 @@ class LifecycleStateMachine(Destroyable):
     def _trigger(self, wanted: int | str, publishes: bool) -> None:
         found = self._find(wanted)
         if found is None:
-            raise RCLError("Failed to trigger lifecycle state machine transition: Transition is not registered.")
+            raise RCLError(
+                "Failed to trigger lifecycle state machine transition: Transition is not registered."
+            )
         number, label, start, goal = found
         self._state = goal
         if publishes and self._events is not None:

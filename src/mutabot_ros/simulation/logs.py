@@ -28,7 +28,9 @@ def log(severity: int, name: str, text: str, function: str = "", file: str = "",
         _write(row)
     publisher = _publishers.get(name)
     if publisher is not None and not publisher.is_destroyed:
-        message = publisher.kind(level=int(severity), name=name, msg=text, file=file, function=function, line=line)
+        message = publisher.kind(
+            level=int(severity), name=name, msg=text, file=file, function=function, line=line
+        )
         message.stamp.sec, message.stamp.nanosec = divmod(now, SECOND)
         publisher.publish(message)
 
@@ -51,10 +53,10 @@ def _start_rosout(node: Node) -> None:
         log(
             30,
             "rcl.logging_rosout",
-            f"Publisher already registered for node name: '{node.name}'. If this is due to multiple nodes with the same "
-            f"name then all logs for the logger named '{name}' will go out over the existing publisher. As soon as any "
-            "node with that name is destructed it will unregister the publisher, preventing any further logs for that "
-            "name from being published on the rosout topic.",
+            f"Publisher already registered for node name: '{node.name}'. If this is due to multiple nodes with the "
+            f"same name then all logs for the logger named '{name}' will go out over the existing publisher. As "
+            "soon as any node with that name is destructed it will unregister the publisher, preventing any further "
+            "logs for that name from being published on the rosout topic.",
         )
         return
     publisher = Publisher(node, Log, "/rosout", node.rosout_qos)
@@ -67,7 +69,9 @@ def install() -> None:
     WORLD.on_node.append(_start_rosout)
 
 
-def rclpy_logging_rcutils_log(severity: Any, name: str, text: str, function: str, file: str, line: int) -> None:
+def rclpy_logging_rcutils_log(
+    severity: Any, name: str, text: str, function: str, file: str, line: int
+) -> None:
     """Log a line."""
     log(int(severity), name, text, function, file, line)
 

@@ -1,7 +1,8 @@
 """Copies of messages, converted field by field as the C type support converts them.
 
-What a subscription hears is never the publisher's object. A field of a wrong type raises, or is cut, as it is with real
-ROS: numbers lose their upper bits, `1` is not `True`, and an `int` in a floating-point field becomes nonsense.
+What a subscription hears is never the publisher's object. A field of a wrong type raises or is cut, as with
+real ROS: numbers lose their upper bits, `1` is not `True`, and an `int` in a floating-point field becomes
+nonsense.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def _conversions(kind: type) -> list[tuple[str, str, Convert]]:
     return [(slot, slot[1:], _conversion(of, slot[1:])) for slot, of in fields_of(kind)]
 
 
-def converted(message: Any, kind: type) -> Any:
+def converted(message: Any, kind: Any) -> Any:
     """A copy of a message, as an object of the class. Raises as the conversion to C does."""
     copy = kind.__new__(kind)
     copy._check_fields = False
@@ -61,7 +62,9 @@ def class_of(of: Any) -> type:
     package = ".".join(of.namespaces)
     module = importlib.import_module(package)
     if not hasattr(module, of.name):  # a part of a service or an action, such as `Fibonacci_Goal`
-        snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", of.name.partition("_")[0]).lower()
+        snake = re.sub(
+            r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", of.name.partition("_")[0]
+        ).lower()
         module = importlib.import_module(f"{package}._{snake}")
     return getattr(module, of.name)  # type: ignore[no-any-return]
 
@@ -85,7 +88,7 @@ def _basic(typename: str) -> Convert:
     if typename == "boolean":
         return lambda value: value is True
     if typename in {"float", "double"}:
-        return _double if typename == "double" else lambda value: struct.unpack("f", struct.pack("f", _double(value)))[0]
+        return _double if typename == "double" else _single
     if typename == "octet":
         return _octet
     return _integer(*INTEGERS[typename])
@@ -99,6 +102,10 @@ def _double(value: Any) -> float:
         return float(struct.unpack("d", struct.pack("q", size))[0])
     NeedsRealRos(f"a floating-point field holds {type(value).__name__}: what others hear is not defined")
     return 0.0
+
+
+def _single(value: Any) -> float:
+    return float(struct.unpack("f", struct.pack("f", _double(value)))[0])
 
 
 def _octet(value: Any) -> bytes:
@@ -117,22 +124,24 @@ def _integer(bits: int, is_signed: bool) -> Convert:
         if type(value) is int and lowest <= value < lowest + size:
             return value
         try:
-            number = operator.index(value)
-            if not low <= number < high:
-                raise OverflowError(_overflow(number, bits, is_signed))
+            number = _within(operator.index(value), low, high, bits)
         except (TypeError, OverflowError) as error:
             raise SystemError("<built-in method publish> returned a result with an exception set") from error
-        return (number - lowest) % size + lowest
+        return int((number - lowest) % size + lowest)
 
     return convert
 
 
-def _overflow(number: int, bits: int, is_signed: bool) -> str:
+def _within(number: int, low: int, high: int, bits: int) -> int:
+    if low <= number < high:
+        return number
+    if number < 0 == low:
+        raise OverflowError(
+            f"can't convert negative {'int to unsigned' if bits == 64 else 'value to unsigned int'}"
+        )
     if bits == 64:
-        return "can't convert negative int to unsigned" if number < 0 and not is_signed else "int too big to convert"
-    if number < 0 and not is_signed:
-        return "can't convert negative value to unsigned int"
-    return f"Python int too large to convert to C {'long' if is_signed else 'unsigned long'}"
+        raise OverflowError("int too big to convert")
+    raise OverflowError(f"Python int too large to convert to C {'unsigned long' if low == 0 else 'long'}")
 
 
 def _string(value: Any) -> str:
@@ -176,7 +185,9 @@ def _array(of: Any, name: str) -> Convert:
     def numbers(value: Any) -> Any:
         copy = np.array(value, dtype=dtype).reshape(-1)
         if copy.size != size:
-            NeedsRealRos(f"the field '{name}' holds {copy.size} numbers, not {size}: what others hear is not defined")
+            NeedsRealRos(
+                f"the field '{name}' holds {copy.size} numbers, not {size}: what others hear is not defined"
+            )
             copy = np.resize(np.concatenate([copy, np.zeros(size, dtype)]), size)
         return copy
 

@@ -1,6 +1,7 @@
 """`multiprocessing` for modules of the project: its processes are simulated ones.
 
-A process starts with modules of its own, in which its function is imported anew, as with the start method `spawn`.
+A process starts with modules of its own, and its function is imported anew, as with the start method
+`spawn`.
 """
 
 from __future__ import annotations
@@ -183,14 +184,17 @@ def _multiprocessing() -> ModuleType:
         return Connection(one, other), Connection(other, one)
 
     module = ModuleType("multiprocessing", real.__doc__)
-    shared = {name: type(name, (_Shared, getattr(threading, name)), {}) for name in ("Event", "Barrier", "Condition",
-              "Semaphore", "BoundedSemaphore")}  # fmt: skip
+    names = ("Event", "Barrier", "Condition", "Semaphore", "BoundedSemaphore")
+    shared = {name: type(name, (_Shared, getattr(threading, name)), {}) for name in names}
     module.__dict__.update(
-        Process=Process, Queue=queue, JoinableQueue=queue, SimpleQueue=queue, Pipe=pipe, Value=_Value, Array=_Array,
-        RawValue=_Value, RawArray=_Array, Lock=_lock_class(threading.Lock), RLock=_lock_class(threading.RLock), **shared,
+        Process=Process, Queue=queue, JoinableQueue=queue, SimpleQueue=queue, Pipe=pipe, Value=_Value,
+        Array=_Array,
+        RawValue=_Value, RawArray=_Array, **shared,
+        Lock=_lock_class(threading.Lock), RLock=_lock_class(threading.RLock),
         get_context=lambda method=None: module, set_start_method=lambda method, force=False: None,
-        get_start_method=lambda allow_none=False: "spawn", freeze_support=lambda: None, cpu_count=real.cpu_count,
-        current_process=lambda: _current(), active_children=list, TimeoutError=real.TimeoutError,
+        get_start_method=lambda allow_none=False: "spawn", freeze_support=lambda: None,
+        cpu_count=real.cpu_count,
+        current_process=_current, active_children=list, TimeoutError=real.TimeoutError,
         Pool=_needs_real("Pool"), Manager=_needs_real("Manager"),
     )  # fmt: skip
     return module

@@ -1,7 +1,7 @@
 """A pytest plug-in that runs a suite over simulated ROS: `python -m pytest -p mutabot_ros.simulation.plugin`.
 
-`--ros-schedule random --ros-seed 7` draws the order of ready callbacks; the same seed gives the same order. In the
-environment, `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` say the same.
+`--ros-schedule random --ros-seed 7` draws the order of ready callbacks; the same seed gives the same order.
+In the environment, `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` say the same.
 """
 
 from __future__ import annotations

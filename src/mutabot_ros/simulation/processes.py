@@ -1,7 +1,7 @@
-"""Simulated processes: nodes that tests start run in this process, with modules, arguments and contexts of their own.
+"""Simulated processes: nodes that tests start run in this process, with modules and arguments of their own.
 
-When a thread of another process goes on, what belongs to a process is changed: its modules of the project, its
-arguments, environment and folder, its output, and what rclpy keeps in globals. All other modules are shared.
+When a thread of another process goes on, what belongs to a process is changed: its modules of the project,
+its arguments, environment and folder, its output, and the globals of rclpy. All other modules are shared.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ _pids = count(1_000_001)
 class Process:
     """What belongs to one process."""
 
-    def __init__(self, name: str, argv: list[str], folder: str, environ: dict[bytes, bytes], path: list[str]) -> None:
+    def __init__(
+        self, name: str, argv: list[str], folder: str, environ: dict[bytes, bytes], path: list[str]
+    ) -> None:
         self.name = name
         self.pid = next(_pids)
         self.argv, self.folder, self.environ, self.path = argv, folder, environ, path
@@ -75,7 +77,9 @@ class Process:
     def leave(self) -> None:
         """Keep what belongs to this process, and take it away."""
         if len(sys.modules) != self._number_of_modules:
-            self.modules = {name: module for name, module in list(sys.modules.items()) if _is_own(name, module)}
+            self.modules = {
+                name: module for name, module in list(sys.modules.items()) if _is_own(name, module)
+            }
         for name in self.modules:
             sys.modules.pop(name, None)
         self.argv, self.path = sys.argv, sys.path
@@ -120,7 +124,7 @@ class Process:
         except KeyboardInterrupt:
             traceback.print_exc()
             return -signal.SIGINT
-        except BaseException:  # noqa: BLE001  (whatever it is, it ends the process)
+        except BaseException:  # whatever it is, it ends the process
             traceback.print_exc()
             return 1
         return 0
@@ -154,9 +158,9 @@ class Process:
         SCHEDULER.drop_process(self)
 
     def _remove_from_graph(self) -> None:
-        for handle in (*WORLD.ends, *WORLD.nodes):
-            node = getattr(handle, "node", handle)
-            if node.context in self.contexts and not handle.is_destroyed:
+        handles: list[Any] = [*WORLD.ends, *WORLD.nodes]
+        for handle in handles:
+            if getattr(handle, "node", handle).context in self.contexts and not handle.is_destroyed:
                 handle.is_destroyed = True
                 handle._release()
 

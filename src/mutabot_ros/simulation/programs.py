@@ -1,4 +1,4 @@
-"""Programs that the project starts: Python programs of the project become simulated processes, others run as they do.
+"""Programs that the project starts: its Python programs become simulated processes, others run as they are.
 
 These are the `subprocess`, `os`, `signal` and `atexit` that modules of the project see.
 """
@@ -41,7 +41,9 @@ def _is_python(program: str) -> bool:
 class _Program:
     """A Python program that a command names."""
 
-    def __init__(self, code: Callable[[], CodeType], file: str, argv: list[str], first_path: str, spec: Any) -> None:
+    def __init__(
+        self, code: Callable[[], CodeType], file: str, argv: list[str], first_path: str, spec: Any
+    ) -> None:
         self.code, self.file, self.argv, self.first_path, self.spec = code, file, argv, first_path, spec
 
     def run(self) -> None:
@@ -180,7 +182,7 @@ class Popen:
             raise real_subprocess.TimeoutExpired(self.args, timeout or 0)
         return self.process.returncode or 0
 
-    def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:  # noqa: A002
+    def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:
         if input is not None and self.stdin is not None:
             self.stdin.write(input)
         if self.stdin is not None:
@@ -238,15 +240,17 @@ def _subprocess() -> ModuleType:
 
 def _kill(pid: int, signum: int) -> None:
     process = MAIN if pid == os.getpid() else process_of(pid)
-    if process is None:
-        os.kill(pid, signum)
-    elif process is MAIN and not signals.handles(MAIN, signum) and signum not in {*MAIN.handlers, real_signal.SIGINT}:
+    if process is None or (process is MAIN and not _is_handled_here(signum)):
         os.kill(pid, signum)
     elif process.returncode is not None:
         raise ProcessLookupError(3, "No such process")
     else:
         process.tell(signum)
         SCHEDULER.pause()
+
+
+def _is_handled_here(signum: int) -> bool:
+    return signals.handles(MAIN, signum) or signum in {*MAIN.handlers, real_signal.SIGINT}
 
 
 def _current() -> Process:
@@ -275,7 +279,7 @@ def _os() -> ModuleType:
         killpg=_kill,
         getpgid=lambda pid: pid if process_of(pid) else os.getpgid(pid),
         getpid=lambda: _current().pid if _current() is not MAIN else os.getpid(),
-        getppid=lambda: _parent_pid(),
+        getppid=_parent_pid,
         _exit=_exit_now,
         fork=_fork,
     )

@@ -51,13 +51,19 @@ def _duration(nanoseconds: int) -> Any:
 class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
     """A profile as rclpy hands it over."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0917  (as rclpy calls it)
         self, history: int, depth: int, reliability: int, durability: int, lifespan: Any, deadline: Any,
         liveliness: int, lease: Any, avoid_ros_namespace_conventions: bool,
     ) -> None:  # fmt: skip
         self.history, self.depth = int(history), int(depth)
-        self.reliability, self.durability, self.liveliness = int(reliability), int(durability), int(liveliness)
-        self.lifespan, self.deadline, self.lease = (_nanoseconds(time) for time in (lifespan, deadline, lease))
+        self.reliability, self.durability, self.liveliness = (
+            int(reliability),
+            int(durability),
+            int(liveliness),
+        )
+        self.lifespan, self.deadline, self.lease = (
+            _nanoseconds(time) for time in (lifespan, deadline, lease)
+        )
         self.avoid_ros_namespace_conventions = bool(avoid_ros_namespace_conventions)
 
     @classmethod
@@ -68,12 +74,17 @@ class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
 
     def to_dict(self) -> dict[str, Any]:
         """The arguments of rclpy's own QoSProfile."""
-        times = [0 if time == RMW_DURATION_INFINITE else time for time in (self.lifespan, self.deadline, self.lease)]
+        times = [
+            0 if time == RMW_DURATION_INFINITE else time
+            for time in (self.lifespan, self.deadline, self.lease)
+        ]
         return self._told(self.depth, self.history, self.liveliness, times)
 
     def as_discovered(self) -> dict[str, Any]:
-        """The same as others see it: depth and history are not told on the network, and defaults are resolved."""
-        return self._told(0, UNKNOWN, self.liveliness or AUTOMATIC, [self.lifespan, self.deadline, self.lease])
+        """The same as others see it: the network tells no depth and no history, and defaults are resolved."""
+        return self._told(
+            0, UNKNOWN, self.liveliness or AUTOMATIC, [self.lifespan, self.deadline, self.lease]
+        )
 
     def _told(self, depth: int, history: int, liveliness: int, times: list[int]) -> dict[str, Any]:
         lifespan, deadline, lease = map(_duration, times)
@@ -155,13 +166,17 @@ class QoSCheckCompatibleResult:
 QoSCheckCompatibleResult.__module__ = MODULE
 
 
-def rclpy_qos_check_compatible(offered: rmw_qos_profile_t, requested: rmw_qos_profile_t) -> QoSCheckCompatibleResult:
+def rclpy_qos_check_compatible(
+    offered: rmw_qos_profile_t, requested: rmw_qos_profile_t
+) -> QoSCheckCompatibleResult:
     """Whether an offer satisfies a request, as far as the profiles alone say."""
     errors, warnings = list(_errors(offered, requested)), list(_warnings(offered, requested))
     if errors:
         return QoSCheckCompatibleResult(QoSCompatibility.ERROR, "".join(f"ERROR: {text};" for text in errors))
     if warnings:
-        return QoSCheckCompatibleResult(QoSCompatibility.WARNING, "".join(f"WARNING: {text};" for text in warnings))
+        return QoSCheckCompatibleResult(
+            QoSCompatibility.WARNING, "".join(f"WARNING: {text};" for text in warnings)
+        )
     return QoSCheckCompatibleResult()
 
 

@@ -1,4 +1,4 @@
-"""The middleware's errors, enumerations and plain records: names and values as the real extension exports them."""
+"""The middleware's errors, enumerations and records: names and values as the real extension exports them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _error(name: str, *bases: type[Exception]) -> type[Exception]:
 InvalidHandle = _error("InvalidHandle", RuntimeError)
 RCLError = _error("RCLError", RuntimeError)
 NodeNameNonExistentError = _error("NodeNameNonExistentError", RCLError)
-NotImplementedError = _error("NotImplementedError", builtins.NotImplementedError)  # noqa: A001
+NotImplementedError = _error("NotImplementedError", builtins.NotImplementedError)
 RCLInvalidROSArgsError = _error("RCLInvalidROSArgsError", RCLError)
 RCUtilsError = _error("RCUtilsError", RuntimeError)
 RMWError = _error("RMWError", RuntimeError)
@@ -56,7 +56,7 @@ class Constant(enum.Enum):
 
 
 def _enumeration(name: str, **members: int) -> Any:
-    return Constant(name, members, module=MODULE)
+    return Constant(name, members, module=MODULE)  # type: ignore[call-arg]  # the functional form of Enum
 
 
 ClockChange = _enumeration(
@@ -84,8 +84,10 @@ rcl_subscription_event_type_t = _enumeration(
 )  # fmt: skip
 rmw_qos_policy_kind_t = _enumeration(
     "rmw_qos_policy_kind_t",
-    RMW_QOS_POLICY_INVALID=1, RMW_QOS_POLICY_DURABILITY=2, RMW_QOS_POLICY_DEADLINE=4, RMW_QOS_POLICY_LIVELINESS=8,
-    RMW_QOS_POLICY_RELIABILITY=16, RMW_QOS_POLICY_HISTORY=32, RMW_QOS_POLICY_LIFESPAN=64, RMW_QOS_POLICY_DEPTH=128,
+    RMW_QOS_POLICY_INVALID=1, RMW_QOS_POLICY_DURABILITY=2, RMW_QOS_POLICY_DEADLINE=4,
+    RMW_QOS_POLICY_LIVELINESS=8,
+    RMW_QOS_POLICY_RELIABILITY=16, RMW_QOS_POLICY_HISTORY=32, RMW_QOS_POLICY_LIFESPAN=64,
+    RMW_QOS_POLICY_DEPTH=128,
     RMW_QOS_POLICY_LIVELINESS_LEASE_DURATION=256, RMW_QOS_POLICY_AVOID_ROS_NAMESPACE_CONVENTIONS=512,
 )  # fmt: skip
 service_introspection = SimpleNamespace(
@@ -105,6 +107,7 @@ class TransitionCallbackReturnType(Constant):
 
 
 TransitionCallbackReturnType.__module__ = MODULE
+
 
 class Record:
     """Some named numbers."""
@@ -134,7 +137,9 @@ class rcl_duration_t(Record):  # noqa: N801
 
     def __init__(self, nanoseconds: int) -> None:
         if not -(2**63) <= int(nanoseconds) < 2**63:
-            raise TypeError("__init__(): incompatible constructor arguments: more nanoseconds than 64 bits hold")
+            raise TypeError(
+                "__init__(): incompatible constructor arguments: more nanoseconds than 64 bits hold"
+            )
         super().__init__(int(nanoseconds))
 
 
@@ -155,7 +160,11 @@ _current = ("current_count", "current_count_change")
 rmw_matched_status_t = _record("rmw_matched_status_t", *_total, *_current)
 rmw_incompatible_type_status_t = _record("rmw_incompatible_type_status_t", *_total)
 rmw_liveliness_changed_status_t = _record(
-    "rmw_liveliness_changed_status_t", "alive_count", "not_alive_count", "alive_count_change", "not_alive_count_change"
+    "rmw_liveliness_changed_status_t",
+    "alive_count",
+    "not_alive_count",
+    "alive_count_change",
+    "not_alive_count_change",
 )
 rmw_liveliness_lost_status_t = _record("rmw_liveliness_lost_status_t", *_total)
 rmw_message_lost_status_t = _record("rmw_message_lost_status_t", *_total)

@@ -1,9 +1,9 @@
 """Runs all threads of a simulation in one native thread, in simulated time.
 
-Each simulated thread is a greenlet. One runs until it waits; the scheduler then picks the next one that can run.
-When none can, time jumps to the earliest deadline. So a run needs no wall time for waiting, its order of events
-depends on the schedule alone, and `os.fork` takes every thread along: a fork copies one native thread only,
-which is why the threads cannot be native.
+Each simulated thread is a greenlet. One runs until it waits; the scheduler then picks the next that can
+run. When none can, time jumps to the earliest deadline. So waiting costs no wall time, the order of events
+depends on the schedule alone, and `os.fork` takes every thread along. (A fork copies one native thread
+only: threads that are native and hand over a baton would be lost in it.)
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Deadlock(BaseException):
     """
 
 
-class NeedsRealRos(RuntimeError):
+class NeedsRealRos(RuntimeError):  # noqa: N818  (says what to do)
     """The simulation cannot do what was asked for; the message gives the reason."""
 
     def __init__(self, reason: str) -> None:
@@ -124,7 +124,7 @@ class Scheduler:
         try:
             if task.pending is None:
                 function()
-        except BaseException as error:  # noqa: BLE001  (nobody above it could tell of it)
+        except BaseException as error:  # nobody above it could tell of it
             self.interrupt(self.main, error)
         finally:
             task.is_over = True
@@ -138,7 +138,7 @@ class Scheduler:
             self._enter(self._next())
 
     def drop_process(self, process: Process) -> None:
-        """Never let the threads of a process run again, not even their `finally` blocks; the running one ends itself."""
+        """Never let the threads of a process run again, except the running one: not even `finally` blocks."""
         for task in [task for task in self._tasks if task.process is process and task is not self.current]:
             task.is_over, task.is_parked = True, False
             if task in self._ready:
@@ -181,7 +181,7 @@ class Scheduler:
         self.wake(task)
 
     def run_in(self, task: Task, function: Callable[[], object]) -> None:
-        """Run a function in a thread where it waits, as Python runs the handlers of signals; it then waits on."""
+        """Run a function in a waiting thread, as Python runs handlers of signals; then it waits on."""
         task.calls.append(function)
         self.wake(task)
 
@@ -289,7 +289,9 @@ class Scheduler:
 
     def _require_own_thread(self) -> None:
         if not self._is_own_thread():
-            raise NeedsRealRos("a native thread, started by a module outside the project, waits for a simulated one")
+            raise NeedsRealRos(
+                "a native thread, started by a module outside the project, waits for a simulated one"
+            )
 
     def after_fork(self) -> None:
         """Go on in a forked process, whose native thread has another number on some systems."""

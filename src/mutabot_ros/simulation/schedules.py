@@ -1,7 +1,7 @@
 """In which order threads and callbacks that are ready go on.
 
-`first-in` takes what has become ready first: each run is the same. `random` draws from a seed, as a loaded
-machine would: a program whose outcome depends on the order fails under some seed, and fails again under the same.
+`first-in` takes what has become ready first: each run is the same. `random` draws from a seed. A program
+whose outcome depends on the order fails under some seed, and fails again under the same.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ def _write_message(kind: type) -> Write:
     return write
 
 
-def _read_message(kind: type) -> Read:
+def _read_message(kind: Any) -> Read:
     def read(reader: _Reader) -> Any:
         message = kind.__new__(kind)
         message._check_fields = False
@@ -108,10 +108,16 @@ def _writing(of: Any) -> Write:
     is_fixed = isinstance(of, idl.Array)
     if isinstance(inner, idl.BasicType) and inner.typename in TYPE_CODES:
         code = TYPE_CODES[inner.typename]
-        write_items: Write = lambda writer, values: writer.numbers(code, values)  # noqa: E731
+
+        def write_items(writer: _Writer, values: Any) -> None:
+            writer.numbers(code, values)
+
     else:
         write_one = _writing(inner)
-        write_items = lambda writer, values: [write_one(writer, value) for value in values] and None  # noqa: E731
+
+        def write_items(writer: _Writer, values: Any) -> None:
+            for value in values:
+                write_one(writer, value)
 
     def write(writer: _Writer, values: Any) -> None:
         if not is_fixed:
@@ -169,5 +175,3 @@ def rclpy_deserialize(data: bytes, kind: type) -> Any:
         return _read_message(kind)(_Reader(data[4:]))
     except (struct.error, UnicodeDecodeError):
         raise RMWError(f"failed to deserialize ROS message: no {kind.__name__}") from None
-
-

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from functools import partial
 from typing import Any
 
 from mutabot_ros.simulation.graph import WORLD, Destroyable, Endpoint, Node
@@ -33,7 +34,9 @@ class _ServiceEnd(Endpoint):
             super().__init__(node, kind, name, "rosservice", wanted)
         except RCLError as error:
             reason = str(error).partition(": ")[2]
-            raise ValueError(f"failed to create {self.role} due to invalid topic name '{name}': {reason}") from None
+            raise ValueError(
+                f"failed to create {self.role} due to invalid topic name '{name}': {reason}"
+            ) from None
         self._wanted = wanted
         # an end both hears and speaks: what is left open is taken as for a writer
         self.profile = wanted.resolved(True, [])
@@ -105,7 +108,10 @@ class _ServiceEnd(Endpoint):
 
 
 def _meet(client: Client, service: Service) -> None:
-    if mismatch(client.profile, service.profile) is None and mismatch(service.profile, client.profile) is None:
+    if (
+        mismatch(client.profile, service.profile) is None
+        and mismatch(service.profile, client.profile) is None
+    ):
         client.matched.append(service)
         service.matched.append(client)
 
@@ -120,7 +126,7 @@ class Client(_ServiceEnd):
         self._sent = 0
         self._open: set[int] = set()
         for service in list(self._others("service")):
-            self.when_both_are_seen(service, lambda other=service: _meet(self, other))
+            self.when_both_are_seen(service, partial(_meet, self, service))
 
     @property
     def service_name(self) -> str:
@@ -160,7 +166,7 @@ class Service(_ServiceEnd):
     def __init__(self, node: Node, kind: Any, name: str, profile: Any = None) -> None:
         super().__init__(node, kind, name, profile)
         for client in list(self._others("client")):
-            self.when_both_are_seen(client, lambda other=client: _meet(other, self))
+            self.when_both_are_seen(client, partial(_meet, client, self))
 
     @property
     def qos(self) -> dict[str, Any]:

@@ -47,7 +47,10 @@ def unregister_sigint_guard_condition(condition: GuardCondition) -> None:
 def handles(process: Any, signum: int) -> bool:
     """Whether a process has a handler of ROS for a signal."""
     bit = {signal.SIGINT: 1, signal.SIGTERM: 2}.get(signal.Signals(signum), 0)
-    return bool(_options.get(process, SignalHandlerOptions.NO).value & bit) and (process, signum) not in _replaced
+    return (
+        bool(_options.get(process, SignalHandlerOptions.NO).value & bit)
+        and (process, signum) not in _replaced
+    )
 
 
 def replaced(process: Any, signum: int) -> None:
@@ -59,7 +62,7 @@ def shut_down(process: Any) -> None:
     """What ROS's handlers do: shut the contexts down and wake the executors."""
     for context in process.contexts:
         context.close()
-    for owner, condition in list(_conditions):
+    for owner, condition in tuple(_conditions):
         if owner is process and not condition.is_destroyed:
             condition.trigger_guard_condition()
 

@@ -1,7 +1,7 @@
 """The standard library's modules that wait or tell time, in simulated time.
 
-Only `_thread` and `time` are written anew. `threading`, `queue`, `concurrent.futures` and `sched` are second copies of the
-library's own source above them, so they behave as they do everywhere.
+Only `_thread` and `time` are written anew. `threading`, `queue`, `concurrent.futures` and `sched` are
+second copies of the library's own source above them, so they behave as they do everywhere.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import time as real_time
 import uuid as real_uuid
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from random import Random
 from types import ModuleType
 from typing import Any
@@ -86,10 +87,8 @@ def _start_new_thread(
     function: Callable[..., object], args: tuple[object, ...], kwargs: dict[str, object] | None = None
 ) -> int:
     def run() -> None:
-        try:
+        with suppress(SystemExit):
             function(*args, **(kwargs or {}))
-        except SystemExit:
-            pass
 
     owner = getattr(function, "__self__", None)  # the Thread, if it is one
     if owner is not None:
@@ -106,7 +105,8 @@ def _thread() -> ModuleType:
     module = ModuleType("_thread")
     module.__dict__.update(
         error=RuntimeError, LockType=Lock, allocate_lock=Lock, allocate=Lock, TIMEOUT_MAX=_TIMEOUT_MAX,
-        get_ident=_ident, start_new_thread=_start_new_thread, start_new=_start_new_thread, _set_sentinel=_set_sentinel,
+        get_ident=_ident, start_new_thread=_start_new_thread, start_new=_start_new_thread,
+        _set_sentinel=_set_sentinel,
         daemon_threads_allowed=lambda: True, stack_size=lambda size=0: 0, _is_main_interpreter=lambda: True,
         interrupt_main=lambda signum=2: SCHEDULER.interrupt(SCHEDULER.main, KeyboardInterrupt()),
         _excepthook=real_thread._excepthook, _ExceptHookArgs=real_thread._ExceptHookArgs,
@@ -116,9 +116,16 @@ def _thread() -> ModuleType:
 
 def _threading() -> ModuleType:
     module = copied("threading")
-    module.excepthook = lambda args: real_threading.excepthook(args)
-    only_main = module.main_thread
-    module.main_thread = lambda: (SCHEDULER.current.process and SCHEDULER.current.process.main_thread) or only_main()
+    of_tests = module.__dict__["main_thread"]
+
+    def main_thread() -> Any:
+        process = SCHEDULER.current.process
+        return of_tests() if process is None or process.main_thread is None else process.main_thread
+
+    def excepthook(args: Any) -> None:
+        real_threading.excepthook(args)  # as it is now: pytest sets it for each test
+
+    module.__dict__.update(main_thread=main_thread, excepthook=excepthook)
     return module
 
 
@@ -149,7 +156,9 @@ def _time() -> ModuleType:
         sleep=_sleep,
         time=lambda: _read_system() / SECOND,
         time_ns=_read_system,
-        **dict.fromkeys(("monotonic", "perf_counter", "process_time", "thread_time"), lambda: _read() / SECOND),
+        **dict.fromkeys(
+            ("monotonic", "perf_counter", "process_time", "thread_time"), lambda: _read() / SECOND
+        ),
         **dict.fromkeys(("monotonic_ns", "perf_counter_ns", "process_time_ns", "thread_time_ns"), _read),
         localtime=now_if_none(real_time.localtime),
         gmtime=now_if_none(real_time.gmtime),

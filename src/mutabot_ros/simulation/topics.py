@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from mutabot_ros.simulation import records
-from mutabot_ros.simulation.graph import WORLD, Endpoint, Node, Waitable
+from mutabot_ros.simulation.graph import WORLD, Context, Endpoint, Node, Waitable
 from mutabot_ros.simulation.messages import converted, type_name
 from mutabot_ros.simulation.qos import (
     AUTOMATIC,
@@ -79,13 +80,11 @@ class _Topic(Endpoint):
             full = node.resolve(topic)
         except RCLError:
             raise ValueError(f"Failed to create {what} due to invalid topic name '{topic}'") from None
-        for end in WORLD.ends:
-            if end.role in {"publisher", "subscription"} and end.name == full and end.node.context is node.context:
-                if end.type_name != type_name(kind):
-                    raise RCLError(
-                        f"Failed to create {what}: create_{what}() called for existing topic name rt{full} "
-                        f"with incompatible type {kind.__name__}"
-                    )
+        if any(end.name == full and end.type_name != type_name(kind) for end in _topic_ends(node.context)):
+            raise RCLError(
+                f"Failed to create {what}: create_{what}() called for existing topic name rt{full} "
+                f"with incompatible type {kind.__name__}"
+            )
         super().__init__(node, kind, topic, "rostopic", profile)
         self.matched: list[Any] = []
         self.statuses: dict[Any, Status] = {}
@@ -129,6 +128,11 @@ class _Topic(Endpoint):
         self._rearm_deadline(self.profile.deadline)
 
 
+def _topic_ends(context: Context) -> list[Endpoint]:
+    roles = {"publisher", "subscription"}
+    return [end for end in WORLD.ends if end.role in roles and end.node.context is context]
+
+
 def _meet(publisher: Publisher, subscription: Subscription) -> None:
     policy = mismatch(publisher.profile, subscription.profile)
     if policy is not None:
@@ -168,7 +172,7 @@ class Publisher(_Topic):
         self._published = 0
         self._lease_alarm: Alarm | None = None
         for subscription in list(self._others("subscription")):
-            self.when_both_are_seen(subscription, lambda other=subscription: _meet(self, other))
+            self.when_both_are_seen(subscription, partial(_meet, self, subscription))
 
     @property
     def is_ready(self) -> bool:
@@ -193,7 +197,9 @@ class Publisher(_Topic):
         self._published += 1
         now = SCHEDULER.system_time
         lifespan = self.profile.lifespan
-        sample = Sample(message, now, self._published, now + lifespan if lifespan < RMW_DURATION_INFINITE else None)
+        sample = Sample(
+            message, now, self._published, now + lifespan if lifespan < RMW_DURATION_INFINITE else None
+        )
         if self.profile.durability == TRANSIENT_LOCAL:
             self.kept.append(sample)
         self.assert_liveliness()
@@ -253,24 +259,29 @@ class Subscription(_Topic):
         self.profile = wanted.resolved(False, [end.profile for end in self._others("publisher")])
         self.statuses = {
             self._deadline_event: Status(records.rmw_requested_deadline_missed_status_t),
-            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: Status(records.rmw_liveliness_changed_status_t),
+            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: Status(
+                records.rmw_liveliness_changed_status_t
+            ),
             _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: Status(
                 records.rmw_requested_qos_incompatible_event_status_t
             ),
             _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_MESSAGE_LOST: Status(records.rmw_message_lost_status_t),
-            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: Status(records.rmw_incompatible_type_status_t),
+            _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: Status(
+                records.rmw_incompatible_type_status_t
+            ),
             self._match_event: Status(records.rmw_matched_status_t),
         }
-        self.queue: deque[tuple[Sample, int, int]] = deque(maxlen=self.profile.kept)
-        self._received = 0
+        self.queue: deque[tuple[Sample, int]] = deque(maxlen=self.profile.kept)
         self._last_arrivals: dict[int, int] = {}
         for publisher in list(self._others("publisher")):
-            self.when_both_are_seen(publisher, lambda other=publisher: _meet(other, self))
+            self.when_both_are_seen(publisher, partial(_meet, publisher, self))
 
     def receive(self, sample: Sample, publisher: Publisher) -> None:
         """Take a message into the queue, now or when it has been under way."""
         transit = SCHEDULER.schedule.transit()
-        at = max(SCHEDULER.now + transit, self._last_arrivals.get(publisher.number, 0))  # none overtakes another
+        at = max(
+            SCHEDULER.now + transit, self._last_arrivals.get(publisher.number, 0)
+        )  # none overtakes another
         if at <= SCHEDULER.now:
             self._arrive(sample)
         else:
@@ -280,8 +291,7 @@ class Subscription(_Topic):
     def _arrive(self, sample: Sample) -> None:
         if self.is_destroyed:
             return
-        self._received += 1
-        self.queue.append((sample, SCHEDULER.system_time, self._received))
+        self.queue.append((sample, SCHEDULER.system_time))
         self._rearm_deadline(self.profile.deadline)
         self.changed()
 
@@ -298,7 +308,7 @@ class Subscription(_Topic):
         """The oldest message, as a new object, and what is known of it; None if there is none."""
         if not self.is_ready:
             return None
-        sample, received, number = self.queue.popleft()
+        sample, received = self.queue.popleft()
         message = sample.message
         if isinstance(message, bytes):
             message = message if raw else rclpy_deserialize(message, kind)

@@ -44,7 +44,9 @@ def answer_about(request: Any, response: Any) -> Any:
     if found is None:
         response.failure_reason = "type not currently in use by this node"
         return response
-    wanted = {entry["type_name"]: entry["hash_string"] for entry in found["type_hashes"]}.get(request.type_name)
+    wanted = {entry["type_name"]: entry["hash_string"] for entry in found["type_hashes"]}.get(
+        request.type_name
+    )
     if request.type_hash and request.type_hash != wanted:
         response.failure_reason = f"requested type hash {request.type_hash} does not match {wanted}"
         return response

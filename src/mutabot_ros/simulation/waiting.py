@@ -68,7 +68,9 @@ class Clock(Destroyable):
             self._override = time.nanoseconds
             return
         concerned = [
-            entry for entry in self._callbacks if (entry[2] and delta >= entry[2]) or (entry[3] and delta <= entry[3])
+            entry
+            for entry in self._callbacks
+            if (entry[2] and delta >= entry[2]) or (entry[3] and delta <= entry[3])
         ]
         self._before(concerned)
         self._override = time.nanoseconds

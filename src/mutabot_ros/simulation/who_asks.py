@@ -1,6 +1,7 @@
-"""Gives modules of the project, and rclpy's, the simulated `time`, `threading` and so on; all others the real ones.
+"""Gives modules of the project and of rclpy the simulated `time`, `threading` and so on, others the real.
 
-Who asks is told by the module that holds the import statement. So pytest, Mutabot and libraries are as they were.
+The module with the import statement is the one that asks. So pytest, Mutabot and libraries are as they
+were.
 """
 
 from __future__ import annotations
@@ -69,8 +70,8 @@ def sees_simulation(module: Mapping[str, Any]) -> bool:
 
 def _import(
     name: str,
-    globals: Mapping[str, Any] | None = None,  # noqa: A002  (the names that Python gives them)
-    locals: Mapping[str, Any] | None = None,  # noqa: A002
+    globals: Mapping[str, Any] | None = None,
+    locals: Mapping[str, Any] | None = None,
     fromlist: Sequence[str] | None = (),
     level: int = 0,
 ) -> ModuleType:
@@ -97,7 +98,9 @@ def copied(name: str, without: Sequence[str] = ()) -> ModuleType:
     if file is None or real.__spec__ is None or real.__spec__.loader is None:
         raise ImportError(f"the module {name} has no source to copy")
     module = ModuleType(name, real.__doc__)
-    module.__dict__.update({MARK: True, "__file__": file, "__package__": real.__package__, "__spec__": real.__spec__})
+    module.__dict__.update(
+        {MARK: True, "__file__": file, "__package__": real.__package__, "__spec__": real.__spec__}
+    )
     _built.setdefault(name, module)  # before its code runs: modules may import each other
     code = real.__spec__.loader.get_code(name)  # type: ignore[attr-defined]  # loaders of source files have it
     exec(code, module.__dict__)
