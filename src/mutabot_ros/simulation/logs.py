@@ -53,10 +53,10 @@ def _start_rosout(node: Node) -> None:
         log(
             30,
             "rcl.logging_rosout",
-            f"Publisher already registered for node name: '{node.name}'. If this is due to multiple nodes with the "
-            f"same name then all logs for the logger named '{name}' will go out over the existing publisher. As "
-            "soon as any node with that name is destructed it will unregister the publisher, preventing any further "
-            "logs for that name from being published on the rosout topic.",
+            f"Publisher already registered for node name: '{node.name}'. If this is due to multiple nodes with "
+            f"the same name then all logs for the logger named '{name}' will go out over the existing publisher. "
+            "As soon as any node with that name is destructed it will unregister the publisher, preventing any "
+            "further logs for that name from being published on the rosout topic.",
         )
         return
     publisher = Publisher(node, Log, "/rosout", node.rosout_qos)

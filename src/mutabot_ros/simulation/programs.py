@@ -59,7 +59,7 @@ class _Program:
 def _program_of(words: list[str], folder: str) -> _Program | None:
     """The simulated program that a command starts; None if it starts another one."""
     if os.path.basename(words[0]) in _STARTERS:
-        raise NeedsRealRos(f"`{' '.join(words[:3])}` starts nodes outside this process")
+        raise NeedsRealRos(f"`{' '.join(words)[:80]}` starts nodes outside this process")
     if _is_python(words[0]):
         rest = words[1:]
         while rest and rest[0].startswith("-") and rest[0] not in {"-m", "-c"}:

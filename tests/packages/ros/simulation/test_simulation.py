@@ -1,0 +1,100 @@
+"""ROS 2 in one process: each file of cases runs over the simulation, in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.skipif(
+    find_spec("rclpy") is None or find_spec("greenlet") is None,
+    reason="no ROS 2 with greenlet: pip install -r requirements-ros2.lock",
+)
+
+HERE = Path(__file__).parent
+EXAMPLE = Path(__file__).parents[4] / "examples" / "ros2"
+
+
+def simulated(folder: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run pytest over the simulation."""
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "mutabot_ros.simulation.plugin",
+    ]
+    return subprocess.run(
+        [*command, *arguments],
+        cwd=folder,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("cases", ["time_cases.py", "process_cases.py", "middleware_cases.py"])
+def test_every_case_holds(cases: str) -> None:
+    done = simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", cases)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_name_that_the_real_extension_exports_is_there() -> None:
+    code = (
+        "import sys, rclpy._rclpy_pybind11 as real\n"
+        "names = {name for name in dir(real) if not name.startswith('__')}\n"
+        "members = {f'{kind}.{name}' for kind in names if isinstance(getattr(real, kind), type)\n"
+        "           for name in vars(getattr(real, kind)) if not name.startswith('_')}\n"
+        "del sys.modules['rclpy._rclpy_pybind11']\n"
+        "from mutabot_ros.simulation.extension import build\n"
+        "ours = build()\n"
+        "print(sorted(name for name in names if not hasattr(ours, name)))\n"
+        "print(sorted(name for name in members if name.partition('.')[0] != 'EventsExecutor'\n"
+        "             and not hasattr(getattr(ours, name.partition('.')[0]), name.partition('.')[2])\n"
+        "             and name.partition('.')[2] not in getattr(getattr(ours, name.partition('.')[0]), 'fields', ())))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout == "[]\n[]\n", done.stdout + done.stderr
+
+
+def test_the_example_runs_unmodified(tmp_path: Path) -> None:
+    folder = tmp_path / "ros2"
+    shutil.copytree(
+        EXAMPLE, folder, ignore=shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache")
+    )
+    for seed in ("0", "2"):
+        done = simulated(folder, MUTABOT_SEED=seed)
+        assert "1 passed" in done.stdout, done.stdout + done.stderr
+        assert "needs real ROS" not in done.stdout
+
+
+def test_runs_are_equal_whatever_the_hash_seed() -> None:
+    logs = {
+        simulated(
+            HERE, "-s", "-c", os.devnull, f"--rootdir={HERE}", "logged_cases.py", PYTHONHASHSEED=seed
+        ).stdout.split("passed")[0]
+        for seed in ("0", "1", "77")
+    }
+    assert len(logs) == 1
+    assert next(iter(logs)).count("\n") > 300
+
+
+def test_a_race_is_found_by_random_orders_and_replayed_by_its_seed() -> None:
+    def end(*schedule: str) -> int:
+        return simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", "race_cases.py", *schedule).returncode
+
+    assert end() == 0
+    ends = {str(seed): end("--ros-schedule=random", f"--ros-seed={seed}") for seed in range(8)}
+    failing = [seed for seed, code in ends.items() if code]
+    assert failing, "no order shows the race"
+    assert end("--ros-schedule=random", f"--ros-seed={failing[0]}") == 1
