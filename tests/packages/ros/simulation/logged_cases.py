@@ -1,4 +1,4 @@
-"""A graph with threads, a process, an action and random times, that prints each event: two runs print the same."""
+"""A graph with threads, a process and an action that prints each event: two runs print the same."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import pytest
@@ -242,7 +243,7 @@ def test_an_action_can_be_cancelled(pair: Pair) -> None:
     async def execute(goal: Any) -> Fibonacci.Result:
         while not goal.is_cancel_requested:
             waiting = rclpy.task.Future()
-            timer = pair.other.create_timer(0.1, lambda: waiting.set_result(None))
+            timer = pair.other.create_timer(0.1, partial(waiting.set_result, None))
             await waiting
             timer.cancel()
         goal.canceled()

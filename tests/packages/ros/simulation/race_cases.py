@@ -1,4 +1,4 @@
-"""A test that passes only if a message comes after the subscription to it: a race that the first order hides."""
+"""A test that passes only if a subscription is found before a message: a race that the first order hides."""
 
 from __future__ import annotations
 

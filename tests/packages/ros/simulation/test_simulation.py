@@ -50,21 +50,20 @@ def test_every_case_holds(cases: str) -> None:
 
 
 def test_every_name_that_the_real_extension_exports_is_there() -> None:
-    code = (
-        "import sys, rclpy._rclpy_pybind11 as real\n"
-        "names = {name for name in dir(real) if not name.startswith('__')}\n"
-        "members = {f'{kind}.{name}' for kind in names if isinstance(getattr(real, kind), type)\n"
-        "           for name in vars(getattr(real, kind)) if not name.startswith('_')}\n"
-        "del sys.modules['rclpy._rclpy_pybind11']\n"
-        "from mutabot_ros.simulation.extension import build\n"
-        "ours = build()\n"
-        "print(sorted(name for name in names if not hasattr(ours, name)))\n"
-        "print(sorted(name for name in members if name.partition('.')[0] != 'EventsExecutor'\n"
-        "             and not hasattr(getattr(ours, name.partition('.')[0]), name.partition('.')[2])\n"
-        "             and name.partition('.')[2] not in getattr(getattr(ours, name.partition('.')[0]), 'fields', ())))\n"
-    )
+    code = """
+import sys, rclpy._rclpy_pybind11 as real
+del sys.modules["rclpy._rclpy_pybind11"]
+from mutabot_ros.simulation.extension import build
+ours = build()
+names = [name for name in dir(real) if not name.startswith("__")]
+print([name for name in names if not hasattr(ours, name)])
+for kind in set(names) - {"EventsExecutor"}:
+    for name, member in vars(getattr(real, kind)).items() if isinstance(getattr(real, kind), type) else ():
+        if not name.startswith("_") and not isinstance(member, property) and not hasattr(getattr(ours, kind), name):
+            print(kind, name)
+"""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stdout == "[]\n[]\n", done.stdout + done.stderr
+    assert done.stdout == "[]\n", done.stdout + done.stderr
 
 
 def test_the_example_runs_unmodified(tmp_path: Path) -> None:
@@ -79,12 +78,12 @@ def test_the_example_runs_unmodified(tmp_path: Path) -> None:
 
 
 def test_runs_are_equal_whatever_the_hash_seed() -> None:
-    logs = {
-        simulated(
+    logs = set()
+    for seed in ("0", "1", "77"):
+        done = simulated(
             HERE, "-s", "-c", os.devnull, f"--rootdir={HERE}", "logged_cases.py", PYTHONHASHSEED=seed
-        ).stdout.split("passed")[0]
-        for seed in ("0", "1", "77")
-    }
+        )
+        logs.add(done.stdout.partition("warnings summary")[0])
     assert len(logs) == 1
     assert next(iter(logs)).count("\n") > 300
 
