@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -23,6 +24,9 @@ _SWITCHES = {
         ("external-lib", "has_library"),
     )
 }
+
+
+_NAME = re.compile(r"[\w/~{}:*\\]+")
 
 
 @dataclass
@@ -119,7 +123,7 @@ def _bad(what: str, word: str, value: str) -> Exception:
 
 def _read_remap(found: Arguments, word: str, value: str) -> None:
     left, is_rule, replacement = value.partition(":=")
-    if not is_rule or not left or not replacement:
+    if not is_rule or not _NAME.fullmatch(left) or not _NAME.fullmatch(replacement):
         raise _bad("remap rule", word, value)
     node, has_node, match = left.partition(":")
     if has_node and not match.startswith("//"):
@@ -133,7 +137,10 @@ def _read_parameter(found: Arguments, word: str, value: str) -> None:
     if not is_rule or not left:
         raise _bad("parameter override rule", word, value)
     node, has_node, name = left.rpartition(":")
-    found.parameters.append((node if has_node else "/**", name, _value(text)))
+    setting = _value(text)
+    if isinstance(setting, list) and len({type(item) for item in setting}) > 1:
+        raise _bad("parameter override rule", word, value)
+    found.parameters.append((node if has_node else "/**", name, setting))
 
 
 def _value(text: str) -> Any:

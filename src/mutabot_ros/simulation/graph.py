@@ -108,7 +108,7 @@ class Context(Destroyable):
 
     def shutdown(self) -> None:
         if not self.is_up:
-            raise RCLError("failed to shutdown: context is not initialized or already shut down")
+            raise RuntimeError("failed to shutdown: context is not initialized or already shut down")
         self.close()
 
     def close(self) -> None:

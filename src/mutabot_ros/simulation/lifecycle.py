@@ -130,11 +130,11 @@ class LifecycleStateMachine(Destroyable):
             raise RCLError(
                 "Failed to trigger lifecycle state machine transition: Transition is not registered."
             )
-        number, label, start, goal = found
+        number, _, start, goal = found
         self._state = goal
         if publishes and self._events is not None:
             event = self._events.kind(timestamp=SCHEDULER.system_time)
-            event.transition.id, event.transition.label = number, label
+            event.transition.id = number  # its label stays empty, as with real ROS
             event.start_state.id, event.start_state.label = start, STATES[start]
             event.goal_state.id, event.goal_state.label = goal, STATES[goal]
             self._events.publish(event)

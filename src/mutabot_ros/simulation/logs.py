@@ -12,6 +12,12 @@ from mutabot_ros.simulation.topics import Publisher
 
 _NAMES = {number: name for name, number in SEVERITIES.items()}
 _DEFAULT_LEVEL = 20
+_REGISTERED = (
+    "Publisher already registered for node name: '{node}'. If this is due to multiple nodes with the same name then "
+    "all logs for the logger named '{name}' will go out over the existing publisher. As soon as any node with that "
+    "name is destructed it will unregister the publisher, preventing any further logs for that name from being "
+    "published on the rosout topic."
+)
 _levels: dict[str, int] = {}
 _publishers: dict[str, Publisher] = {}
 #: whether lines go to the standard error
@@ -50,14 +56,7 @@ def _start_rosout(node: Node) -> None:
 
     name = node.logger_name()
     if name in _publishers and not _publishers[name].is_destroyed:
-        log(
-            30,
-            "rcl.logging_rosout",
-            f"Publisher already registered for node name: '{node.name}'. If this is due to multiple nodes with "
-            f"the same name then all logs for the logger named '{name}' will go out over the existing publisher. "
-            "As soon as any node with that name is destructed it will unregister the publisher, preventing any "
-            "further logs for that name from being published on the rosout topic.",
-        )
+        log(30, "rcl.logging_rosout", _REGISTERED.format(node=node.name, name=name))
         return
     publisher = Publisher(node, Log, "/rosout", node.rosout_qos)
     publisher.is_internal = True

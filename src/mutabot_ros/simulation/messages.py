@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from rosidl_parser import definition as idl
 
+from mutabot_ros.simulation.records import RCLError
 from mutabot_ros.simulation.scheduler import NeedsRealRos
 
 Convert = Callable[[Any], Any]
@@ -159,6 +160,8 @@ def _items(value: Any, name: str) -> Any:
 
 def _sequence(of: Any, name: str) -> Convert:
     inner = of.value_type
+    if isinstance(of, idl.BoundedSequence):
+        return _bounded(_sequence(idl.UnboundedSequence(inner), name), of.maximum_size)
     if isinstance(inner, idl.BasicType) and inner.typename in TYPE_CODES:
         code = TYPE_CODES[inner.typename]
         convert = _basic(inner.typename)
@@ -170,6 +173,16 @@ def _sequence(of: Any, name: str) -> Convert:
 
         return numbers
     return _listed(_conversion(inner, name), name)
+
+
+def _bounded(convert: Convert, size: int) -> Convert:
+    def bounded(value: Any) -> Any:
+        items = convert(value)
+        if len(items) > size:
+            raise RCLError("Failed to publish: cannot publish data")
+        return items
+
+    return bounded
 
 
 def _listed(convert: Convert, name: str) -> Convert:

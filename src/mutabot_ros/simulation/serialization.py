@@ -166,7 +166,7 @@ def rclpy_serialize(message: Any, kind: type) -> bytes:
     """A message as bytes."""
     writer = _Writer()
     _write_message(kind)(writer, converted(message, kind))
-    return _HEADER + bytes(writer.data) + bytes(-len(writer.data) % 4)
+    return _HEADER + bytes(writer.data)
 
 
 def rclpy_deserialize(data: bytes, kind: type) -> Any:

@@ -193,7 +193,7 @@ class TypeDescriptionService(Destroyable):
         self.impl = Service(node, GetTypeDescription, "~/get_type_description")
 
     def handle_request(self, request: Any, kind: Any, node: Node) -> Any:
-        return answer_about(request, kind())
+        return answer_about(request, kind(), {end.type_name for end in WORLD.ends if end.node is node})
 
     def _release(self) -> None:
         self.impl.destroy_when_not_in_use()

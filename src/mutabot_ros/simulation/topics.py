@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from mutabot_ros.simulation import records
+from mutabot_ros.simulation.content_filters import ContentFilter
 from mutabot_ros.simulation.graph import WORLD, Context, Endpoint, Node, Waitable
 from mutabot_ros.simulation.messages import converted, type_name
 from mutabot_ros.simulation.qos import (
@@ -24,7 +25,7 @@ from mutabot_ros.simulation.records import (
     rcl_publisher_event_type_t,
     rcl_subscription_event_type_t,
 )
-from mutabot_ros.simulation.scheduler import SCHEDULER, Alarm, NeedsRealRos
+from mutabot_ros.simulation.scheduler import SCHEDULER, Alarm
 from mutabot_ros.simulation.serialization import rclpy_deserialize, rclpy_serialize
 
 _ON_PUBLISHER, _ON_SUBSCRIPTION = rcl_publisher_event_type_t, rcl_subscription_event_type_t
@@ -37,6 +38,7 @@ class Sample:
     message: Any
     stamp: int  # the system time at which it was published
     number: int  # among its publisher's
+    gid: list[int]  # its publisher's
     expires: int | None  # the system time from which nobody hears it any more
 
 
@@ -198,7 +200,11 @@ class Publisher(_Topic):
         now = SCHEDULER.system_time
         lifespan = self.profile.lifespan
         sample = Sample(
-            message, now, self._published, now + lifespan if lifespan < RMW_DURATION_INFINITE else None
+            message,
+            now,
+            self._published,
+            self.gid,
+            now + lifespan if lifespan < RMW_DURATION_INFINITE else None,
         )
         if self.profile.durability == TRANSIENT_LOCAL:
             self.kept.append(sample)
@@ -252,8 +258,6 @@ class Subscription(_Topic):
     def __init__(
         self, node: Node, kind: Any, topic: str, profile: Any = None, content_filter_options: Any = None
     ) -> None:
-        if content_filter_options is not None:
-            raise NeedsRealRos("a subscription filters by content, which the middleware evaluates")
         wanted = profile or rmw_qos_profile_t.predefined("qos_profile_default")
         super().__init__(node, kind, topic, wanted)
         self.profile = wanted.resolved(False, [end.profile for end in self._others("publisher")])
@@ -272,6 +276,11 @@ class Subscription(_Topic):
             self._match_event: Status(records.rmw_matched_status_t),
         }
         self.queue: deque[tuple[Sample, int]] = deque(maxlen=self.profile.kept)
+        self._filter: ContentFilter | None = None
+        if content_filter_options is not None:
+            self.set_content_filter(
+                content_filter_options.filter_expression, content_filter_options.expression_parameters
+            )
         self._last_arrivals: dict[int, int] = {}
         for publisher in list(self._others("publisher")):
             self.when_both_are_seen(publisher, partial(_meet, publisher, self))
@@ -289,7 +298,7 @@ class Subscription(_Topic):
             SCHEDULER.call_at(at, lambda: self._arrive(sample))
 
     def _arrive(self, sample: Sample) -> None:
-        if self.is_destroyed:
+        if self.is_destroyed or not (self._filter is None or self._filter.accepts(sample.message)):
             return
         self.queue.append((sample, SCHEDULER.system_time))
         self._rearm_deadline(self.profile.deadline)
@@ -319,6 +328,7 @@ class Subscription(_Topic):
             "received_timestamp": received,
             "publication_sequence_number": sample.number,
             "reception_sequence_number": None,
+            "publisher_gid": {"implementation_identifier": "rmw_fastrtps_cpp", "data": bytes(sample.gid)},
         }
 
     def get_publisher_count(self) -> int:
@@ -326,11 +336,20 @@ class Subscription(_Topic):
 
     def find(self, end: Any) -> None:
         super().find(end)
-        if end.is_alive:
+        if end.is_alive and self._learns_of(end):
             self.hear_of_life(end)
 
+    def _learns_of(self, publisher: Publisher) -> bool:
+        """Whether it is told of a publisher's life: a context does not tell itself that it lives."""
+        return publisher.profile.liveliness != AUTOMATIC or publisher.node.context is not self.node.context
+
     def lose(self, end: Any) -> None:
-        if end in self.matched and not self.is_destroyed and self._follows_liveliness:
+        if (
+            end in self.matched
+            and not self.is_destroyed
+            and self._follows_liveliness
+            and self._learns_of(end)
+        ):
             gone = {"alive_count": -1} if end.is_alive else {"not_alive_count": -1}
             self._liveliness.count(**gone)
         super().lose(end)
@@ -353,13 +372,18 @@ class Subscription(_Topic):
             self._liveliness.count(alive_count=-1, not_alive_count=1)
 
     def is_cft_enabled(self) -> bool:
-        return False
+        return self._filter is not None
 
     def set_content_filter(self, expression: str, parameters: list[str]) -> None:
-        raise NeedsRealRos("a subscription filters by content, which the middleware evaluates")
+        """Hear only messages for which an expression holds; an empty one ends it."""
+        self._filter = ContentFilter(expression, parameters) if expression else None
 
     def get_content_filter(self) -> Any:
-        raise RCLError("failed to get content filter: subscription has none")
+        from rclpy.subscription_content_filter_options import ContentFilterOptions  # noqa: PLC0415
+
+        if self._filter is None:
+            raise RCLError("failed to get content filter: subscription has none")
+        return ContentFilterOptions(self._filter.expression, self._filter.parameters)
 
 
 class EventHandle(Waitable):

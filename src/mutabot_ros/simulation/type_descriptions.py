@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -28,27 +29,26 @@ def _shares() -> list[Path]:
     return [Path(prefix) / "share" for prefix in [*prefixes, sys.prefix]]
 
 
-def hash_of(type_name: str) -> dict[str, Any]:
-    """The hash of a type; zeros if its package does not tell."""
+def _hash_text(type_name: str) -> str:
     found = _description(type_name)
     hashes = {entry["type_name"]: entry["hash_string"] for entry in found["type_hashes"]} if found else {}
-    text = hashes.get(type_name)
-    if text is None:
+    return str(hashes.get(type_name, ""))
+
+
+def hash_of(type_name: str) -> dict[str, Any]:
+    """The hash of a type; zeros if its package does not tell."""
+    text = _hash_text(type_name)
+    if not text:
         return {"version": 0, "value": bytes(32)}
     return {"version": int(text[4:6]), "value": bytes.fromhex(text[7:])}
 
 
-def answer_about(request: Any, response: Any) -> Any:
-    """Fill in the answer of a node's `get_type_description` service."""
-    found = _description(request.type_name)
+def answer_about(request: Any, response: Any, types: Iterable[str]) -> Any:
+    """Fill in the answer of a node's `get_type_description` service: the hash says which type is meant."""
+    meant = [name for name in types if _hash_text(name) == request.type_hash]
+    found = _description(meant[0] if meant else request.type_name)
     if found is None:
         response.failure_reason = "type not currently in use by this node"
-        return response
-    wanted = {entry["type_name"]: entry["hash_string"] for entry in found["type_hashes"]}.get(
-        request.type_name
-    )
-    if request.type_hash and request.type_hash != wanted:
-        response.failure_reason = f"requested type hash {request.type_hash} does not match {wanted}"
         return response
     _fill(response.type_description, found["type_description_msg"])
     response.successful = True

@@ -242,7 +242,9 @@ class WaitSet(Destroyable):
 
     def __init__(self, *arguments: Any) -> None:
         super().__init__()
-        *sizes, self._context = arguments
+        *sizes, context = arguments
+        if not context.is_up:
+            raise RCLError("failed to initialize wait set: the given context is not valid")
         self._sizes = dict(zip(KINDS, sizes, strict=True))
         self._members: dict[str, list[Any]] = {}
         self._ready: dict[str, list[bool]] = {}
