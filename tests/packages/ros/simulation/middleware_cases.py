@@ -165,7 +165,8 @@ def test_a_publisher_that_does_not_say_that_it_lives_is_dead(pair: Pair) -> None
     ("kind", "value", "error"),
     [
         (Int32, "1", SystemError), (Int32, 1.5, SystemError), (Int32, None, SystemError),
-        (UInt8, -1, SystemError), (Int32, 2**70, SystemError), (String, 1, TypeError), (String, None, TypeError),
+        (UInt8, -1, SystemError), (Int32, 2**70, SystemError), (String, 1, TypeError),
+        (String, None, TypeError),
     ],
 )  # fmt: skip
 def test_wrong_values_raise_at_publish(pair: Pair, kind: Any, value: Any, error: type[Exception]) -> None:
