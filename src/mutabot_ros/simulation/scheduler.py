@@ -9,6 +9,7 @@ only: threads that are native and hand over a baton would be lost in it.)
 from __future__ import annotations
 
 import _thread
+import gc
 from collections.abc import Callable
 from heapq import heappop, heappush
 from itertools import count
@@ -28,6 +29,8 @@ READING = 1_000
 PATIENCE = 64
 #: the longest time that one fruitless poll takes
 LONGEST_POLL = SECOND // 1_000
+#: after so many jumps of time garbage is collected, where it is not collected at any time
+JUMPS = 10_000
 #: alarms in a row that wake nobody before the graph counts as stuck
 FRUITLESS_ALARMS = 100_000
 
@@ -102,6 +105,7 @@ class Scheduler:
         self._deadlines: list[tuple[int, int, Task | Alarm, int]] = []
         self._order = count()
         self._events = 0  # counts what makes another look worth while
+        self._jumps = 0
         self._dropped: list[Task] = []  # kept, because a greenlet that is freed runs its `finally` blocks
         self.on_switch: list[Callable[[Task, Task], None]] = []  # what changes when another thread goes on
 
@@ -258,10 +262,21 @@ class Scheduler:
             if not self._deadlines:
                 break
             self.now = max(self.now, self._deadlines[0][0])
+            self._jumps += 1
+            if self._jumps % JUMPS == 0 and not gc.isenabled():
+                gc.collect()
+            try:
+                self.advanced()
+            except BaseException as error:  # whoever watches time ends the test
+                return self._stop(error)
             if self.limit is not None and self.now > self.limit:
                 self.limit = None
-                return self._stop("the test's limit of simulated time has passed")
-        return self._stop("all threads wait, and nothing will ever wake one")
+                return self._stop(self._deadlock("the test's limit of simulated time has passed"))
+        return self._stop(self._deadlock("all threads wait, and nothing will ever wake one"))
+
+    def advanced(self) -> float:
+        """Time has jumped; gives it in seconds. A vocabulary may name this as its clock's tick."""
+        return self.now / SECOND
 
     def _collect_due(self) -> None:
         deadlines = self._deadlines
@@ -275,11 +290,15 @@ class Scheduler:
                 what.is_parked = False
                 self._ready.append(what)
 
-    def _stop(self, why: str) -> Task:
+    def _deadlock(self, why: str) -> Deadlock:
+        return Deadlock(f"{why}; the test's thread {self.main.reason or 'waits'}")
+
+    def _stop(self, error: BaseException) -> Task:
         """End the test: its own thread gets the error."""
-        waiting = self.main.reason or "waits"
-        self.main.pending = Deadlock(f"{why}; the test's thread {waiting}")
+        self.main.pending = error
         self.main.is_parked = False
+        if self.main in self._ready:
+            self._ready.remove(self.main)
         return self.main
 
     # --- native threads ---
