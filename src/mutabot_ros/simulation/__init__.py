@@ -29,7 +29,7 @@ def start(roots: list[str], schedule: str = "first-in", seed: int = 0) -> None:
     from mutabot_ros.simulation.scheduler import SCHEDULER  # noqa: PLC0415
     from mutabot_ros.simulation.schedules import schedule_named  # noqa: PLC0415
 
-    SCHEDULER.schedule = schedule_named(schedule, seed)
+    SCHEDULER.follow(schedule_named(schedule, seed))
     for root in roots:
         who_asks.add_root(root)
     if not _is_running:
@@ -39,6 +39,7 @@ def start(roots: list[str], schedule: str = "first-in", seed: int = 0) -> None:
         standard_library.install()
         processes.install()
         extension.install()
+        who_asks.catch_up()
         _is_running = True
 
 

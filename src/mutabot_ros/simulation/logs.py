@@ -14,9 +14,9 @@ _NAMES = {number: name for name, number in SEVERITIES.items()}
 _DEFAULT_LEVEL = 20
 _REGISTERED = (
     "Publisher already registered for node name: '{node}'. If this is due to multiple nodes with the "
-    "same name then all logs for the logger named '{name}' will go out over the existing publisher. As soon as "
-    "any node with that name is destructed it will unregister the publisher, preventing any further logs for "
-    "that name from being published on the rosout topic."
+    "same name then all logs for the logger named '{name}' will go out over the existing publisher. "
+    "As soon as any node with that name is destructed it will unregister the publisher, preventing "
+    "any further logs for that name from being published on the rosout topic."
 )
 _levels: dict[str, int] = {}
 _publishers: dict[str, Publisher] = {}

@@ -95,6 +95,7 @@ class Scheduler:
         self.epoch = 1_700_000_000 * SECOND  # the system time at steady time 0
         self.limit: int | None = None
         self.schedule: Schedule = FirstIn()
+        self.is_preemptive = False  # whether the schedule switches where a thread need not wait
         self._numbers = count()
         self._native_thread = _thread.get_ident()
         self.main = Task(next(self._numbers), greenlet.getcurrent(), None)
@@ -108,6 +109,11 @@ class Scheduler:
         self._jumps = 0
         self._dropped: list[Task] = []  # kept, because a greenlet that is freed runs its `finally` blocks
         self.on_switch: list[Callable[[Task, Task], None]] = []  # what changes when another thread goes on
+
+    def follow(self, schedule: Schedule) -> None:
+        """Let a schedule decide from now on."""
+        self.schedule = schedule
+        self.is_preemptive = not isinstance(schedule, FirstIn)
 
     @property
     def system_time(self) -> int:
@@ -220,7 +226,7 @@ class Scheduler:
 
     def may_switch(self) -> None:
         """Mark a place at which a native thread could lose the processor: some schedules switch here."""
-        if self.schedule.switches_here() and self._is_own_thread():
+        if self.is_preemptive and self.schedule.switches_here() and self._is_own_thread():
             self.pause()
 
     def progress(self) -> None:

@@ -38,7 +38,8 @@ class Lock:
             raise ValueError("can't specify a timeout for a non-blocking call")
         if timeout < 0 and timeout != -1:
             raise ValueError("timeout value must be a non-negative number")
-        SCHEDULER.may_switch()
+        if SCHEDULER.is_preemptive:
+            SCHEDULER.may_switch()
         if self._is_held and not (blocking and self._wait(timeout)):
             return False
         self._is_held = True
@@ -69,7 +70,10 @@ class Lock:
         return self._is_held
 
     def __enter__(self) -> bool:
-        return self.acquire()
+        if self._is_held or SCHEDULER.is_preemptive:
+            return self.acquire()
+        self._is_held = True
+        return True
 
     def __exit__(self, *_: object) -> None:
         self.release()

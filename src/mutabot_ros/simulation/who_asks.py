@@ -15,6 +15,8 @@ from typing import Any
 
 #: packages of ROS that wait, and so take part in simulated time wherever they are installed
 ROS_PACKAGES = {"rclpy", "tf2_ros", "message_filters", "nav2_simple_commander", "rclpy_message_converter"}
+#: Mutabot's own modules that let nodes wait
+OUR_HOOKS = "mutabot_ros.ros2"
 #: what a module that shall see simulated modules may have among its globals
 MARK = "__sees_simulation__"
 
@@ -63,7 +65,7 @@ def sees_simulation(module: Mapping[str, Any]) -> bool:
     if MARK in module:
         return bool(module[MARK])
     name, file = module.get("__name__"), module.get("__file__")
-    if isinstance(name, str) and name.partition(".")[0] in ROS_PACKAGES:
+    if isinstance(name, str) and (name.partition(".")[0] in ROS_PACKAGES or name.startswith(OUR_HOOKS)):
         return True
     return isinstance(file, str) and is_of_project(file)
 
@@ -89,6 +91,14 @@ def _import(
 def install() -> None:
     """Answer import statements by who asks, from now on."""
     builtins.__import__ = _import
+
+
+def catch_up() -> None:
+    """Give the simulated modules to those who imported the real ones before."""
+    for module in [module for name, module in list(sys.modules.items()) if name.startswith(OUR_HOOKS)]:
+        for name, value in list(vars(module).items()):
+            if isinstance(value, ModuleType) and value.__name__ in _builders:
+                setattr(module, name, stand_in(value.__name__))
 
 
 def copied(name: str, without: Sequence[str] = ()) -> ModuleType:
