@@ -10,7 +10,7 @@ from mutabot_ros.simulation.records import MODULE, GoalEvent, RCLError
 from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND
 from mutabot_ros.simulation.services import Client, Service
 from mutabot_ros.simulation.topics import Publisher, Subscription
-from mutabot_ros.simulation.waiting import Clock, Timer, WaitSet
+from mutabot_ros.simulation.waiting import RosClock, Timer, WaitSet
 
 ACCEPTED, EXECUTING, CANCELING, SUCCEEDED, CANCELED, ABORTED = range(1, 7)
 _ACTIVE = {ACCEPTED, EXECUTING, CANCELING}
@@ -118,7 +118,7 @@ class ActionClient(_ActionEnd):
         taken = self._status.take_message(kind, False)
         return None if taken is None else taken[0]
 
-    def configure_introspection(self, clock: Clock, profile: Any, state: Any) -> None:
+    def configure_introspection(self, clock: RosClock, profile: Any, state: Any) -> None:
         for part in (self._goal, self._cancel, self._result):
             part.configure_introspection(clock, profile, state)
 
@@ -134,7 +134,7 @@ class ActionServer(_ActionEnd):
     kind_name = "server"
 
     def __init__(  # noqa: PLR0917  (as rclpy calls it)
-        self, node: Node, clock: Clock, kind: Any, name: str,
+        self, node: Node, clock: RosClock, kind: Any, name: str,
         goal: Any, result: Any, cancel: Any, feedback: Any, status: Any, result_timeout: float,
     ) -> None:  # fmt: skip
         super().__init__(node, name)
@@ -240,7 +240,7 @@ class ActionServer(_ActionEnd):
         self._set_expiry()
         return tuple(converted(goal.info, type(goal.info)) for goal in over)
 
-    def configure_introspection(self, clock: Clock, profile: Any, state: Any) -> None:
+    def configure_introspection(self, clock: RosClock, profile: Any, state: Any) -> None:
         for part in (self._goal, self._cancel, self._result):
             part.configure_introspection(clock, profile, state)
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Coroutine
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation.scheduler import REASONS, SCHEDULER, SECOND, Task
+from mutabot_ros.simulation.scheduler import REASONS, SCHEDULER, SECOND, SimulatedThread
 from mutabot_ros.simulation.who_asks import provide, stand_in, varied
 
 _OWN_FILES = 1  # the pipe by which a loop wakes itself
@@ -22,7 +22,7 @@ class _Selector(selectors.SelectSelector):
 
     def __init__(self) -> None:
         super().__init__()
-        self.waiting: Task | None = None
+        self.waiting: SimulatedThread | None = None
 
     def select(self, timeout: float | None = None) -> list[Any]:
         if len(self.get_map()) > _OWN_FILES:
@@ -115,7 +115,7 @@ def _run(main: Coroutine[Any, Any, Any], *, debug: bool | None = None) -> Any:
         return runner.run(main)
 
 
-_loops: dict[Task, asyncio.AbstractEventLoop | None] = {}
+_loops: dict[SimulatedThread, asyncio.AbstractEventLoop | None] = {}
 
 
 def _get_event_loop() -> asyncio.AbstractEventLoop:
@@ -150,10 +150,10 @@ def _asyncio() -> ModuleType:
     )
 
 
-_running: dict[Task, Any] = {}
+_running: dict[SimulatedThread, Any] = {}
 
 
-def _change_running_loop(old: Task, new: Task) -> None:
+def _change_running_loop(old: SimulatedThread, new: SimulatedThread) -> None:
     """Each thread has a running loop of its own; asyncio keeps one for each native thread."""
     running = asyncio._get_running_loop()
     if running is not None or _running:

@@ -39,9 +39,8 @@ _EXPORTED = re.compile(
     r"|service_introspection|[A-Z][A-Za-z]*(Error|Handle)|NotImplementedError"
 )
 _CLASSES = (
-    "ActionClient", "ActionGoalHandle", "ActionServer", "Client", "Clock", "ClockChange", "ClockEvent",
-    "ClockType",
-    "Context", "Destroyable", "EventHandle", "GoalEvent", "GuardCondition", "LifecycleStateMachine", "Node",
+    "ActionClient", "ActionGoalHandle", "ActionServer", "Client", "ClockChange", "ClockEvent", "ClockType",
+    "Destroyable", "EventHandle", "GoalEvent", "GuardCondition", "LifecycleStateMachine", "Node",
     "Publisher", "QoSCheckCompatibleResult", "QoSCompatibility", "RCUTILS_LOG_SEVERITY", "Service",
     "SignalHandlerOptions", "Subscription", "Timer", "TransitionCallbackReturnType", "TypeDescriptionService",
     "WaitSet",
@@ -71,6 +70,7 @@ def build() -> ModuleType:
         for name, value in vars(source).items():
             if name in _CLASSES or _EXPORTED.fullmatch(name):
                 setattr(module, name, value)
+    module.Context, module.Clock = graph.Participant, waiting.RosClock  # type: ignore[attr-defined]
     module.EventsExecutor = EventsExecutor  # type: ignore[attr-defined]
     module.rclpy_get_rmw_implementation_identifier = (  # type: ignore[attr-defined]
         rclpy_get_rmw_implementation_identifier

@@ -17,7 +17,7 @@ from mutabot_ros.simulation.records import (
     NodeNameNonExistentError,
     RCLError,
 )
-from mutabot_ros.simulation.scheduler import SCHEDULER, Task
+from mutabot_ros.simulation.scheduler import SCHEDULER, SimulatedThread
 from mutabot_ros.simulation.type_descriptions import hash_of
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Waitable(Destroyable):
 
     def __init__(self) -> None:
         super().__init__()
-        self.watchers: list[Task] = []
+        self.watchers: list[SimulatedThread] = []
 
     @property
     def is_ready(self) -> bool:
@@ -79,7 +79,7 @@ class Waitable(Destroyable):
             SCHEDULER.wake(task)
 
 
-class Context(Destroyable):
+class Participant(Destroyable):
     """One start of ROS in a process: a participant of the network, with what its command line said."""
 
     def __init__(self, args: list[str], domain_id: int) -> None:
@@ -121,7 +121,7 @@ class Node(Destroyable):
     """A node: its names, and the ends that it has."""
 
     def __init__(
-        self, name: str, namespace: str, context: Context, cli_args: list[str] | None,
+        self, name: str, namespace: str, context: Participant, cli_args: list[str] | None,
         use_global_arguments: bool,
         enable_rosout: bool, rosout_qos: Any,
     ) -> None:  # fmt: skip
@@ -277,7 +277,7 @@ class World:
         return [node for node in self.nodes if _is_seen(by, node.context, node.seen_at)]
 
 
-def _is_seen(by: Node, context: Context, seen_at: int) -> bool:
+def _is_seen(by: Node, context: Participant, seen_at: int) -> bool:
     return context.domain == by.context.domain and (context is by.context or seen_at <= SCHEDULER.now)
 
 
@@ -414,5 +414,6 @@ def rclpy_remap_topic_name(node: Node, name: str) -> str:
     return node.resolve(name)
 
 
-for _kind in (Destroyable, Context, Node):
+Participant.__name__ = "Context"
+for _kind in (Destroyable, Participant, Node):
     _kind.__module__ = MODULE

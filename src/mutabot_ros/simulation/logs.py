@@ -6,7 +6,7 @@ import os
 from typing import Any
 
 from mutabot_ros.simulation.arguments import SEVERITIES
-from mutabot_ros.simulation.graph import WORLD, Context, Node
+from mutabot_ros.simulation.graph import WORLD, Node, Participant
 from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND
 from mutabot_ros.simulation.topics import Publisher
 
@@ -127,7 +127,7 @@ def rclpy_logging_rosout_remove_sublogger(logger: str, sublogger: str) -> None:
         _publishers.pop(full, None)
 
 
-def rclpy_logging_configure(context: Context) -> None:
+def rclpy_logging_configure(context: Participant) -> None:
     """Take the levels that a command line sets."""
     _levels.update(context.arguments.levels)
     has_console[0] = context.arguments.has_console

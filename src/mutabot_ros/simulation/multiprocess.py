@@ -16,8 +16,7 @@ from itertools import count
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation.processes import MAIN, STARTED
-from mutabot_ros.simulation.processes import Process as Simulated
+from mutabot_ros.simulation.processes import MAIN, STARTED, Process
 from mutabot_ros.simulation.scheduler import REASONS, SCHEDULER, NeedsRealRos
 from mutabot_ros.simulation.who_asks import provide, stand_in
 
@@ -25,7 +24,7 @@ _numbers = count(1)
 _SHARED = "a function that cannot be imported runs in a process of its own: the process shares its modules"
 
 
-class Process:
+class ChildProcess:
     """`multiprocessing.Process`."""
 
     def __init__(
@@ -35,7 +34,7 @@ class Process:
         self._target, self._args, self._kwargs = target, tuple(args), dict(kwargs or {})
         self.name = name or f"Process-{next(_numbers)}"
         self.daemon = bool(daemon)
-        self._process: Simulated | None = None
+        self._process: Process | None = None
 
     def run(self) -> None:
         """What the process does."""
@@ -46,19 +45,19 @@ class Process:
         if self._process is not None:
             raise AssertionError("cannot start a process twice")
         environ = dict(os.environ._data)  # type: ignore[attr-defined]  # as processes keep it
-        self._process = Simulated(self.name, list(sys.argv), os.getcwd(), environ, list(sys.path))
+        self._process = Process(self.name, list(sys.argv), os.getcwd(), environ, list(sys.path))
         STARTED.append(self._process)
         args, kwargs = copy.deepcopy((self._args, self._kwargs))
         self._process.start(lambda: self._run_there(args, kwargs))
 
     def _run_there(self, args: Any, kwargs: Any) -> None:
-        if type(self).run is not Process.run or self._target is None:
+        if type(self).run is not ChildProcess.run or self._target is None:
             _note_sharing()
             self.run()
             return
         _imported_anew(self._target)(*args, **kwargs)
 
-    def _started(self) -> Simulated:
+    def _started(self) -> Process:
         if self._process is None:
             raise AssertionError("can only do this with a started process")
         return self._process
@@ -187,7 +186,7 @@ def _multiprocessing() -> ModuleType:
     names = ("Event", "Barrier", "Condition", "Semaphore", "BoundedSemaphore")
     shared = {name: type(name, (_Shared, getattr(threading, name)), {}) for name in names}
     module.__dict__.update(
-        Process=Process, Queue=queue, JoinableQueue=queue, SimpleQueue=queue, Pipe=pipe, Value=_Value,
+        Process=ChildProcess, Queue=queue, JoinableQueue=queue, SimpleQueue=queue, Pipe=pipe, Value=_Value,
         Array=_Array,
         RawValue=_Value, RawArray=_Array, **shared,
         Lock=_lock_class(threading.Lock), RLock=_lock_class(threading.RLock),
@@ -223,7 +222,7 @@ def _current() -> Any:
     process = SCHEDULER.current.process or MAIN
     if process is MAIN:
         return real.current_process()
-    found = Process(name=process.name)
+    found = ChildProcess(name=process.name)
     found._process = process
     return found
 

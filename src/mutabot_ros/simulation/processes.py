@@ -16,8 +16,8 @@ from itertools import count
 from typing import Any
 
 from mutabot_ros.simulation import signals
-from mutabot_ros.simulation.graph import WORLD, Context
-from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND, NeedsRealRos, Task
+from mutabot_ros.simulation.graph import WORLD, Participant
+from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND, NeedsRealRos, SimulatedThread
 from mutabot_ros.simulation.who_asks import is_of_project, stand_in
 
 #: globals of rclpy that each process has of its own, with what they are at first
@@ -42,15 +42,15 @@ class Process:
         self.argv, self.folder, self.environ, self.path = argv, folder, environ, path
         self.modules: dict[str, Any] = {}
         self.globals: dict[tuple[str, str], Any] = {(module, name): first for module, name, first in _GLOBALS}
-        self.contexts: list[Context] = []
+        self.contexts: list[Participant] = []
         self.handlers: dict[int, Any] = {}
         self.at_exit: list[Callable[[], object]] = []
         self.streams: dict[str, Any] = {}  # of `sys`, those that are not its parent's
-        self.main_task: Task | None = None
+        self.main_task: SimulatedThread | None = None
         self.main_thread: Any = None
         self.returncode: int | None = None
         self.parent: Process | None = None
-        self._waiting: list[Task] = []
+        self._waiting: list[SimulatedThread] = []
         self._number_of_modules = 0
         self._outer_streams: dict[str, Any] = {}
 
@@ -207,7 +207,7 @@ class Pipe(io.RawIOBase):
         self._is_text = is_text
         self._data = bytearray()
         self._is_ended = False
-        self._waiting: list[Task] = []
+        self._waiting: list[SimulatedThread] = []
 
     encoding = "utf-8"
     errors = "replace"
@@ -270,7 +270,7 @@ def _is_own(name: str, module: Any) -> bool:
     return isinstance(file, str) and is_of_project(file)
 
 
-def _change(old: Task, new: Task) -> None:
+def _change(old: SimulatedThread, new: SimulatedThread) -> None:
     if old.process is not new.process:
         (old.process or MAIN).leave()
         (new.process or MAIN).enter()

@@ -55,7 +55,7 @@ class NeedsRealRos(RuntimeError):  # noqa: N818  (says what to do)
 REASONS: list[str] = []
 
 
-class Task:
+class SimulatedThread:
     """A simulated thread."""
 
     def __init__(self, number: int, run: greenlet, process: Process | None) -> None:
@@ -98,17 +98,21 @@ class Scheduler:
         self.is_preemptive = False  # whether the schedule switches where a thread need not wait
         self._numbers = count()
         self._native_thread = _thread.get_ident()
-        self.main = Task(next(self._numbers), greenlet.getcurrent(), None)
+        self.main = SimulatedThread(next(self._numbers), greenlet.getcurrent(), None)
         self.current = self.main
         self._hub = greenlet(self._serve)
-        self._ready: list[Task] = []
-        self._tasks: list[Task] = []
-        self._deadlines: list[tuple[int, int, Task | Alarm, int]] = []
+        self._ready: list[SimulatedThread] = []
+        self._tasks: list[SimulatedThread] = []
+        self._deadlines: list[tuple[int, int, SimulatedThread | Alarm, int]] = []
         self._order = count()
         self._events = 0  # counts what makes another look worth while
         self._jumps = 0
-        self._dropped: list[Task] = []  # kept, because a greenlet that is freed runs its `finally` blocks
-        self.on_switch: list[Callable[[Task, Task], None]] = []  # what changes when another thread goes on
+        self._dropped: list[
+            SimulatedThread
+        ] = []  # kept, because a greenlet that is freed runs its `finally` blocks
+        self.on_switch: list[
+            Callable[[SimulatedThread, SimulatedThread], None]
+        ] = []  # what changes when another thread goes on
 
     def follow(self, schedule: Schedule) -> None:
         """Let a schedule decide from now on."""
@@ -121,16 +125,16 @@ class Scheduler:
 
     # --- threads ---
 
-    def spawn(self, function: Callable[[], None], process: Process | None = None) -> Task:
+    def spawn(self, function: Callable[[], None], process: Process | None = None) -> SimulatedThread:
         """Start a thread; it runs when the schedule chooses it."""
-        task = Task(next(self._numbers), greenlet(None), process or self.current.process)
+        task = SimulatedThread(next(self._numbers), greenlet(None), process or self.current.process)
         task.greenlet = greenlet(lambda: self._run(task, function), self._hub)
         self._ready.append(task)
         self._tasks.append(task)
         self.progress()
         return task
 
-    def _run(self, task: Task, function: Callable[[], None]) -> None:
+    def _run(self, task: SimulatedThread, function: Callable[[], None]) -> None:
         try:
             if task.pending is None:
                 function()
@@ -177,20 +181,20 @@ class Scheduler:
         self._go_on(task)
         return task.was_woken
 
-    def wake(self, task: Task) -> None:
+    def wake(self, task: SimulatedThread) -> None:
         """Let a waiting thread go on."""
         if task.is_parked and not task.is_over:
             task.is_parked, task.was_woken = False, True
             self._ready.append(task)
         self.progress()
 
-    def interrupt(self, task: Task, error: BaseException) -> None:
+    def interrupt(self, task: SimulatedThread, error: BaseException) -> None:
         """Raise an error in a thread, where it waits or as soon as it waits."""
         if task.pending is None:
             task.pending = error
         self.wake(task)
 
-    def run_in(self, task: Task, function: Callable[[], object]) -> None:
+    def run_in(self, task: SimulatedThread, function: Callable[[], object]) -> None:
         """Run a function in a waiting thread, as Python runs handlers of signals; then it waits on."""
         task.calls.append(function)
         self.wake(task)
@@ -243,7 +247,7 @@ class Scheduler:
 
     # --- choosing ---
 
-    def _go_on(self, task: Task) -> None:
+    def _go_on(self, task: SimulatedThread) -> None:
         chosen = self._next()
         if chosen is not task:
             self._enter(chosen)
@@ -253,13 +257,13 @@ class Scheduler:
             error, task.pending = task.pending, None
             raise error
 
-    def _enter(self, task: Task) -> None:
+    def _enter(self, task: SimulatedThread) -> None:
         for change in self.on_switch:
             change(self.current, task)
         self.current = task
         task.greenlet.switch()
 
-    def _next(self) -> Task:
+    def _next(self) -> SimulatedThread:
         """The thread that goes on; time jumps if none can."""
         for _ in range(FRUITLESS_ALARMS):
             self._collect_due()
@@ -299,7 +303,7 @@ class Scheduler:
     def _deadlock(self, why: str) -> Deadlock:
         return Deadlock(f"{why}; the test's thread {self.main.reason or 'waits'}")
 
-    def _stop(self, error: BaseException) -> Task:
+    def _stop(self, error: BaseException) -> SimulatedThread:
         """End the test: its own thread gets the error."""
         self.main.pending = error
         self.main.is_parked = False

@@ -19,7 +19,7 @@ from mutabot_ros.simulation.records import (
 from mutabot_ros.simulation.scheduler import SCHEDULER
 from mutabot_ros.simulation.topics import Publisher
 from mutabot_ros.simulation.type_descriptions import answer_about
-from mutabot_ros.simulation.waiting import Clock
+from mutabot_ros.simulation.waiting import RosClock
 
 _OFF, _CONTENTS = (service_introspection.ServiceIntrospectionState[name] for name in ("OFF", "CONTENTS"))
 REQUEST_SENT, REQUEST_RECEIVED, RESPONSE_SENT, RESPONSE_RECEIVED = range(4)
@@ -43,7 +43,7 @@ class _ServiceEnd(Endpoint):
         self.queue: deque[tuple[Any, rmw_service_info_t]] = deque(maxlen=self.profile.kept)
         self.matched: list[Any] = []
         self._events: Publisher | None = None
-        self._event_clock: Clock | None = None
+        self._event_clock: RosClock | None = None
         self._state = _OFF
         self._last_arrival = 0
         WORLD.ends.append(self)
@@ -84,7 +84,7 @@ class _ServiceEnd(Endpoint):
         self._tell(event, info.request_id, message)
         return converted(message, kind), info
 
-    def configure_introspection(self, clock: Clock, profile: rmw_qos_profile_t, state: Any) -> None:
+    def configure_introspection(self, clock: RosClock, profile: rmw_qos_profile_t, state: Any) -> None:
         """Publish an event for each request and answer, with or without its contents."""
         self._event_clock, self._state = clock, state
         if state is not _OFF and self._events is None:

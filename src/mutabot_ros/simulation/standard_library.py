@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot_ros.simulation import who_asks
-from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND, NeedsRealRos, Task
+from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND, NeedsRealRos, SimulatedThread
 from mutabot_ros.simulation.who_asks import copied, provide, stand_in, varied
 
 _TIMEOUT_MAX = 9_000_000_000.0
@@ -31,7 +31,7 @@ class Lock:
 
     def __init__(self) -> None:
         self._is_held = False
-        self._waiting: deque[Task] = deque()
+        self._waiting: deque[SimulatedThread] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         if not blocking and timeout != -1:

@@ -9,7 +9,7 @@ from typing import Any
 
 from mutabot_ros.simulation import records
 from mutabot_ros.simulation.content_filters import ContentFilter
-from mutabot_ros.simulation.graph import WORLD, Context, Endpoint, Node, Waitable
+from mutabot_ros.simulation.graph import WORLD, Endpoint, Node, Participant, Waitable
 from mutabot_ros.simulation.messages import converted, type_name
 from mutabot_ros.simulation.qos import (
     AUTOMATIC,
@@ -32,7 +32,7 @@ _ON_PUBLISHER, _ON_SUBSCRIPTION = rcl_publisher_event_type_t, rcl_subscription_e
 
 
 @dataclass(frozen=True)
-class Sample:
+class SentMessage:
     """A message on its way."""
 
     message: Any
@@ -130,7 +130,7 @@ class _Topic(Endpoint):
         self._rearm_deadline(self.profile.deadline)
 
 
-def _topic_ends(context: Context) -> list[Endpoint]:
+def _topic_ends(context: Participant) -> list[Endpoint]:
     roles = {"publisher", "subscription"}
     return [end for end in WORLD.ends if end.role in roles and end.node.context is context]
 
@@ -169,7 +169,7 @@ class Publisher(_Topic):
             _ON_PUBLISHER.RCL_PUBLISHER_INCOMPATIBLE_TYPE: Status(records.rmw_incompatible_type_status_t),
             self._match_event: Status(records.rmw_matched_status_t),
         }
-        self.kept: deque[Sample] = deque(maxlen=self.profile.kept)
+        self.kept: deque[SentMessage] = deque(maxlen=self.profile.kept)
         self.is_alive = self.profile.liveliness == AUTOMATIC
         self._published = 0
         self._lease_alarm: Alarm | None = None
@@ -199,7 +199,7 @@ class Publisher(_Topic):
         self._published += 1
         now = SCHEDULER.system_time
         lifespan = self.profile.lifespan
-        sample = Sample(
+        sample = SentMessage(
             message,
             now,
             self._published,
@@ -275,7 +275,7 @@ class Subscription(_Topic):
             ),
             self._match_event: Status(records.rmw_matched_status_t),
         }
-        self.queue: deque[tuple[Sample, int]] = deque(maxlen=self.profile.kept)
+        self.queue: deque[tuple[SentMessage, int]] = deque(maxlen=self.profile.kept)
         self._filter: ContentFilter | None = None
         if content_filter_options is not None:
             self.set_content_filter(
@@ -285,7 +285,7 @@ class Subscription(_Topic):
         for publisher in list(self._others("publisher")):
             self.when_both_are_seen(publisher, partial(_meet, publisher, self))
 
-    def receive(self, sample: Sample, publisher: Publisher) -> None:
+    def receive(self, sample: SentMessage, publisher: Publisher) -> None:
         """Take a message into the queue, now or when it has been under way."""
         transit = SCHEDULER.schedule.transit()
         at = max(
@@ -297,7 +297,7 @@ class Subscription(_Topic):
             self._last_arrivals[publisher.number] = at
             SCHEDULER.call_at(at, lambda: self._arrive(sample))
 
-    def _arrive(self, sample: Sample) -> None:
+    def _arrive(self, sample: SentMessage) -> None:
         if self.is_destroyed or not (self._filter is None or self._filter.accepts(sample.message)):
             return
         self.queue.append((sample, SCHEDULER.system_time))

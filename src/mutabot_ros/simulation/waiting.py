@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mutabot_ros.simulation.graph import Context, Destroyable, Waitable
+from mutabot_ros.simulation.graph import Destroyable, Participant, Waitable
 from mutabot_ros.simulation.records import (
     MODULE,
     ClockChange,
@@ -16,7 +16,7 @@ from mutabot_ros.simulation.records import (
 from mutabot_ros.simulation.scheduler import SCHEDULER
 
 
-class Clock(Destroyable):
+class RosClock(Destroyable):
     """System, steady or ROS time; the last follows `/clock` while it is overridden."""
 
     def __init__(self, kind: int) -> None:
@@ -119,7 +119,7 @@ class ClockEvent(Waitable):
     def is_ready(self) -> bool:
         return self._is_set
 
-    def _wait_until(self, clock: Clock, until: rcl_time_point_t) -> None:
+    def _wait_until(self, clock: RosClock, until: rcl_time_point_t) -> None:
         task = SCHEDULER.current
         clock.events.append(self)
         self.watchers.append(task)
@@ -136,7 +136,7 @@ class ClockEvent(Waitable):
 class Timer(Waitable):
     """Is due once in each period of a clock."""
 
-    def __init__(self, clock: Clock, context: Context, period: int, autostart: bool = True) -> None:
+    def __init__(self, clock: RosClock, context: Participant, period: int, autostart: bool = True) -> None:
         super().__init__()
         if period < 0:
             raise RCLError("failed to create timer: timer period must be non-negative")
@@ -218,7 +218,7 @@ class Timer(Waitable):
 class GuardCondition(Waitable):
     """Wakes a wait set by hand."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Participant) -> None:
         super().__init__()
         self._is_triggered = False
 
@@ -334,5 +334,6 @@ class WaitSet(Destroyable):
         return [member.number for member, is_ready in pairs if is_ready]
 
 
-for _kind in (Clock, ClockEvent, Timer, GuardCondition, WaitSet):
+RosClock.__name__ = "Clock"
+for _kind in (RosClock, ClockEvent, Timer, GuardCondition, WaitSet):
     _kind.__module__ = MODULE

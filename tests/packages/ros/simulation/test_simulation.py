@@ -67,6 +67,7 @@ for kind in set(names) - {"EventsExecutor"}:
     assert done.stdout == "[]\n", done.stdout + done.stderr
 
 
+@pytest.mark.usefixtures("plugins")
 def test_the_example_runs_unmodified(tmp_path: Path) -> None:
     folder = tmp_path / "ros2"
     shutil.copytree(
