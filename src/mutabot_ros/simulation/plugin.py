@@ -50,12 +50,13 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_runtest_protocol() -> Iterator[None]:
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     """Let no test run for ever in simulated time, and free memory at the same moments in each run.
 
     Nodes and futures that are freed are told of: if that came at any moment, equal runs would differ.
     """
     SCHEDULER.limit = SCHEDULER.now + LIMIT * SECOND
+    SCHEDULER.schedule.begin(item.nodeid)
     was_enabled = gc.isenabled()
     gc.collect()
     gc.disable()

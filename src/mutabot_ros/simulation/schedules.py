@@ -18,6 +18,9 @@ TRANSIT = 2_000_000
 class Schedule(Protocol):
     """What decides where the order is open."""
 
+    def begin(self, test: str) -> None:
+        """A test begins: what it draws depends on its name alone, so it can be replayed alone."""
+
     def choose(self, number: int) -> int:
         """Which of so many threads that can run goes on."""
 
@@ -36,6 +39,9 @@ class Schedule(Protocol):
 
 class FirstIn:
     """What has become ready first goes first; nothing takes time."""
+
+    def begin(self, test: str) -> None:
+        """Nothing is drawn."""
 
     def choose(self, number: int) -> int:
         return 0
@@ -59,6 +65,9 @@ class RandomOrder:
     def __init__(self, seed: int) -> None:
         self.seed = seed
         self._random = Random(seed)
+
+    def begin(self, test: str) -> None:
+        self._random = Random(f"{self.seed} {test}")
 
     def choose(self, number: int) -> int:
         return self._random.randrange(number)

@@ -88,6 +88,10 @@ def _import(
     return stand_in(name)
 
 
+# a warning about an import is to name the module that imports: Python passes over frames of its own machinery
+_import.__code__ = _import.__code__.replace(co_filename=f"<importlib._bootstrap, {__name__}>")
+
+
 def install() -> None:
     """Answer import statements by who asks, from now on."""
     builtins.__import__ = _import

@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from campaign.project import run
+from packages.ros.test_ros2_example import EXPECTED
+
 pytestmark = pytest.mark.skipif(
     find_spec("rclpy") is None or find_spec("greenlet") is None,
     reason="no ROS 2 with greenlet: pip install -r requirements-ros2.lock",
@@ -43,7 +46,9 @@ def simulated(folder: Path, *arguments: str, **environment: str) -> subprocess.C
     )
 
 
-@pytest.mark.parametrize("cases", ["time_cases.py", "process_cases.py", "middleware_cases.py"])
+@pytest.mark.parametrize(
+    "cases", ["time_cases.py", "process_cases.py", "middleware_cases.py", "fork_cases.py"]
+)
 def test_every_case_holds(cases: str) -> None:
     done = simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", cases)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -67,6 +72,18 @@ for kind in set(names) - {"EventsExecutor"}:
     assert done.stdout == "[]\n", done.stdout + done.stderr
 
 
+def example_over_the_simulation(folder: Path) -> Path:
+    """A copy of the example whose suite runs over the simulation."""
+    copy = folder / "ros2"
+    shutil.copytree(EXAMPLE, copy, ignore=shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache"))
+    settings = copy / "pyproject.toml"
+    text = settings.read_text()
+    plain = 'addopts = ["--strict-markers", "--strict-config"]'
+    assert plain in text
+    settings.write_text(text.replace(plain, plain[:-1] + ', "-p", "mutabot_ros.simulation.plugin"]'))
+    return copy
+
+
 @pytest.mark.usefixtures("plugins")
 def test_the_example_runs_unmodified(tmp_path: Path) -> None:
     folder = tmp_path / "ros2"
@@ -77,6 +94,16 @@ def test_the_example_runs_unmodified(tmp_path: Path) -> None:
         done = simulated(folder, MUTABOT_SEED=seed)
         assert "1 passed" in done.stdout, done.stdout + done.stderr
         assert "needs real ROS" not in done.stdout
+
+
+@pytest.mark.usefixtures("plugins")
+def test_mutants_end_over_the_simulation_as_over_real_ros(tmp_path: Path) -> None:
+    folder = example_over_the_simulation(tmp_path)
+    for engine in ("branch", "replay"):
+        found = run(folder, rounds=1, baseline=1, only=tuple(EXPECTED), engine=engine)
+        assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED, found
+        assert {outcome.engine for outcome in found.values()} == {engine}
+        shutil.rmtree(folder / ".mutabot")
 
 
 def test_runs_are_equal_whatever_the_hash_seed() -> None:
