@@ -17,27 +17,22 @@ def start(roots: list[str], schedule: str = "first-in", seed: int = 0) -> None:
     """Simulate ROS in this process from now on. Raises NeedsRealRos if that cannot be."""
     global _is_running  # noqa: PLW0603  (there is one simulation in a process)
     # greenlet and rclpy are needed only where the simulation runs
-    from mutabot_ros.simulation import (  # noqa: PLC0415
-        event_loops,
-        extension,
-        multiprocess,
-        processes,
-        programs,
-        standard_library,
-        who_asks,
-    )
-    from mutabot_ros.simulation.scheduler import SCHEDULER  # noqa: PLC0415
-    from mutabot_ros.simulation.schedules import schedule_named  # noqa: PLC0415
+    from mutabot_ros.simulation.machine import event_loops, standard_library, who_asks  # noqa: PLC0415
+    from mutabot_ros.simulation.machine.scheduler import SCHEDULER  # noqa: PLC0415
+    from mutabot_ros.simulation.machine.schedules import schedule_named  # noqa: PLC0415
+    from mutabot_ros.simulation.middleware import extension  # noqa: PLC0415
+    from mutabot_ros.simulation.processes import multiprocess, process, programs, system  # noqa: PLC0415
 
     SCHEDULER.follow(schedule_named(schedule, seed))
     for root in roots:
         who_asks.add_root(root)
     if not _is_running:
         programs.install()
+        system.install()
         event_loops.install()
         multiprocess.install()
         standard_library.install()
-        processes.install()
+        process.install()
         extension.install()
         who_asks.catch_up()
         _is_running = True
@@ -52,6 +47,6 @@ def reasons() -> list[str]:
     """Why what has run so far cannot be trusted without real ROS; empty if it can."""
     if not _is_running:
         return []
-    from mutabot_ros.simulation.scheduler import REASONS  # noqa: PLC0415
+    from mutabot_ros.simulation.machine.scheduler import REASONS  # noqa: PLC0415
 
     return list(REASONS)

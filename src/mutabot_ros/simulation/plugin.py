@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import pytest
 
 from mutabot_ros import simulation
-from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND
 
 #: simulated seconds after which a test counts as stuck
 LIMIT = 3600

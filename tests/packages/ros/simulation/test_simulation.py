@@ -58,7 +58,7 @@ def test_every_name_that_the_real_extension_exports_is_there() -> None:
     code = """
 import sys, rclpy._rclpy_pybind11 as real
 del sys.modules["rclpy._rclpy_pybind11"]
-from mutabot_ros.simulation.extension import build
+from mutabot_ros.simulation.middleware.extension import build
 ours = build()
 names = [name for name in dir(real) if not name.startswith("__")]
 print([name for name in names if not hasattr(ours, name)])

@@ -21,7 +21,7 @@ from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
-from mutabot_ros.simulation.scheduler import Deadlock
+from mutabot_ros.simulation.machine.scheduler import Deadlock
 
 
 def test_sleeping_takes_no_wall_time() -> None:

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mutabot_ros.simulation.messages import class_of
+from mutabot_ros.simulation.middleware.messages import class_of
 
 
 @cache

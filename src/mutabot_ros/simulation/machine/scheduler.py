@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any
 
 from greenlet import greenlet
 
-from mutabot_ros.simulation.schedules import FirstIn, Schedule
+from mutabot_ros.simulation.machine.schedules import FirstIn, Schedule
 
 if TYPE_CHECKING:
-    from mutabot_ros.simulation.processes import Process
+    from mutabot_ros.simulation.processes.process import Process
 
 SECOND = 1_000_000_000
 #: what reading a clock costs, so that two readings are never equal

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 from rosidl_parser import definition as idl
 
-from mutabot_ros.simulation.records import RCLError
-from mutabot_ros.simulation.scheduler import NeedsRealRos
+from mutabot_ros.simulation.machine.scheduler import NeedsRealRos
+from mutabot_ros.simulation.middleware.records import RCLError
 
 Convert = Callable[[Any], Any]
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import yaml
 
-from mutabot_ros.simulation.names import expanded
-from mutabot_ros.simulation.records import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
+from mutabot_ros.simulation.middleware.names import expanded
+from mutabot_ros.simulation.middleware.records import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
 
 SEVERITIES = {"UNSET": 0, "DEBUG": 10, "INFO": 20, "WARN": 30, "ERROR": 40, "FATAL": 50}
 _SWITCHES = {

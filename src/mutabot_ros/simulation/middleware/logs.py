@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from mutabot_ros.simulation.arguments import SEVERITIES
-from mutabot_ros.simulation.graph import WORLD, Node, Participant
-from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND
-from mutabot_ros.simulation.topics import Publisher
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND
+from mutabot_ros.simulation.middleware.arguments import SEVERITIES
+from mutabot_ros.simulation.middleware.graph import WORLD, Node, Participant
+from mutabot_ros.simulation.middleware.topics import Publisher
 
 _NAMES = {number: name for name, number in SEVERITIES.items()}
 _DEFAULT_LEVEL = 20

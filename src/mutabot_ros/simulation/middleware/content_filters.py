@@ -8,7 +8,7 @@ from collections.abc import Callable
 from fnmatch import fnmatchcase
 from typing import Any
 
-from mutabot_ros.simulation.records import RCLError
+from mutabot_ros.simulation.middleware.records import RCLError
 
 Test = Callable[[Any], bool]
 Value = Callable[[Any], Any]

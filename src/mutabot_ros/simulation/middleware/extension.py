@@ -10,10 +10,14 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation import (
+from mutabot_ros.simulation.machine.scheduler import NeedsRealRos
+from mutabot_ros.simulation.middleware import (
     actions,
     arguments,
+    clocks,
+    events,
     graph,
+    graph_queries,
     lifecycle,
     logs,
     messages,
@@ -26,12 +30,11 @@ from mutabot_ros.simulation import (
     topics,
     waiting,
 )
-from mutabot_ros.simulation.records import MODULE
-from mutabot_ros.simulation.scheduler import NeedsRealRos
+from mutabot_ros.simulation.middleware.records import MODULE
 
 _SOURCES: tuple[ModuleType, ...] = (
-    actions, arguments, graph, lifecycle, logs, names, qos, records, serialization, services, signals,
-    topics, waiting,
+    actions, arguments, clocks, events, graph, graph_queries, lifecycle, logs, names, qos, records,
+    serialization, services, signals, topics, waiting,
 )  # fmt: skip
 #: what the extension exports, by its name: `rclpy_serialize`, `RCLError` …
 _EXPORTED = re.compile(
@@ -70,7 +73,7 @@ def build() -> ModuleType:
         for name, value in vars(source).items():
             if name in _CLASSES or _EXPORTED.fullmatch(name):
                 setattr(module, name, value)
-    module.Context, module.Clock = graph.Participant, waiting.RosClock  # type: ignore[attr-defined]
+    module.Context, module.Clock = graph.Participant, clocks.RosClock  # type: ignore[attr-defined]
     module.EventsExecutor = EventsExecutor  # type: ignore[attr-defined]
     module.rclpy_get_rmw_implementation_identifier = (  # type: ignore[attr-defined]
         rclpy_get_rmw_implementation_identifier

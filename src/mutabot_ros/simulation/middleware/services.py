@@ -6,20 +6,20 @@ from collections import deque
 from functools import partial
 from typing import Any
 
-from mutabot_ros.simulation.graph import WORLD, Destroyable, Endpoint, Node
-from mutabot_ros.simulation.messages import converted
-from mutabot_ros.simulation.qos import mismatch, rmw_qos_profile_t
-from mutabot_ros.simulation.records import (
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER
+from mutabot_ros.simulation.middleware.clocks import RosClock
+from mutabot_ros.simulation.middleware.graph import WORLD, Destroyable, Endpoint, Node
+from mutabot_ros.simulation.middleware.messages import converted
+from mutabot_ros.simulation.middleware.qos import mismatch, rmw_qos_profile_t
+from mutabot_ros.simulation.middleware.records import (
     MODULE,
     RCLError,
     rmw_request_id_t,
     rmw_service_info_t,
     service_introspection,
 )
-from mutabot_ros.simulation.scheduler import SCHEDULER
-from mutabot_ros.simulation.topics import Publisher
-from mutabot_ros.simulation.type_descriptions import answer_about
-from mutabot_ros.simulation.waiting import RosClock
+from mutabot_ros.simulation.middleware.topics import Publisher
+from mutabot_ros.simulation.middleware.type_descriptions import answer_about
 
 _OFF, _CONTENTS = (service_introspection.ServiceIntrospectionState[name] for name in ("OFF", "CONTENTS"))
 REQUEST_SENT, REQUEST_RECEIVED, RESPONSE_SENT, RESPONSE_RECEIVED = range(4)

@@ -1,11 +1,12 @@
-"""Clocks, timers, guard conditions, and the wait sets in which executors wait for them."""
+"""Clocks, sleeping until one shows a time, and timers."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from mutabot_ros.simulation.graph import Destroyable, Participant, Waitable
-from mutabot_ros.simulation.records import (
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER
+from mutabot_ros.simulation.middleware.graph import Destroyable, Participant, Waitable
+from mutabot_ros.simulation.middleware.records import (
     MODULE,
     ClockChange,
     ClockType,
@@ -13,7 +14,6 @@ from mutabot_ros.simulation.records import (
     TimerCancelledError,
     rcl_time_point_t,
 )
-from mutabot_ros.simulation.scheduler import SCHEDULER
 
 
 class RosClock(Destroyable):
@@ -215,125 +215,6 @@ class Timer(Waitable):
             self._last_call, self.next_call = now, now + self._period
 
 
-class GuardCondition(Waitable):
-    """Wakes a wait set by hand."""
-
-    def __init__(self, context: Participant) -> None:
-        super().__init__()
-        self._is_triggered = False
-
-    def trigger_guard_condition(self) -> None:
-        self._is_triggered = True
-        self.changed()
-
-    @property
-    def is_ready(self) -> bool:
-        return self._is_triggered
-
-    def reset(self) -> None:
-        self._is_triggered = False
-
-
-KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
-
-
-class WaitSet(Destroyable):
-    """What an executor waits for."""
-
-    def __init__(self, *arguments: Any) -> None:
-        super().__init__()
-        *sizes, context = arguments
-        if not context.is_up:
-            raise RCLError("failed to initialize wait set: the given context is not valid")
-        self._sizes = dict(zip(KINDS, sizes, strict=True))
-        self._members: dict[str, list[Any]] = {}
-        self._ready: dict[str, list[bool]] = {}
-        self.clear_entities()
-
-    def clear_entities(self) -> None:
-        self._members = {kind: [] for kind in KINDS}
-        self._ready = {kind: [False] * size for kind, size in self._sizes.items()}
-
-    def _add(self, kind: str, member: Any) -> int:
-        members = self._members[kind]
-        if len(members) >= self._sizes[kind]:
-            raise RCLError(f"failed to add {kind} to wait set: {kind}s set is full")
-        members.append(member)
-        self._ready[kind][len(members) - 1] = True
-        return len(members) - 1
-
-    def add_subscription(self, member: Any) -> int:
-        return self._add("subscription", member)
-
-    def add_guard_condition(self, member: GuardCondition) -> int:
-        return self._add("guard_condition", member)
-
-    def add_timer(self, member: Timer) -> int:
-        return self._add("timer", member)
-
-    def add_client(self, member: Any) -> int:
-        return self._add("client", member)
-
-    def add_service(self, member: Any) -> int:
-        return self._add("service", member)
-
-    def add_event(self, member: Any) -> int:
-        return self._add("event", member)
-
-    def wait(self, timeout: int) -> None:
-        """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
-        members = [member for kind in KINDS for member in self._members[kind]]
-        if not members:
-            raise RCLError("failed to wait on wait set: wait set is empty")
-        if timeout == 0:
-            SCHEDULER.poll()
-        elif not any(member.is_ready for member in members):
-            self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
-        else:
-            SCHEDULER.may_switch()
-        self._note_ready(members)
-
-    def _park(self, members: list[Any], end: int | None) -> None:
-        task = SCHEDULER.current
-        for member in members:
-            member.watchers.append(task)
-        try:
-            while not any(member.is_ready for member in members) and (end is None or SCHEDULER.now < end):
-                dues = [timer.deadline for timer in self._members["timer"]]
-                deadlines = [due for due in (*dues, end) if due is not None]
-                SCHEDULER.park(min(deadlines, default=None), "waits for ROS")
-        finally:
-            for member in members:
-                member.watchers.remove(task)
-
-    def _note_ready(self, members: list[Any]) -> None:
-        ready = [member for member in members if member.is_ready]
-        if len(ready) > 1:
-            kept = SCHEDULER.schedule.keeps(len(ready))
-            ready = [member for member, is_kept in zip(ready, kept, strict=True) if is_kept]
-        chosen = {member.number for member in ready}
-        for kind in KINDS:
-            flags = [member.number in chosen for member in self._members[kind]]
-            self._ready[kind] = flags + [False] * (self._sizes[kind] - len(flags))
-        for guard in self._members["guard_condition"]:
-            if guard.number in chosen:
-                guard.reset()
-
-    def is_ready(self, kind: str, index: int) -> bool:
-        flags = self._ready.get(kind)
-        if flags is None:
-            raise RuntimeError(f"'{kind}' is not a known entity")
-        if index >= len(flags):
-            raise IndexError("wait set index too big")
-        return flags[index]
-
-    def get_ready_entities(self, kind: str) -> list[int]:
-        if kind not in KINDS or kind == "event":
-            raise RuntimeError(f"'{kind}' is not a known entity")
-        pairs = zip(self._members[kind], self._ready[kind], strict=False)
-        return [member.number for member, is_ready in pairs if is_ready]
-
-
 RosClock.__name__ = "Clock"
-for _kind in (RosClock, ClockEvent, Timer, GuardCondition, WaitSet):
+for _kind in (RosClock, ClockEvent, Timer):
     _kind.__module__ = MODULE

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from mutabot_ros.simulation.graph import Destroyable, Node
-from mutabot_ros.simulation.logs import log
-from mutabot_ros.simulation.records import MODULE, RCLError
-from mutabot_ros.simulation.scheduler import SCHEDULER
-from mutabot_ros.simulation.services import Service
-from mutabot_ros.simulation.topics import Publisher
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER
+from mutabot_ros.simulation.middleware.graph import Destroyable, Node
+from mutabot_ros.simulation.middleware.logs import log
+from mutabot_ros.simulation.middleware.records import MODULE, RCLError
+from mutabot_ros.simulation.middleware.services import Service
+from mutabot_ros.simulation.middleware.topics import Publisher
 
 STATES = {
     0: "unknown", 1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized", 10: "configuring",

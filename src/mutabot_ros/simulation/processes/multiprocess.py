@@ -16,9 +16,9 @@ from itertools import count
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation.processes import MAIN, STARTED, Process
-from mutabot_ros.simulation.scheduler import REASONS, SCHEDULER, NeedsRealRos
-from mutabot_ros.simulation.who_asks import provide, stand_in
+from mutabot_ros.simulation.machine.scheduler import REASONS, SCHEDULER, NeedsRealRos
+from mutabot_ros.simulation.machine.who_asks import provide, stand_in
+from mutabot_ros.simulation.processes.process import MAIN, STARTED, Process
 
 _numbers = count(1)
 _SHARED = "a function that cannot be imported runs in a process of its own: the process shares its modules"

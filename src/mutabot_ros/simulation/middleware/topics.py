@@ -7,26 +7,27 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from mutabot_ros.simulation import records
-from mutabot_ros.simulation.content_filters import ContentFilter
-from mutabot_ros.simulation.graph import WORLD, Endpoint, Node, Participant, Waitable
-from mutabot_ros.simulation.messages import converted, type_name
-from mutabot_ros.simulation.qos import (
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, Alarm
+from mutabot_ros.simulation.middleware import records
+from mutabot_ros.simulation.middleware.content_filters import ContentFilter
+from mutabot_ros.simulation.middleware.events import Status
+from mutabot_ros.simulation.middleware.graph import WORLD, Endpoint, Node, Participant
+from mutabot_ros.simulation.middleware.messages import converted, type_name
+from mutabot_ros.simulation.middleware.qos import (
     AUTOMATIC,
     MANUAL_BY_TOPIC,
     TRANSIENT_LOCAL,
     mismatch,
     rmw_qos_profile_t,
 )
-from mutabot_ros.simulation.records import (
+from mutabot_ros.simulation.middleware.records import (
     MODULE,
     RMW_DURATION_INFINITE,
     RCLError,
     rcl_publisher_event_type_t,
     rcl_subscription_event_type_t,
 )
-from mutabot_ros.simulation.scheduler import SCHEDULER, Alarm
-from mutabot_ros.simulation.serialization import rclpy_deserialize, rclpy_serialize
+from mutabot_ros.simulation.middleware.serialization import rclpy_deserialize, rclpy_serialize
 
 _ON_PUBLISHER, _ON_SUBSCRIPTION = rcl_publisher_event_type_t, rcl_subscription_event_type_t
 
@@ -40,37 +41,6 @@ class SentMessage:
     number: int  # among its publisher's
     gid: list[int]  # its publisher's
     expires: int | None  # the system time from which nobody hears it any more
-
-
-class Status:
-    """What has happened since an event was last taken; counted whether or not anybody asks."""
-
-    def __init__(self, record: Any) -> None:
-        self.values = record()
-        if hasattr(self.values, "last_policy_kind"):
-            self.values.last_policy_kind = records.rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
-        self.has_changed = False
-        self.handles: list[EventHandle] = []
-
-    def count(self, **changes: Any) -> None:
-        """Add to the counts; each `name` that counts has a `name_change` beside it."""
-        for name, change in changes.items():
-            if name == "last_policy_kind":
-                self.values.last_policy_kind = change
-                continue
-            setattr(self.values, name, getattr(self.values, name) + change)
-            setattr(self.values, f"{name}_change", getattr(self.values, f"{name}_change") + change)
-        self.has_changed = True
-        for handle in self.handles:
-            handle.changed()
-
-    def take(self) -> Any:
-        taken = type(self.values)(*(getattr(self.values, field) for field in self.values.fields))
-        for field in self.values.fields:
-            if field.endswith("_change"):
-                setattr(self.values, field, 0)
-        self.has_changed = False
-        return taken
 
 
 class _Topic(Endpoint):
@@ -386,31 +356,10 @@ class Subscription(_Topic):
         return ContentFilterOptions(self._filter.expression, self._filter.parameters)
 
 
-class EventHandle(Waitable):
-    """Tells of one kind of event of a publisher or a subscription."""
-
-    def __init__(self, end: Publisher | Subscription, event: Any) -> None:
-        super().__init__()
-        if event not in end.statuses:
-            raise TypeError(f"__init__(): incompatible constructor arguments: no {event!r} of a {end.role}")
-        self._status = end.statuses[event]
-        self._status.handles.append(self)
-
-    def _release(self) -> None:
-        self._status.handles.remove(self)
-
-    @property
-    def is_ready(self) -> bool:
-        return self._status.has_changed
-
-    def take_event(self) -> Any:
-        return self._status.take()
-
-
 def rclpy_assert_liveliness(publisher: Publisher) -> None:
     """Say that a publisher is alive."""
     publisher.assert_liveliness()
 
 
-for _kind in (Publisher, Subscription, EventHandle):
+for _kind in (Publisher, Subscription):
     _kind.__module__ = MODULE

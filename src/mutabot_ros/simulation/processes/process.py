@@ -15,10 +15,10 @@ from collections.abc import Callable
 from itertools import count
 from typing import Any
 
-from mutabot_ros.simulation import signals
-from mutabot_ros.simulation.graph import WORLD, Participant
-from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND, NeedsRealRos, SimulatedThread
-from mutabot_ros.simulation.who_asks import is_of_project, stand_in
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, NeedsRealRos, SimulatedThread
+from mutabot_ros.simulation.machine.who_asks import is_of_project, stand_in
+from mutabot_ros.simulation.middleware import signals
+from mutabot_ros.simulation.middleware.graph import WORLD, Participant
 
 #: globals of rclpy that each process has of its own, with what they are at first
 _GLOBALS: list[tuple[str, str, Any]] = [

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import string
 
-from mutabot_ros.simulation.records import RCLError
+from mutabot_ros.simulation.middleware.records import RCLError
 
 Problem = tuple[str, int] | None
 

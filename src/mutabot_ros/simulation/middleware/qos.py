@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from mutabot_ros.simulation.records import (
+from mutabot_ros.simulation.middleware.records import (
     MODULE,
     RMW_DURATION_INFINITE,
     RMW_QOS_DEADLINE_BEST_AVAILABLE,

@@ -11,8 +11,8 @@ from collections.abc import Callable, Coroutine
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation.scheduler import REASONS, SCHEDULER, SECOND, SimulatedThread
-from mutabot_ros.simulation.who_asks import provide, stand_in, varied
+from mutabot_ros.simulation.machine.scheduler import REASONS, SCHEDULER, SECOND, SimulatedThread
+from mutabot_ros.simulation.machine.who_asks import provide, stand_in, varied
 
 _OWN_FILES = 1  # the pipe by which a loop wakes itself
 

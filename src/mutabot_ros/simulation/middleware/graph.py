@@ -1,4 +1,4 @@
-"""Who is there: contexts, nodes, the ends of topics and services, and what nodes can ask about each other."""
+"""Who is there: contexts, nodes, and the ends of topics and services."""
 
 from __future__ import annotations
 
@@ -7,23 +7,21 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from mutabot_ros.simulation import arguments, names
-from mutabot_ros.simulation.messages import type_name
-from mutabot_ros.simulation.qos import rmw_qos_profile_t
-from mutabot_ros.simulation.records import (
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SimulatedThread
+from mutabot_ros.simulation.middleware import arguments, names
+from mutabot_ros.simulation.middleware.messages import type_name
+from mutabot_ros.simulation.middleware.qos import rmw_qos_profile_t
+from mutabot_ros.simulation.middleware.records import (
     MODULE,
     RCL_DEFAULT_DOMAIN_ID,
     InvalidHandle,
     NodeNameNonExistentError,
     RCLError,
 )
-from mutabot_ros.simulation.scheduler import SCHEDULER, SimulatedThread
-from mutabot_ros.simulation.type_descriptions import hash_of
 
 if TYPE_CHECKING:
-    from mutabot_ros.simulation.processes import Process
+    from mutabot_ros.simulation.processes.process import Process
 
-PUBLISHER, SUBSCRIPTION = 1, 2
 _numbers = count(1)
 _DESTROYED = "cannot use Destroyable because destruction was requested"
 
@@ -206,12 +204,12 @@ class Node(Destroyable):
     def get_action_server_names_and_types_by_node(
         self, name: str, namespace: str
     ) -> list[tuple[str, list[str]]]:
-        return _actions(_of_node(self, "publisher", name, namespace, "action server"))
+        return _actions(WORLD.of_node(self, "publisher", name, namespace, "action server"))
 
     def get_action_client_names_and_types_by_node(
         self, name: str, namespace: str
     ) -> list[tuple[str, list[str]]]:
-        return _actions(_of_node(self, "subscription", name, namespace, "action client"))
+        return _actions(WORLD.of_node(self, "subscription", name, namespace, "action client"))
 
 
 class Endpoint(Waitable):
@@ -257,6 +255,25 @@ class Endpoint(Waitable):
         return [*self.number.to_bytes(8, "big"), *self.node.context.number.to_bytes(8, "big")]
 
 
+Names = list[tuple[str, list[str]]]
+
+
+def grouped(pairs: Iterable[tuple[str, str]]) -> Names:
+    found: dict[str, set[str]] = {}
+    for name, kind in pairs:
+        found.setdefault(name, set()).add(kind)
+    return [(name, sorted(kinds)) for name, kinds in sorted(found.items())]
+
+
+def _actions(ends: Iterable[Endpoint]) -> Names:
+    suffix, of_type = "/_action/feedback", "_FeedbackMessage"
+    return grouped(
+        (end.name.removesuffix(suffix), end.type_name.removesuffix(of_type))
+        for end in ends
+        if end.name.endswith(suffix)
+    )
+
+
 class World:
     """All nodes and ends that are there, in the order in which they came."""
 
@@ -273,6 +290,18 @@ class World:
         """The ends of a role that a node knows of."""
         return [end for end in self.ends if end.role == role and _is_seen(by, end.node.context, end.seen_at)]
 
+    def of_node(self, by: Node, role: str, name: str, namespace: str, what: str) -> list[Endpoint]:
+        """The ends of a role that a node has, as another one sees it."""
+        if not any((node.name, node.namespace) == (name, namespace) for node in self.seen_nodes(by)):
+            if what.startswith("action"):
+                raise RCLError(f"Failed to get {what} names and type: error not set")
+            raise NodeNameNonExistentError(
+                f"cannot get {what} names and types for nonexistent node: error not set"
+            )
+        return [
+            end for end in self.seen(by, role) if (end.node.name, end.node.namespace) == (name, namespace)
+        ]
+
     def seen_nodes(self, by: Node) -> list[Node]:
         return [node for node in self.nodes if _is_seen(by, node.context, node.seen_at)]
 
@@ -283,136 +312,6 @@ def _is_seen(by: Node, context: Participant, seen_at: int) -> bool:
 
 #: the one network of this process
 WORLD = World()
-
-Names = list[tuple[str, list[str]]]
-
-
-def _grouped(pairs: Iterable[tuple[str, str]]) -> Names:
-    found: dict[str, set[str]] = {}
-    for name, kind in pairs:
-        found.setdefault(name, set()).add(kind)
-    return [(name, sorted(kinds)) for name, kinds in sorted(found.items())]
-
-
-def _named(ends: Iterable[Endpoint]) -> Names:
-    return _grouped((end.name, end.type_name) for end in ends)
-
-
-def _of_node(node: Node, role: str, name: str, namespace: str, what: str) -> list[Endpoint]:
-    if not any((other.name, other.namespace) == (name, namespace) for other in WORLD.seen_nodes(node)):
-        if what.startswith("action"):
-            raise RCLError(f"Failed to get {what} names and type: error not set")
-        raise NodeNameNonExistentError(
-            f"cannot get {what} names and types for nonexistent node: error not set"
-        )
-    return [end for end in WORLD.seen(node, role) if (end.node.name, end.node.namespace) == (name, namespace)]
-
-
-def _actions(ends: Iterable[Endpoint]) -> Names:
-    suffix, of_type = "/_action/feedback", "_FeedbackMessage"
-    return _grouped(
-        (end.name.removesuffix(suffix), end.type_name.removesuffix(of_type))
-        for end in ends
-        if end.name.endswith(suffix)
-    )
-
-
-def _dds_type(name: str, part: str = "") -> str:
-    *folders, last = name.split("/")
-    return "::".join([*folders, "dds_", f"{last}{part}_"])
-
-
-def _dds_names(end: Endpoint) -> list[tuple[str, str]]:
-    """The topics of the network that an end stands for."""
-    if end.role in {"publisher", "subscription"}:
-        return [(f"rt{end.name}", _dds_type(end.type_name))]
-    return [
-        (f"rq{end.name}Request", _dds_type(end.type_name, "_Request")),
-        (f"rr{end.name}Reply", _dds_type(end.type_name, "_Response")),
-    ]
-
-
-def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> Names:
-    """All topics, by their names in ROS or those on the network."""
-    if no_demangle:
-        ends = [
-            end
-            for role in ("publisher", "subscription", "client", "service")
-            for end in WORLD.seen(node, role)
-        ]
-        discovery = ("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_")
-        return _grouped([discovery, *(pair for end in ends for pair in _dds_names(end))])
-    return _named(WORLD.seen(node, "publisher") + WORLD.seen(node, "subscription"))
-
-
-def rclpy_get_service_names_and_types(node: Node) -> Names:
-    """All services that somebody offers or wants."""
-    return _named(WORLD.seen(node, "service") + WORLD.seen(node, "client"))
-
-
-def rclpy_get_publisher_names_and_types_by_node(
-    node: Node, no_demangle: bool, name: str, namespace: str
-) -> Names:
-    """The topics that a node publishes."""
-    return _topics(_of_node(node, "publisher", name, namespace, "publisher"), no_demangle)
-
-
-def rclpy_get_subscriber_names_and_types_by_node(
-    node: Node, no_demangle: bool, name: str, namespace: str
-) -> Names:
-    """The topics that a node hears."""
-    return _topics(_of_node(node, "subscription", name, namespace, "subscriber"), no_demangle)
-
-
-def _topics(ends: list[Endpoint], no_demangle: bool) -> Names:
-    return _grouped(pair for end in ends for pair in _dds_names(end)) if no_demangle else _named(ends)
-
-
-def rclpy_get_service_names_and_types_by_node(node: Node, name: str, namespace: str) -> Names:
-    """The services that a node offers."""
-    return _named(_of_node(node, "service", name, namespace, "service"))
-
-
-def rclpy_get_client_names_and_types_by_node(node: Node, name: str, namespace: str) -> Names:
-    """The services that a node wants."""
-    return _named(_of_node(node, "client", name, namespace, "client"))
-
-
-def rclpy_get_publishers_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
-    """Who publishes a topic, and how."""
-    return _infos(node, "publisher", PUBLISHER, topic, no_mangle)
-
-
-def rclpy_get_subscriptions_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
-    """Who hears a topic, and how."""
-    return _infos(node, "subscription", SUBSCRIPTION, topic, no_mangle)
-
-
-def _infos(node: Node, role: str, number: int, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
-    return [
-        {
-            "node_name": end.node.name,
-            "node_namespace": end.node.namespace,
-            "topic_type": _dds_type(end.type_name) if no_mangle else end.type_name,
-            "topic_type_hash": hash_of(end.type_name),
-            "endpoint_type": number,
-            "endpoint_gid": end.gid,
-            "qos_profile": end.profile.as_discovered(),
-        }
-        for end in WORLD.seen(node, role)
-        if topic == (f"rt{end.name}" if no_mangle else end.name)
-    ]
-
-
-def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
-    """The full name of a topic or service in a node."""
-    return node.resolve(name, "rosservice" if is_service else "rostopic", only_expand)
-
-
-def rclpy_remap_topic_name(node: Node, name: str) -> str:
-    """What remapping makes of a full name."""
-    return node.resolve(name)
-
 
 Participant.__name__ = "Context"
 for _kind in (Destroyable, Participant, Node):

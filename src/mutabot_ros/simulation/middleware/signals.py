@@ -5,9 +5,9 @@ from __future__ import annotations
 import signal
 from typing import Any
 
-from mutabot_ros.simulation.records import SignalHandlerOptions
-from mutabot_ros.simulation.scheduler import SCHEDULER
-from mutabot_ros.simulation.waiting import GuardCondition
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER
+from mutabot_ros.simulation.middleware.records import SignalHandlerOptions
+from mutabot_ros.simulation.middleware.waiting import GuardCondition
 
 _conditions: list[tuple[Any, GuardCondition]] = []
 _options: dict[Any, Any] = {}

@@ -5,21 +5,19 @@ These are the `subprocess`, `os`, `signal` and `atexit` that modules of the proj
 
 from __future__ import annotations
 
-import atexit as real_atexit
 import importlib.util
 import os
 import signal as real_signal
 import subprocess as real_subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
-from mutabot_ros.simulation import signals
-from mutabot_ros.simulation.processes import MAIN, STARTED, Pipe, Process, process_of
-from mutabot_ros.simulation.scheduler import SCHEDULER, NeedsRealRos
-from mutabot_ros.simulation.who_asks import add_root, copied, is_of_project, provide, varied
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, NeedsRealRos
+from mutabot_ros.simulation.machine.who_asks import add_root, copied, is_of_project, provide
+from mutabot_ros.simulation.processes.process import STARTED, Pipe, Process
 
 #: programs that start nodes which are not Python's, or not seen here
 _STARTERS = {"ros2", "roslaunch", "gz", "gazebo", "ign", "gzserver", "rviz2"}
@@ -235,95 +233,6 @@ def _subprocess() -> ModuleType:
     return module
 
 
-# --- os, signal, atexit ---
-
-
-def _kill(pid: int, signum: int) -> None:
-    process = MAIN if pid == os.getpid() else process_of(pid)
-    if process is None or (process is MAIN and not _is_handled_here(signum)):
-        os.kill(pid, signum)
-    elif process.returncode is not None:
-        raise ProcessLookupError(3, "No such process")
-    else:
-        process.tell(signum)
-        SCHEDULER.pause()
-
-
-def _is_handled_here(signum: int) -> bool:
-    return signals.handles(MAIN, signum) or signum in {*MAIN.handlers, real_signal.SIGINT}
-
-
-def _current() -> Process:
-    return SCHEDULER.current.process or MAIN
-
-
-def _exit_now(status: int) -> None:
-    process = _current()
-    if process is MAIN:
-        os._exit(status)
-    process.finish(status)
-    SCHEDULER.end_thread()
-
-
-def _fork() -> int:
-    if _current() is MAIN and len(STARTED) == 1:
-        return os.fork()
-    raise NeedsRealRos("a node forks")
-
-
-def _os() -> ModuleType:
-    """Without hooks at forks: a fork takes simulated threads along, so nothing is to be mended after it."""
-    module = varied(
-        "os",
-        kill=_kill,
-        killpg=_kill,
-        getpgid=lambda pid: pid if process_of(pid) else os.getpgid(pid),
-        getpid=lambda: _current().pid if _current() is not MAIN else os.getpid(),
-        getppid=_parent_pid,
-        _exit=_exit_now,
-        fork=_fork,
-    )
-    module.__dict__.pop("register_at_fork", None)
-    return module
-
-
-def _parent_pid() -> int:
-    parent = _current().parent
-    return os.getppid() if parent is None else parent.pid
-
-
-def _handle(signum: int, handler: Any) -> Any:
-    process = _current()
-    before = process.handlers.get(signum, real_signal.getsignal(signum))
-    process.handlers[int(signum)] = handler
-    signals.replaced(process, signum)
-    return before
-
-
-def _signal() -> ModuleType:
-    return varied(
-        "signal",
-        signal=_handle,
-        getsignal=lambda signum: _current().handlers.get(signum, real_signal.getsignal(signum)),
-        raise_signal=lambda signum: _kill(_current().pid, signum),
-    )
-
-
-def _at_exit(function: Callable[..., object], *args: Any, **kwargs: Any) -> Callable[..., object]:
-    process = _current()
-    if process is MAIN:
-        return real_atexit.register(function, *args, **kwargs)
-    process.at_exit.append(lambda: function(*args, **kwargs))
-    return function
-
-
-def _atexit() -> ModuleType:
-    return varied("atexit", register=_at_exit)
-
-
-def install(base_path: Sequence[str] | None = None) -> None:
-    """Provide these modules to those who see the simulation."""
-    if base_path is not None:
-        _BASE_PATH[:] = base_path
-    for name, build in {"subprocess": _subprocess, "os": _os, "signal": _signal, "atexit": _atexit}.items():
-        provide(name, build)
+def install() -> None:
+    """Provide `subprocess` to those who see the simulation."""
+    provide("subprocess", _subprocess)

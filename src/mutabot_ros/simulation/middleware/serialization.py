@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from rosidl_parser import definition as idl
 
-from mutabot_ros.simulation.messages import TYPE_CODES, class_of, converted, fields_of
-from mutabot_ros.simulation.records import RMWError
+from mutabot_ros.simulation.middleware.messages import TYPE_CODES, class_of, converted, fields_of
+from mutabot_ros.simulation.middleware.records import RMWError
 
 _HEADER = b"\x00\x01\x00\x00"
 _FORMATS = {**TYPE_CODES, "boolean": "?", "char": "B", "octet": "B"}

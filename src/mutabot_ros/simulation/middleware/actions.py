@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from mutabot_ros.simulation.graph import Destroyable, Node, Waitable
-from mutabot_ros.simulation.messages import converted
-from mutabot_ros.simulation.records import MODULE, GoalEvent, RCLError
-from mutabot_ros.simulation.scheduler import SCHEDULER, SECOND
-from mutabot_ros.simulation.services import Client, Service
-from mutabot_ros.simulation.topics import Publisher, Subscription
-from mutabot_ros.simulation.waiting import RosClock, Timer, WaitSet
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND
+from mutabot_ros.simulation.middleware.clocks import RosClock, Timer
+from mutabot_ros.simulation.middleware.graph import Destroyable, Node, Waitable
+from mutabot_ros.simulation.middleware.messages import converted
+from mutabot_ros.simulation.middleware.records import MODULE, GoalEvent, RCLError
+from mutabot_ros.simulation.middleware.services import Client, Service
+from mutabot_ros.simulation.middleware.topics import Publisher, Subscription
+from mutabot_ros.simulation.middleware.waiting import WaitSet
 
 ACCEPTED, EXECUTING, CANCELING, SUCCEEDED, CANCELED, ABORTED = range(1, 7)
 _ACTIVE = {ACCEPTED, EXECUTING, CANCELING}
