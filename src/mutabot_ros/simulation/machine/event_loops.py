@@ -11,7 +11,7 @@ from collections.abc import Callable, Coroutine
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation.machine.scheduler import REASONS, SCHEDULER, SECOND, SimulatedThread
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, SimulatedThread, note
 from mutabot_ros.simulation.machine.who_asks import provide, stand_in, varied
 
 _OWN_FILES = 1  # the pipe by which a loop wakes itself
@@ -26,9 +26,7 @@ class _Selector(selectors.SelectSelector):
 
     def select(self, timeout: float | None = None) -> list[Any]:
         if len(self.get_map()) > _OWN_FILES:
-            reason = "an event loop waits for sockets or files, in real time"
-            if reason not in REASONS:
-                REASONS.append(reason)
+            note("an event loop waits for sockets or files, in real time")
             return super().select(timeout)
         if timeout is not None and timeout <= 0:
             SCHEDULER.poll()

@@ -47,12 +47,17 @@ class NeedsRealRos(RuntimeError):  # noqa: N818  (says what to do)
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"needs real ROS: {reason}")
-        if reason not in REASONS:
-            REASONS.append(reason)
+        note(reason)
 
 
 #: why this run cannot be trusted without real ROS, in the order in which it was found
 REASONS: list[str] = []
+
+
+def note(reason: str) -> None:
+    """Say once why this run cannot be trusted without real ROS, and go on."""
+    if reason not in REASONS:
+        REASONS.append(reason)
 
 
 class SimulatedThread:

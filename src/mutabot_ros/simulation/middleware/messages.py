@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from rosidl_parser import definition as idl
 
-from mutabot_ros.simulation.machine.scheduler import NeedsRealRos
+from mutabot_ros.simulation.machine.scheduler import note
 from mutabot_ros.simulation.middleware.records import RCLError
 
 Convert = Callable[[Any], Any]
@@ -101,7 +101,7 @@ def _double(value: Any) -> float:
     if isinstance(value, int):  # C reads the object's number of digits as if it were the value
         size = -(-abs(value).bit_length() // 30) * (-1 if value < 0 else 1)
         return float(struct.unpack("d", struct.pack("q", size))[0])
-    NeedsRealRos(f"a floating-point field holds {type(value).__name__}: what others hear is not defined")
+    note(f"a floating-point field holds {type(value).__name__}: what others hear is not defined")
     return 0.0
 
 
@@ -111,7 +111,7 @@ def _single(value: Any) -> float:
 
 def _octet(value: Any) -> bytes:
     if not isinstance(value, bytes) or not value:
-        NeedsRealRos(f"a field of bytes holds {type(value).__name__}: what others hear is not defined")
+        note(f"a field of bytes holds {type(value).__name__}: what others hear is not defined")
         return b"\x00"
     return value[:1]
 

@@ -16,7 +16,7 @@ from itertools import count
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation.machine.scheduler import REASONS, SCHEDULER, NeedsRealRos
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, NeedsRealRos, note
 from mutabot_ros.simulation.machine.who_asks import provide, stand_in
 from mutabot_ros.simulation.processes.process import MAIN, STARTED, Process
 
@@ -90,8 +90,7 @@ class ChildProcess:
 
 
 def _note_sharing() -> None:
-    if _SHARED not in REASONS:
-        REASONS.append(_SHARED)
+    note(_SHARED)
 
 
 def _imported_anew(function: Callable[..., object]) -> Callable[..., object]:

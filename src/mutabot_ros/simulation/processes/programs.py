@@ -36,6 +36,11 @@ def _is_python(program: str) -> bool:
     return program == sys.executable or os.path.basename(program).startswith("python")
 
 
+def _is_installed_node(program: str) -> bool:
+    prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+    return any(os.path.realpath(program).startswith(os.path.join(prefix, "lib", "")) for prefix in prefixes)
+
+
 class _Program:
     """A Python program that a command names."""
 
@@ -56,7 +61,7 @@ class _Program:
 
 def _program_of(words: list[str], folder: str) -> _Program | None:
     """The simulated program that a command starts; None if it starts another one."""
-    if os.path.basename(words[0]) in _STARTERS:
+    if os.path.basename(words[0]) in _STARTERS or _is_installed_node(words[0]):
         raise NeedsRealRos(f"`{' '.join(words)[:80]}` starts nodes outside this process")
     if _is_python(words[0]):
         rest = words[1:]

@@ -1,15 +1,16 @@
-"""`os`, `signal` and `atexit` for modules of the project: each simulated process has its own."""
+"""`os`, `signal`, `atexit` and `socket` for modules of the project: each simulated process has its own."""
 
 from __future__ import annotations
 
 import atexit as real_atexit
 import os
 import signal as real_signal
+import socket as real_socket
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-from mutabot_ros.simulation.machine.scheduler import SCHEDULER, NeedsRealRos
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, NeedsRealRos, note
 from mutabot_ros.simulation.machine.who_asks import provide, varied
 from mutabot_ros.simulation.middleware import signals
 from mutabot_ros.simulation.processes.process import MAIN, STARTED, Process, process_of
@@ -98,7 +99,19 @@ def _atexit() -> ModuleType:
     return varied("atexit", register=_at_exit)
 
 
+class Socket(real_socket.socket):
+    """A real socket: what comes through it comes in real time."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        note("the project uses sockets, through which things come in real time")
+        super().__init__(*args, **kwargs)
+
+
+def _socket() -> ModuleType:
+    return varied("socket", socket=Socket)
+
+
 def install() -> None:
     """Provide these modules to those who see the simulation."""
-    for name, build in {"os": _os, "signal": _signal, "atexit": _atexit}.items():
+    for name, build in {"os": _os, "signal": _signal, "atexit": _atexit, "socket": _socket}.items():
         provide(name, build)
