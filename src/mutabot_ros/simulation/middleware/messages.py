@@ -198,9 +198,7 @@ def _array(of: Any, name: str) -> Convert:
     def numbers(value: Any) -> Any:
         copy = np.array(value, dtype=dtype).reshape(-1)
         if copy.size != size:
-            NeedsRealRos(
-                f"the field '{name}' holds {copy.size} numbers, not {size}: what others hear is not defined"
-            )
+            note(f"the field '{name}' holds {copy.size} numbers, not {size}: what others hear is not defined")
             copy = np.resize(np.concatenate([copy, np.zeros(size, dtype)]), size)
         return copy
 
