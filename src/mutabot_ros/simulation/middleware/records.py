@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import builtins
-import enum
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -31,22 +30,37 @@ UnknownROSArgsError = _error("UnknownROSArgsError", RuntimeError)
 UnsupportedEventTypeError = _error("UnsupportedEventTypeError", RCLError)
 
 
-class Constant(enum.Enum):
-    """A member of an enumeration of the real extension: equal to its number, but without an order."""
+class Constant:
+    """A member of an enumeration of the real extension: equal to its number, but without an order.
+
+    No `enum.Enum`: pytest would name tests with it as parameter otherwise than over real ROS.
+    """
+
+    __members__: ClassVar[dict[str, Constant]] = {}
+    name: str
+    value: int
+
+    def __new__(cls, value: int) -> Any:
+        for member in cls.__members__.values():
+            if member.value == int(value):
+                return member
+        raise ValueError(f"{value!r} is not a valid {cls.__name__}")
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Constant):
             return self is other
-        return isinstance(other, int) and bool(self.value == other)
+        return isinstance(other, int) and self.value == other
 
     def __hash__(self) -> int:
         return hash(self.value)
 
     def __int__(self) -> int:
-        return int(self.value)
+        return self.value
 
-    def __index__(self) -> int:
-        return int(self.value)
+    __index__ = __int__
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return getattr, (type(self), self.name)
 
     def __str__(self) -> str:
         return f"{type(self).__name__}.{self.name}"
@@ -55,8 +69,14 @@ class Constant(enum.Enum):
         return f"<{type(self).__name__}.{self.name}: {self.value}>"
 
 
-def _enumeration(name: str, **members: int) -> Any:
-    return Constant(name, members, module=MODULE)  # type: ignore[call-arg]  # the functional form of Enum
+def _enumeration(name: str, base: type[Constant] = Constant, **members: int) -> Any:
+    kind: Any = type(name, (base,), {"__module__": MODULE, "__members__": {}})
+    for key, value in members.items():
+        member = object.__new__(kind)
+        member.name, member.value = key, value
+        kind.__members__[key] = member
+        setattr(kind, key, member)
+    return kind
 
 
 ClockChange = _enumeration(
@@ -95,18 +115,14 @@ service_introspection = SimpleNamespace(
 )
 
 
-class TransitionCallbackReturnType(Constant):
-    """What a lifecycle callback returns."""
-
-    SUCCESS = 97
-    FAILURE = 98
-    ERROR = 99
-
+class _Return(Constant):
     def to_label(self) -> str:
         return "transition_" + self.name.lower()
 
 
-TransitionCallbackReturnType.__module__ = MODULE
+TransitionCallbackReturnType = _enumeration(
+    "TransitionCallbackReturnType", _Return, SUCCESS=97, FAILURE=98, ERROR=99
+)
 
 
 class Record:

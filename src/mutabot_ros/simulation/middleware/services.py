@@ -21,7 +21,8 @@ from mutabot_ros.simulation.middleware.records import (
 from mutabot_ros.simulation.middleware.topics import Publisher
 from mutabot_ros.simulation.middleware.type_descriptions import answer_about
 
-_OFF, _CONTENTS = (service_introspection.ServiceIntrospectionState[name] for name in ("OFF", "CONTENTS"))
+_OFF = service_introspection.ServiceIntrospectionState.OFF
+_CONTENTS = service_introspection.ServiceIntrospectionState.CONTENTS
 REQUEST_SENT, REQUEST_RECEIVED, RESPONSE_SENT, RESPONSE_RECEIVED = range(4)
 
 
