@@ -8,7 +8,9 @@ was found.
 
 from __future__ import annotations
 
-__all__ = ["is_running", "reasons", "start"]
+from collections.abc import Callable
+
+__all__ = ["end_of_process", "is_running", "reasons", "start"]
 
 _is_running = False
 
@@ -50,3 +52,12 @@ def reasons() -> list[str]:
     from mutabot_ros.simulation.machine.scheduler import REASONS  # noqa: PLC0415
 
     return list(REASONS)
+
+
+def end_of_process() -> Callable[[bool], object] | None:
+    """What ends the simulated process whose thread runs, and begins it anew if told so; None in any other."""
+    if not _is_running:
+        return None
+    from mutabot_ros.simulation.processes import process  # noqa: PLC0415
+
+    return process.end_of_current()

@@ -11,7 +11,8 @@ import os
 import signal
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import count
 from typing import Any
 
@@ -28,6 +29,8 @@ _GLOBALS: list[tuple[str, str, Any]] = [
 ]
 #: after which time others notice that a killed process is gone (ns), as with Fast DDS
 _LEASE = 20 * SECOND
+#: says to a process that it was begun anew, as Mutabot says it to processes of the operating system
+RESTARTED = "MUTABOT_RESTARTED"
 _pids = count(1_000_001)
 
 
@@ -50,6 +53,7 @@ class Process:
         self.main_thread: Any = None
         self.returncode: int | None = None
         self.parent: Process | None = None
+        self._run: Callable[[], object] | None = None
         self._waiting: list[SimulatedThread] = []
         self._number_of_modules = 0
         self._outer_streams: dict[str, Any] = {}
@@ -96,7 +100,8 @@ class Process:
 
     def start(self, run: Callable[[], object]) -> None:
         """Let its main thread run, as soon as the schedule chooses it."""
-        self.parent = SCHEDULER.current.process
+        self.parent = self.parent or SCHEDULER.current.process
+        self._run = run
         self.main_task = SCHEDULER.spawn(lambda: self._live(run), self)
 
     def _live(self, run: Callable[[], object]) -> None:
@@ -134,16 +139,39 @@ class Process:
         for context in self.contexts:
             context.close()
         self._end(status)
-        self._remove_from_graph()
+        _remove_from_graph(self.contexts)
 
     def kill(self, signum: int) -> None:
         """End at once, without a word: others see that its nodes are gone when their lease is over."""
+        self._leave_graph_later()
         self._end(-signum)
+
+    def _leave_graph_later(self) -> None:
+        contexts = tuple(self.contexts)
         for end in WORLD.ends:
-            if end.node.context in self.contexts and end.role == "publisher":
+            if end.node.context in contexts and end.role == "publisher":
                 lease = min(getattr(end.profile, "lease", _LEASE), _LEASE)
                 SCHEDULER.call_at(SCHEDULER.now + lease, end.lose_liveliness)  # type: ignore[attr-defined]
-        SCHEDULER.call_at(SCHEDULER.now + _LEASE, self._remove_from_graph)
+        SCHEDULER.call_at(SCHEDULER.now + _LEASE, partial(_remove_from_graph, contexts))
+
+    def end_in_midst(self, anew: bool) -> None:
+        """Be killed by a thread of its own, and begin anew if told so: with its number and no memory."""
+        if not anew or self._run is None:
+            self.kill(signal.SIGKILL)
+        else:
+            self._leave_graph_later()
+            signals.forget(self)
+            SCHEDULER.drop_process(self)
+            self.contexts, self.at_exit, self.handlers = [], [], {}
+            os.environ[RESTARTED] = str(os.getpid())
+            for name in [name for name, module in list(sys.modules.items()) if _is_own(name, module)]:
+                del sys.modules[name]
+            self.globals = {(module, name): first for module, name, first in _GLOBALS}
+            for (module, name), value in self.globals.items():
+                if module in sys.modules:
+                    setattr(sys.modules[module], name, value)
+            self.start(self._run)
+        SCHEDULER.end_thread()
 
     def _end(self, status: int) -> None:
         self.returncode = status
@@ -156,13 +184,6 @@ class Process:
         if self.parent is not None:
             self.parent.tell(signal.SIGCHLD)
         SCHEDULER.drop_process(self)
-
-    def _remove_from_graph(self) -> None:
-        handles: list[Any] = [*WORLD.ends, *WORLD.nodes]
-        for handle in handles:
-            if getattr(handle, "node", handle).context in self.contexts and not handle.is_destroyed:
-                handle.is_destroyed = True
-                handle._release()
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait until it has ended; false if it has not in so many seconds."""
@@ -261,6 +282,20 @@ class Pipe(io.RawIOBase):
 
     def readlines(self, hint: int = -1) -> Any:
         return list(self)
+
+
+def _remove_from_graph(contexts: Sequence[Participant]) -> None:
+    handles: list[Any] = [*WORLD.ends, *WORLD.nodes]
+    for handle in handles:
+        if getattr(handle, "node", handle).context in contexts and not handle.is_destroyed:
+            handle.is_destroyed = True
+            handle._release()
+
+
+def end_of_current() -> Callable[[bool], object] | None:
+    """What ends the process whose thread runs; None for that of the tests."""
+    process = SCHEDULER.current.process
+    return None if process is None or process is MAIN else process.end_in_midst
 
 
 def _is_own(name: str, module: Any) -> bool:

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from campaign.project import run
+from mutabot.model import Verdict
 from packages.ros.test_ros2_example import EXPECTED
 
 pytestmark = pytest.mark.skipif(
@@ -104,6 +105,20 @@ def test_mutants_end_over_the_simulation_as_over_real_ros(tmp_path: Path) -> Non
         assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED, found
         assert {outcome.engine for outcome in found.values()} == {engine}
         shutil.rmtree(folder / ".mutabot")
+
+
+@pytest.mark.usefixtures("plugins")
+def test_nodes_in_processes_of_their_own_are_killed_and_begin_anew(tmp_path: Path) -> None:
+    folder = example_over_the_simulation(tmp_path)
+    expected = {
+        "mission.py:run:arm.home#1:call:kill-node": Verdict.KILLED,
+        # at home it begins with what it has done already
+        "mission.py:run:arm.home#1:call:restart-node": Verdict.SURVIVED,
+        # the box is in the gripper, and the second start opens it
+        "mission.py:run:arm.home#2:call:restart-node": Verdict.KILLED,
+    }
+    found = run(folder, rounds=1, baseline=1, families=("middleware",), only=tuple(expected), engine="branch")
+    assert {mutant: outcome.verdict for mutant, outcome in found.items()} == expected, found
 
 
 def test_runs_are_equal_whatever_the_hash_seed() -> None:
