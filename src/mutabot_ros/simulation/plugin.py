@@ -1,7 +1,8 @@
 """A pytest plug-in that runs a suite over simulated ROS: `python -m pytest -p mutabot_ros.simulation.plugin`.
 
-`--ros-schedule random --ros-seed 7` draws the order of ready callbacks; the same seed gives the same order.
-In the environment, `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` say the same.
+`--ros-schedule random --ros-seed 7` draws the order of ready callbacks. The same seed gives the same order; in
+a campaign, each round has another. `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` in the environment say the
+same.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     Nodes and futures that are freed are told of: if that came at any moment, equal runs would differ.
     """
     SCHEDULER.limit = SCHEDULER.now + LIMIT * SECOND
-    SCHEDULER.schedule.begin(item.nodeid)
+    SCHEDULER.schedule.begin(f"{_seed_of_round(item)} {item.nodeid}")
     was_enabled = gc.isenabled()
     gc.collect()
     gc.disable()
@@ -66,6 +67,13 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
         SCHEDULER.limit = None
         if was_enabled:
             gc.enable()
+
+
+def _seed_of_round(item: pytest.Item) -> int:
+    """What a campaign draws from in this round: another order in each."""
+    from mutabot.runtime.pytest_plugin import seed_of  # noqa: PLC0415  # pytest itself imports it first
+
+    return seed_of(item)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -98,13 +98,12 @@ def test_the_example_runs_unmodified(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("plugins")
-def test_mutants_end_over_the_simulation_as_over_real_ros(tmp_path: Path) -> None:
+@pytest.mark.parametrize("engine", ["branch", pytest.param("replay", marks=pytest.mark.whole)])
+def test_mutants_end_over_the_simulation_as_over_real_ros(tmp_path: Path, engine: str) -> None:
     folder = example_over_the_simulation(tmp_path)
-    for engine in ("branch", "replay"):
-        found = run(folder, rounds=1, baseline=1, only=tuple(EXPECTED), engine=engine)
-        assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED, found
-        assert {outcome.engine for outcome in found.values()} == {engine}
-        shutil.rmtree(folder / ".mutabot")
+    found = run(folder, rounds=1, baseline=1, only=tuple(EXPECTED), engine=engine)
+    assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED, found
+    assert {outcome.engine for outcome in found.values()} == {engine}
 
 
 @pytest.mark.usefixtures("plugins")
