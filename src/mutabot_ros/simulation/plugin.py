@@ -1,8 +1,7 @@
 """A pytest plug-in that runs a suite over simulated ROS: `python -m pytest -p mutabot_ros.simulation.plugin`.
 
-`--ros-schedule random --ros-seed 7` draws the order of ready callbacks. The same seed gives the same order; in
-a campaign, each round has another. `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` in the environment say the
-same.
+`--ros-schedule random --ros-seed 7` draws the order of ready callbacks. The same seed gives the same order;
+in a campaign, each round has another. The variables `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` say the same.
 """
 
 from __future__ import annotations
