@@ -1,7 +1,8 @@
 """A pytest plug-in that runs a suite over simulated ROS: `python -m pytest -p mutabot_ros.simulation.plugin`.
 
-`--ros-schedule random --ros-seed 7` draws the order of ready callbacks. The same seed gives the same order;
-in a campaign, each round has another. The variables `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` say the same.
+`--ros-schedule random --ros-seed 7` draws the order of ready callbacks. The same seed gives the same order,
+and each round of a campaign has another. `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` in the environment do the
+same.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Iterator
 import pytest
 
 from mutabot_ros import simulation
-from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, NeedsRealRos
 
 #: simulated seconds after which a test counts as stuck
 LIMIT = 3600
@@ -40,7 +41,10 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
     """Start before the project's first module is imported."""
     options = early_config.known_args_namespace
     roots = [str(early_config.rootpath), str(early_config.invocation_params.dir)]
-    simulation.start(roots, options.ros_schedule, options.ros_seed)
+    try:
+        simulation.start(roots, options.ros_schedule, options.ros_seed)
+    except NeedsRealRos as error:
+        raise pytest.UsageError(str(error)) from None
 
 
 def pytest_collection_finish() -> None:

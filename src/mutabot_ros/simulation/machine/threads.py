@@ -68,7 +68,9 @@ class Lock:
         return True
 
     def __exit__(self, *_: object) -> None:
-        self.release()
+        if self._waiting or not self._is_held:
+            self.release()
+        self._is_held = False
 
     def _at_fork_reinit(self) -> None:
         self._is_held = False

@@ -49,15 +49,15 @@ class WaitSet(Destroyable):
 
     def clear_entities(self) -> None:
         self._members = {kind: [] for kind in KINDS}
-        self._ready = {kind: [False] * size for kind, size in self._sizes.items()}
+        self._ready = {}
 
     def _add(self, kind: str, member: Any) -> int:
         members = self._members[kind]
-        if len(members) >= self._sizes[kind]:
+        index = len(members)
+        if index >= self._sizes[kind]:
             raise RCLError(f"failed to add {kind} to wait set: {kind}s set is full")
         members.append(member)
-        self._ready[kind][len(members) - 1] = True
-        return len(members) - 1
+        return index
 
     def add_subscription(self, member: Any) -> int:
         return self._add("subscription", member)
@@ -86,9 +86,16 @@ class WaitSet(Destroyable):
             SCHEDULER.poll()
         elif not any(member.is_ready for member in members):
             self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
-        else:
-            SCHEDULER.may_switch()
-        self._note_ready(members)
+        elif SCHEDULER.is_preemptive:
+            SCHEDULER.pause()
+        self._ready = {kind: [member.is_ready for member in self._members[kind]] for kind in KINDS}
+        if SCHEDULER.is_preemptive:
+            self._keep_some()
+        for guard, is_ready in zip(
+            self._members["guard_condition"], self._ready["guard_condition"], strict=True
+        ):
+            if is_ready:
+                guard.reset()
 
     def _park(self, members: list[Any], end: int | None) -> None:
         task = SCHEDULER.current
@@ -103,32 +110,34 @@ class WaitSet(Destroyable):
             for member in members:
                 member.watchers.remove(task)
 
-    def _note_ready(self, members: list[Any]) -> None:
-        ready = [member for member in members if member.is_ready]
-        if len(ready) > 1:
-            kept = SCHEDULER.schedule.keeps(len(ready))
-            ready = [member for member, is_kept in zip(ready, kept, strict=True) if is_kept]
-        chosen = {member.number for member in ready}
-        for kind in KINDS:
-            flags = [member.number in chosen for member in self._members[kind]]
-            self._ready[kind] = flags + [False] * (self._sizes[kind] - len(flags))
-        for guard in self._members["guard_condition"]:
-            if guard.number in chosen:
-                guard.reset()
+    def _keep_some(self) -> None:
+        """Report some of what is ready only, as the schedule says; the rest is ready at the next wait."""
+        places = [
+            (kind, index) for kind in KINDS for index, is_ready in enumerate(self._ready[kind]) if is_ready
+        ]
+        if len(places) > 1:
+            for (kind, index), is_kept in zip(places, SCHEDULER.schedule.keeps(len(places)), strict=True):
+                self._ready[kind][index] = is_kept
 
     def is_ready(self, kind: str, index: int) -> bool:
+        """Whether a member was ready after the wait; before one, whether there is a member."""
+        size = self._sizes.get(kind)
+        if size is None:
+            raise RuntimeError(f"'{kind}' is not a known entity")
+        if index >= size:
+            raise IndexError("wait set index too big")
         flags = self._ready.get(kind)
         if flags is None:
-            raise RuntimeError(f"'{kind}' is not a known entity")
-        if index >= len(flags):
-            raise IndexError("wait set index too big")
-        return flags[index]
+            return index < len(self._members[kind])
+        return index < len(flags) and flags[index]
 
     def get_ready_entities(self, kind: str) -> list[int]:
         if kind not in KINDS or kind == "event":
             raise RuntimeError(f"'{kind}' is not a known entity")
-        pairs = zip(self._members[kind], self._ready[kind], strict=False)
-        return [member.number for member, is_ready in pairs if is_ready]
+        flags = self._ready.get(kind, ())
+        return [
+            member.number for member, is_ready in zip(self._members[kind], flags, strict=False) if is_ready
+        ]
 
 
 for _kind in (GuardCondition, WaitSet):

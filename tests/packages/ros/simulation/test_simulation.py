@@ -73,6 +73,28 @@ for kind in set(names) - {"EventsExecutor"}:
     assert done.stdout == "[]\n", done.stdout + done.stderr
 
 
+def test_a_release_of_rclpy_that_uses_other_names_needs_real_ros() -> None:
+    code = """
+from mutabot_ros.simulation.middleware import extension
+build = extension.build
+def older():
+    module = build()
+    del module.WaitSet, module.rclpy_serialize
+    return module
+extension.build = older
+extension.install()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    said = "needs real ROS: this release of rclpy uses what is not simulated: WaitSet, rclpy_serialize"
+    assert said in done.stderr
+
+
+def test_rclpy_must_not_be_there_already(tmp_path: Path) -> None:
+    (tmp_path / "early.py").write_text("import rclpy")
+    done = simulated(tmp_path, "-p", "early", PYTHONPATH=os.pathsep.join([str(tmp_path), *sys.path]))
+    assert "ERROR: needs real ROS: rclpy was imported before the simulation was set up" in done.stderr
+
+
 def example_over_the_simulation(folder: Path) -> Path:
     """A copy of the example whose suite runs over the simulation."""
     copy = folder / "ros2"
