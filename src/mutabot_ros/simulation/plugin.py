@@ -1,8 +1,8 @@
 """A pytest plug-in that runs a suite over simulated ROS: `python -m pytest -p mutabot_ros.simulation.plugin`.
 
 `--ros-schedule random --ros-seed 7` draws the order of ready callbacks. The same seed gives the same order,
-and each round of a campaign has another. `MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` in the environment do the
-same.
+and each round of a campaign has another.
+`MUTABOT_ROS_SCHEDULE` and `MUTABOT_ROS_SEED` in the environment do the same.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ second copies of the library's own source above them, so they behave as they do 
 from __future__ import annotations
 
 import datetime as real_datetime
+import importlib
 import sys
 import threading as real_threading
 import time as real_time
@@ -132,6 +133,13 @@ def _concurrent() -> ModuleType:
     return varied("concurrent", futures=stand_in("concurrent.futures"))
 
 
+def _importlib() -> ModuleType:
+    def import_module(name: str, package: str | None = None) -> ModuleType:
+        return stand_in(name) if who_asks.is_provided(name) else importlib.import_module(name, package)
+
+    return varied("importlib", import_module=import_module)
+
+
 def _uuid() -> ModuleType:
     """Identities drawn from a seed, so that two runs have the same."""
     random = Random(0)
@@ -158,6 +166,7 @@ def install() -> None:
         "concurrent.futures._base": lambda: stand_in("concurrent.futures")._base,
         "concurrent.futures.thread": lambda: stand_in("concurrent.futures").thread,
         "datetime": _datetime,
+        "importlib": _importlib,
         "uuid": _uuid,
     }.items():
         provide(name, build)

@@ -10,6 +10,7 @@ import builtins
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import ModuleType
 from typing import Any
 
@@ -32,6 +33,11 @@ def provide(name: str, build: Callable[[], ModuleType]) -> None:
     """Put a simulated module in the place of the module of this name."""
     _builders[name] = build
     _tops.add(name.partition(".")[0])
+
+
+def is_provided(name: str) -> bool:
+    """Whether a module of this name has a simulated one."""
+    return name in _builders
 
 
 def stand_in(name: str) -> ModuleType:
@@ -130,4 +136,5 @@ def varied(name: str, **changes: object) -> ModuleType:
     module.__dict__.update(real.__dict__)
     module.__dict__.update(changes)
     module.__dict__[MARK] = True
+    module.__dict__.setdefault("__getattr__", partial(getattr, real))  # parts that are imported later
     return module

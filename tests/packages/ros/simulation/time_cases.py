@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import datetime
+import importlib
+import importlib.util
 import queue
 import subprocess
 import threading
@@ -200,6 +202,12 @@ def test_rates_and_synchronous_calls_work_in_threads() -> None:
         executor.shutdown()
         thread.join(timeout=1.0)
         assert not thread.is_alive()
+
+
+def test_modules_that_are_imported_by_name_are_the_simulated_ones() -> None:
+    assert importlib.import_module("time") is time
+    assert importlib.import_module("concurrent.futures").ThreadPoolExecutor is ThreadPoolExecutor
+    assert importlib.util.find_spec("time") is not None
 
 
 def test_others_see_real_time_and_real_processes() -> None:
