@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread as real_thread
+import sys
 import threading as real_threading
 from collections import deque
 from collections.abc import Callable
@@ -12,10 +13,19 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, SimulatedThread
+from mutabot_ros.simulation.machine.who_asks import is_of_project
 
 #: whose `threading` is known to stand on the names of `_thread` below
 PYTHONS = {(3, 11), (3, 12), (3, 13)}
 _TIMEOUT_MAX = 9_000_000_000.0
+
+
+def _is_asked_by_project() -> bool:
+    """Whether the project itself takes a lock: switching within rclpy would find races of rclpy alone."""
+    frame = sys._getframe(2)
+    if frame.f_code is Lock.__enter__.__code__ and frame.f_back is not None:
+        frame = frame.f_back
+    return is_of_project(str(frame.f_globals.get("__file__", "")))
 
 
 class Lock:
@@ -30,7 +40,7 @@ class Lock:
             raise ValueError("can't specify a timeout for a non-blocking call")
         if timeout < 0 and timeout != -1:
             raise ValueError("timeout value must be a non-negative number")
-        if SCHEDULER.is_preemptive:
+        if SCHEDULER.is_preemptive and _is_asked_by_project():
             SCHEDULER.may_switch()
         if self._is_held and not (blocking and self._wait(timeout)):
             return False
