@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import pytest
 
 from mutabot_ros import simulation
-from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, NeedsRealRos
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, NeedsRealRos, note
 
 #: simulated seconds after which a test counts as stuck
 LIMIT = 3600
@@ -47,8 +47,10 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
         raise pytest.UsageError(str(error)) from None
 
 
-def pytest_collection_finish() -> None:
+def pytest_collection_finish(session: pytest.Session) -> None:
     """Let the collector of garbage pass over what is there before the first test."""
+    if any(item.get_closest_marker(name) for item in session.items for name in ("asyncio", "anyio")):
+        note("tests that are coroutines run in an event loop of a plug-in's, in real time")
     gc.collect()
     gc.freeze()
 
