@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gc
 import os
+import tempfile
 from collections.abc import Iterator
 
 import pytest
@@ -40,7 +41,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
     """Start before the project's first module is imported."""
     options = early_config.known_args_namespace
-    roots = [str(early_config.rootpath), str(early_config.invocation_params.dir)]
+    # programs that tests write for themselves are the project's, too
+    roots = [str(early_config.rootpath), str(early_config.invocation_params.dir), tempfile.gettempdir()]
     try:
         simulation.start(roots, options.ros_schedule, options.ros_seed)
     except NeedsRealRos as error:

@@ -76,7 +76,7 @@ class SimulatedThread:
         self.reason = ""
         self.sentinel: Any = None  # the lock that `Thread.join` waits for
         self.polls = 0  # looks without a wait, since something last happened
-        self.seen_events = 0
+        self.seen_events = self.own_events = 0
 
     def __repr__(self) -> str:
         return f"<thread {self.number} of {self.process}>"
@@ -225,8 +225,9 @@ class Scheduler:
         """Count a look that does not wait; when looks are all that happens, they take time."""
         self.now += READING
         task = self.current
-        if task.seen_events != self._events:
-            task.seen_events, task.polls = self._events, 0
+        by_others = self._events - task.own_events
+        if task.seen_events != by_others:
+            task.seen_events, task.polls = by_others, 0
         task.polls += 1
         if task.polls > PATIENCE:
             polls = task.polls
@@ -239,8 +240,9 @@ class Scheduler:
             self.pause()
 
     def progress(self) -> None:
-        """Say that something has happened, so another look is worth while."""
+        """Say that something has happened, so another look is worth while for all others."""
         self._events += 1
+        self.current.own_events += 1
 
     # --- alarms ---
 

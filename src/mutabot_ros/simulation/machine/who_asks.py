@@ -61,9 +61,17 @@ def is_of_project(file: str) -> bool:
     answer = _answers.get(file)
     if answer is None:
         path = os.path.realpath(file)
-        answer = any(path.startswith(root) for root in _roots) and "site-packages" not in path
+        is_library = "site-packages" in path and not path.startswith(_overlays())
+        answer = not is_library and any(path.startswith(root) for root in _roots)
         _answers[file] = answer
     return answer
+
+
+def _overlays() -> tuple[str, ...]:
+    """Where workspaces of ROS below a root install the project's own packages."""
+    prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+    folders = [os.path.join(os.path.realpath(prefix), "") for prefix in prefixes]
+    return tuple(folder for folder in folders if folder.startswith(tuple(_roots)))
 
 
 def sees_simulation(module: Mapping[str, Any]) -> bool:
@@ -71,8 +79,11 @@ def sees_simulation(module: Mapping[str, Any]) -> bool:
     if MARK in module:
         return bool(module[MARK])
     name, file = module.get("__name__"), module.get("__file__")
-    if isinstance(name, str) and (name.partition(".")[0] in ROS_PACKAGES or name.startswith(OUR_HOOKS)):
-        return True
+    if isinstance(name, str):
+        if name.startswith("mutabot"):  # which may be checked out below a root
+            return name.startswith(OUR_HOOKS)
+        if name.partition(".")[0] in ROS_PACKAGES:
+            return True
     return isinstance(file, str) and is_of_project(file)
 
 
