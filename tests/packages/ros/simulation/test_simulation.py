@@ -21,7 +21,8 @@ pytestmark = pytest.mark.skipif(
 )
 
 HERE = Path(__file__).parent
-EXAMPLE = Path(__file__).parents[4] / "examples" / "ros2"
+ROOT = Path(__file__).parents[4]
+EXAMPLE = ROOT / "examples" / "ros2"
 
 
 def simulated(folder: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -52,6 +53,13 @@ def simulated(folder: Path, *arguments: str, **environment: str) -> subprocess.C
 )
 def test_every_case_holds(cases: str) -> None:
     done = simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", cases)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_what_nodes_do_is_seen_and_mutated_as_over_real_ros() -> None:
+    done = simulated(
+        ROOT, "-W", "default", "tests/packages/ros/ros2_cases.py", PYTEST_DISABLE_PLUGIN_AUTOLOAD="1"
+    )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
