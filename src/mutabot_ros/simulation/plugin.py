@@ -8,6 +8,7 @@ and each round of a campaign has another.
 from __future__ import annotations
 
 import gc
+import getpass
 import os
 import tempfile
 from collections.abc import Iterator
@@ -42,7 +43,8 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
     """Start before the project's first module is imported."""
     options = early_config.known_args_namespace
     # programs that tests write for themselves are the project's, too
-    roots = [str(early_config.rootpath), str(early_config.invocation_params.dir), tempfile.gettempdir()]
+    written = os.path.join(tempfile.gettempdir(), f"pytest-of-{getpass.getuser()}")
+    roots = [str(early_config.rootpath), str(early_config.invocation_params.dir), written]
     try:
         simulation.start(roots, options.ros_schedule, options.ros_seed)
     except NeedsRealRos as error:

@@ -301,6 +301,8 @@ def end_of_current() -> Callable[[bool], object] | None:
 def _is_own(name: str, module: Any) -> bool:
     if name == "__main__":
         return True
+    if name.partition(".")[0].startswith("mutabot"):  # which may be checked out below a root
+        return False
     file = getattr(module, "__file__", None)
     return isinstance(file, str) and is_of_project(file)
 
