@@ -38,13 +38,21 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+def _written_by_tests() -> str:
+    """Where the fixture `tmp_path` has its folders."""
+    try:
+        user = getpass.getuser()
+    except (ImportError, KeyError, OSError):  # a container may know no user; pytest has this word then
+        user = "unknown"
+    return os.path.join(tempfile.gettempdir(), f"pytest-of-{user}")
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
     """Start before the project's first module is imported."""
     options = early_config.known_args_namespace
     # programs that tests write for themselves are the project's, too
-    written = os.path.join(tempfile.gettempdir(), f"pytest-of-{getpass.getuser()}")
-    roots = [str(early_config.rootpath), str(early_config.invocation_params.dir), written]
+    roots = [str(early_config.rootpath), str(early_config.invocation_params.dir), _written_by_tests()]
     try:
         simulation.start(roots, options.ros_schedule, options.ros_seed)
     except NeedsRealRos as error:
