@@ -27,7 +27,7 @@ _import_us_unrewritten()  # before anything else of us is imported
 
 from mutabot.model.call import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
-from mutabot.runtime.seeds import node_id  # noqa: E402
+from mutabot.runtime.seeds import PytestNode, node_id  # noqa: E402
 
 if TYPE_CHECKING:
     from mutabot.runtime.plain_round import PlainRound
@@ -107,11 +107,16 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(_plain_round, "mutabot-round")
 
 
-def _seed(request: pytest.FixtureRequest) -> int:
+def seed_of(node: PytestNode) -> int:
+    """The seed of a test, or of a class, module, package or session, in this round."""
     seeded = _hooks or _plain_round
     if seeded is not None:
-        return seeded.seed_of(node_id(request.node))
+        return seeded.seed_of(node_id(node))
     return int(os.environ.get(SEED_VARIABLE, "0"))
+
+
+def _seed(request: pytest.FixtureRequest) -> int:
+    return seed_of(request.node)
 
 
 @pytest.fixture

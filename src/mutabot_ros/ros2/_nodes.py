@@ -11,6 +11,7 @@ from typing import Any
 
 from mutabot.runtime.processes.member import note_node
 from mutabot.runtime.targets.target import Means, Names, Where
+from mutabot_ros import simulation
 from mutabot_ros._patches import Patches
 
 from . import _clock
@@ -114,5 +115,13 @@ def where(
         lost, cancel: as in ``Means``.
     """
     sleep = _clock.pause(node) if is_async else _clock.sleep(node)
-    means = Means(sleep, _clock.later(node), lost, cancel, _clock.jump, _clock.goes_out(node))
+    means = Means(
+        sleep,
+        _clock.later(node),
+        lost,
+        cancel,
+        _clock.jump,
+        _clock.goes_out(node),
+        end=simulation.end_of_process(),
+    )
     return Where(code, name_of(node), means)

@@ -35,7 +35,7 @@ def why_not(means: Means | None, mishap: Mishap) -> str:
     if mishap is Mishap.JUMPED and means.jump is None:
         return "the program's clock cannot be moved"
     if mishap in (Mishap.KILLED, Mishap.RESTARTED):
-        if not _is_node():
+        if means.end is None and not _is_node():
             return "the program runs in the tests' own process"
         if os.environ.get(RESTARTED) == str(os.getpid()):
             return "the process was begun anew already"
@@ -49,7 +49,11 @@ async def before(call: Call, at_end: Callable[[], None]) -> None:
         means.jump(call.mishaps[Mishap.JUMPED])
     if Mishap.KILLED in call.mishaps or Mishap.RESTARTED in call.mishaps:
         at_end()
-        _end(anew=Mishap.RESTARTED in call.mishaps)
+        anew = Mishap.RESTARTED in call.mishaps
+        if means.end is not None:
+            means.end(anew)
+        else:
+            _end(anew=anew)
     if Mishap.LATE in call.mishaps and _is_answered(call):
         await means.sleep(call.mishaps[Mishap.LATE])
 

@@ -80,6 +80,8 @@ class Means:
         cancel: cancels what the call has begun, given what it returned; None for what cannot be cancelled.
         jump: lets the program's clock jump by so many seconds; None where it cannot.
         once: whether the program waits for one message: what comes after it comes to nobody.
+        end: ends the node's process, and begins it anew if told so, where that is no process of the operating
+            system; None where it is one.
     """
 
     sleep: Callable[[float], Awaitable[None]] = _sleep
@@ -89,6 +91,7 @@ class Means:
     jump: Callable[[float], None] | None = None
     goes_out: Callable[[float, Callable[[], object]], None] = _later
     once: bool = False
+    end: Callable[[bool], object] | None = None
 
 
 @frozen

@@ -1,0 +1,1 @@
+"""Threads and time of the simulation, and who sees them."""

@@ -1,0 +1,1 @@
+"""ROS's middleware in Python: what stands in the place of rclpy's C extension."""

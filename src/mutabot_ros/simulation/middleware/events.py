@@ -1,0 +1,64 @@
+"""Events of publishers and subscriptions: what has happened since one was last taken."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mutabot_ros.simulation.middleware import records
+from mutabot_ros.simulation.middleware.graph import Waitable
+from mutabot_ros.simulation.middleware.records import MODULE
+
+
+class Status:
+    """What has happened since an event was last taken; counted whether or not anybody asks."""
+
+    def __init__(self, record: Any) -> None:
+        self.values = record()
+        if hasattr(self.values, "last_policy_kind"):
+            self.values.last_policy_kind = records.rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
+        self.has_changed = False
+        self.handles: list[EventHandle] = []
+
+    def count(self, **changes: Any) -> None:
+        """Add to the counts; each `name` that counts has a `name_change` beside it."""
+        for name, change in changes.items():
+            if name == "last_policy_kind":
+                self.values.last_policy_kind = change
+                continue
+            setattr(self.values, name, getattr(self.values, name) + change)
+            setattr(self.values, f"{name}_change", getattr(self.values, f"{name}_change") + change)
+        self.has_changed = True
+        for handle in self.handles:
+            handle.changed()
+
+    def take(self) -> Any:
+        taken = type(self.values)(*(getattr(self.values, field) for field in self.values.fields))
+        for field in self.values.fields:
+            if field.endswith("_change"):
+                setattr(self.values, field, 0)
+        self.has_changed = False
+        return taken
+
+
+class EventHandle(Waitable):
+    """Tells of one kind of event of a publisher or a subscription."""
+
+    def __init__(self, end: Any, event: Any) -> None:
+        super().__init__()
+        if event not in end.statuses:
+            raise TypeError(f"__init__(): incompatible constructor arguments: no {event!r} of a {end.role}")
+        self._status = end.statuses[event]
+        self._status.handles.append(self)
+
+    def _release(self) -> None:
+        self._status.handles.remove(self)
+
+    @property
+    def is_ready(self) -> bool:
+        return bool(self._status.has_changed)
+
+    def take_event(self) -> Any:
+        return self._status.take()
+
+
+EventHandle.__module__ = MODULE

@@ -1,0 +1,1 @@
+"""Programs and processes that the project starts, in this process."""
