@@ -21,7 +21,7 @@ LOCKS  := $(wildcard requirements*.lock)
 CORE    = $(addprefix tests/,model config operators languages results journal campaign/plan plugins \
     test_extensions.py)
 
-of_ros  = $(wildcard tests/packages/ros/test_ros$(1)*.py)
+of_ros  = $(wildcard $(addsuffix /test_ros$(1)*.py,tests/packages/ros tests/packages/ros/*))
 
 .PHONY: demo test whole alone check format docs site pictures comparison bench stress judged shipped foreign audit sbom locks dist clean
 

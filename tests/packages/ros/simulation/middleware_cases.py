@@ -1,4 +1,4 @@
-"""The middleware: run by ``test_simulation.py`` over the simulation.
+"""The middleware: run by ``test_ros2_simulation.py`` over the simulation.
 
 What is expected here is what real ROS does; the differential tests hold both against each other.
 """

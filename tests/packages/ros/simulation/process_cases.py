@@ -1,4 +1,4 @@
-"""Nodes that tests start as processes: run by ``test_simulation.py`` over the simulation."""
+"""Nodes that tests start as processes: run by ``test_ros2_simulation.py`` over the simulation."""
 
 from __future__ import annotations
 

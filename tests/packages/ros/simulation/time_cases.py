@@ -1,4 +1,4 @@
-"""Simulated time and threads: run by ``test_simulation.py`` over the simulation."""
+"""Simulated time and threads: run by ``test_ros2_simulation.py`` over the simulation."""
 
 from __future__ import annotations
 
