@@ -91,9 +91,11 @@ SITE = {
         """,
     "toybus_mutabot/environment.py": """
         import os
+        import tempfile
 
         def prepare(root, home, vocabulary):
-            os.environ["TOYBUS"] = os.path.join(home, "toybus.txt")
+            name = f"toybus-{os.path.basename(home)}.txt"  # forks share the home, but not the temporary files
+            os.environ["TOYBUS"] = os.path.join(tempfile.gettempdir(), name)
             return True
         """,
 }

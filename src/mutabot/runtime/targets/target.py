@@ -351,7 +351,8 @@ class Environment(Protocol):
 
         Args:
             root: the project's folder.
-            home: the worker's folder.
+            home: the worker's folder, which its forks share: what nodes write there meets what those of forks
+                write.
             vocabulary: the robot API; None where it is not known yet: the program's files tell then.
 
         Returns whether it did: a fork of this process, whose nodes would meet ours, needs its own then.
