@@ -34,10 +34,6 @@ SHORT = (
     "a_coroutine_gives_way",
     "nodes_are_renamed",
 )
-#: behaviours that the simulation does not have, with the reason; all others have to be equal
-NOT_SIMULATED = {
-    "messages_are_filtered_by_content": "the middleware evaluates the filter: such a project needs real ROS",
-}
 _EXPECTED = """
 import json
 from tests.packages.ros.differential.worker import behaviours
@@ -89,5 +85,4 @@ def test_all_behaviours_over_dds_are_as_they_were_recorded() -> None:
     any(find_spec(name) is None for name in ("greenlet", "mutabot_ros.simulation")), reason="no simulation"
 )
 def test_all_behaviours_over_the_simulation_are_as_over_dds() -> None:
-    simulated = [name for name in read(KEPT) if name not in NOT_SIMULATED]
-    assert differences(list(run(simulated, "simulation", jobs=2))) == []
+    assert differences(list(run(over="simulation"))) == []

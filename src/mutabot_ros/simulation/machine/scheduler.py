@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from greenlet import greenlet
 
+from mutabot.errors import MutabotError
 from mutabot_ros.simulation.machine.schedules import FirstIn, Schedule
 
 if TYPE_CHECKING:
@@ -42,8 +43,11 @@ class Deadlock(BaseException):
     """
 
 
-class NeedsRealRos(RuntimeError):  # noqa: N818  (says what to do)
-    """The simulation cannot do what was asked for; the message gives the reason."""
+class NeedsRealRos(MutabotError, RuntimeError):  # noqa: N818  (says what to do)
+    """The simulation cannot do what was asked for; the message gives the reason.
+
+    A failure of the tool: a mutant that meets it ends as an error, and is no kill.
+    """
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"needs real ROS: {reason}")

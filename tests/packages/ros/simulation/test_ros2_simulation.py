@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from campaign.project import run
+from campaign.project import run, write_project
 from mutabot.model import Verdict
 from packages.ros.test_ros2_example import EXPECTED
 
@@ -148,6 +148,38 @@ def test_nodes_in_processes_of_their_own_are_killed_and_begin_anew(tmp_path: Pat
     }
     found = run(folder, rounds=1, baseline=1, families=("middleware",), only=tuple(expected), engine="branch")
     assert {mutant: outcome.verdict for mutant, outcome in found.items()} == expected, found
+
+
+@pytest.mark.usefixtures("plugins")
+@pytest.mark.parametrize("caught", ["RuntimeError", "()"])
+def test_a_mutant_that_meets_what_is_not_simulated_is_an_error_and_no_kill(
+    tmp_path: Path, caught: str
+) -> None:
+    mission = f"""
+        import multiprocessing
+
+        def run(arm):
+            arm.move_by(0.25)
+            if arm.x < 0:
+                try:
+                    multiprocessing.Pool(1)
+                except {caught}:
+                    pass
+    """
+    tests = """
+        import mission
+        from robot import Arm
+
+        def test_run():
+            mission.run(Arm())
+    """
+    plugin = 'pytest_args = ["-o", "pythonpath=.", "-p", "mutabot_ros.simulation.plugin"]'
+    settings = f'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n{plugin}\n'
+    folder = write_project(tmp_path, mission, tests, configuration=settings)
+    for engine in ("branch", "replay"):
+        (found,) = run(folder, rounds=1, fresh=True, only=("*:reverse",), engine=engine).values()
+        assert found.verdict is Verdict.ERROR
+        assert "needs real ROS: multiprocessing.Pool is not simulated" in (found.message or "")
 
 
 def test_runs_are_equal_whatever_the_hash_seed() -> None:
