@@ -230,16 +230,13 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     The place is that of another mutant of the same call. Without one, and in text commands, it is not known.
     One call of the program may set up a publisher and publish: its description says which of them is meant.
     """
-    places: dict[str, list[dict[str, Any]]] = {}
-    for one in data["mutants"]:
-        places.setdefault(one["id"].rpartition(":")[0].rpartition(":")[0], []).append(one)
+    places = {one["id"].rpartition(":")[0].rpartition(":")[0]: one for one in data["mutants"]}
     for item in data["left_out"]:
         subject, _, operator = item["id"].rpartition(":")
         if operator.partition("=")[0] in GRADED_OPERATORS:
             continue  # its magnitude is not told
         site, _, quantity = subject.rpartition(":")
-        others = places.get(site, [])
-        other = next((one for one in reversed(others) if not is_named(one) or _is_about(item, one)), None)
+        other = places.get(site)
         if (
             other
             and other["operation"]
@@ -252,6 +249,8 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
                 "variant": variant,
                 "quantity": None if quantity == "call" else quantity,
             }
+            if is_named(other):
+                changed["operation"] = item["description"].partition(": ")[0]
             yield {
                 **other,
                 "id": item["id"],
@@ -259,12 +258,6 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
                 "rounds": [{"verdict": LEFT_OUT}],
                 **changed,
             }
-
-
-def _is_about(item: Mapping[str, Any], mutant: Mapping[str, Any]) -> bool:
-    """Whether what is left out is about the same name, in the same way, as a mutant."""
-    told = item["description"].partition(": ")[0]
-    return told.partition(" of ")[0] == str(mutant["operation"]).partition(" of ")[0]
 
 
 def verdict(
