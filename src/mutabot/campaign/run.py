@@ -36,6 +36,7 @@ from mutabot.errors import JournalError, NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.execution.task import Executor, Result
+from mutabot.journal.files import at_work
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant, Outcome
@@ -54,12 +55,16 @@ def open_executor(request: Request, progress: Progress) -> AbstractContextManage
 
 @contextmanager
 def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
-    """The same, while Ctrl-C takes effect where it is safe.
+    """The same, while the project is locked and Ctrl-C takes effect where it is safe.
 
     Raises UsageError if the system allows too few open files.
     """
     provide(request.jobs)
-    with interruptions_kept(), open_executor(request, progress) as opened:
+    with (
+        interruptions_kept(),
+        at_work(request.journal_path.parent),
+        open_executor(request, progress) as opened,
+    ):
         yield opened
 
 

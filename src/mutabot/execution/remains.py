@@ -56,7 +56,7 @@ def claim(folder: Path) -> None:
 
 
 def end_abandoned(home: Path) -> int:
-    """End and remove what controllers have left that were killed; returns how many processes there were.
+    """End what is left below workers whose controller was killed; returns how many processes there were.
 
     Args:
         home: the folder in which the folders of workers are made.
@@ -70,7 +70,7 @@ def end_abandoned(home: Path) -> int:
         if _began(int(pid)) == began:
             continue
         ended += end_below(owner.parent)
-        remove_folder(owner.parent)
+        owner.unlink(missing_ok=True)
     return ended
 
 

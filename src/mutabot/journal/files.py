@@ -9,7 +9,10 @@ from __future__ import annotations
 
 import fcntl
 import os
+import shutil
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from mutabot.errors import JournalError
@@ -98,6 +101,31 @@ def is_written(journal: Path) -> bool:
     finally:
         os.close(descriptor)
     return False
+
+
+@contextmanager
+def at_work(home: Path) -> Iterator[None]:
+    """Say that somebody works in mutabot's folder; the first to come removes what killed ones left there.
+
+    Also folders that their controllers had not claimed yet, or had begun to remove.
+    """
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(home, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError as error:
+        raise JournalError(f"cannot write to {home}: {error.strerror}") from error
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            pass
+        else:
+            for left_behind in home.glob("work-*"):
+                shutil.rmtree(left_behind, ignore_errors=True)
+        fcntl.flock(descriptor, fcntl.LOCK_SH)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 #: what SQLite keeps beside a file, and reads
