@@ -99,6 +99,10 @@ def pytest_runtest_call() -> Iterator[None]:
             raise NeedsRealRos(new[0])
 
 
+#: fixtures run the program as well
+pytest_runtest_setup = pytest_runtest_teardown = pytest_runtest_call
+
+
 def _seed_of_round(item: pytest.Item) -> int:
     """What a campaign draws from in this round: another order in each."""
     from mutabot.runtime.pytest_plugin import seed_of  # noqa: PLC0415  # pytest itself imports it first

@@ -151,9 +151,10 @@ def test_nodes_in_processes_of_their_own_are_killed_and_begin_anew(tmp_path: Pat
 
 
 @pytest.mark.usefixtures("plugins")
+@pytest.mark.parametrize("in_fixture", [False, True])
 @pytest.mark.parametrize("caught", ["RuntimeError", "()"])
 def test_a_mutant_that_meets_what_is_not_simulated_is_an_error_and_no_kill(
-    tmp_path: Path, caught: str
+    tmp_path: Path, caught: str, in_fixture: bool
 ) -> None:
     mission = f"""
         import multiprocessing
@@ -168,10 +169,18 @@ def test_a_mutant_that_meets_what_is_not_simulated_is_an_error_and_no_kill(
     """
     tests = """
         import mission
+        import pytest
         from robot import Arm
 
-        def test_run():
-            mission.run(Arm())
+        def test_run(ran):
+            assert ran or not mission.run(Arm())
+    """
+    tests += f"""
+        @pytest.fixture
+        def ran():
+            if {in_fixture}:
+                mission.run(Arm())
+            return {in_fixture}
     """
     plugin = 'pytest_args = ["-o", "pythonpath=.", "-p", "mutabot_ros.simulation.plugin"]'
     settings = f'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n{plugin}\n'
