@@ -24,6 +24,7 @@ import pytest
 
 from mutabot.frozen import frozen
 from mutabot.model.events import Watched
+from mutabot.runtime.isolation.namespaces import left_out
 from mutabot.runtime.seeds import node_id
 
 
@@ -201,7 +202,8 @@ def alarm_held() -> Iterator[None]:
 
 def watched(test: str, seconds: float, by: str) -> Watched:
     """The report that ``by`` ends this process with exit code 1 unless ``test`` ends in time."""
-    return Watched(test, monotonic() + seconds, f"no end after {seconds:g} s of wall clock ({by})")
+    until = monotonic() + left_out() + seconds
+    return Watched(test, until, f"no end after {seconds:g} s of wall clock ({by})")
 
 
 def watched_by_faulthandler(item: pytest.Item) -> Watched | None:

@@ -104,6 +104,7 @@ class PrivateFiles:
                     copy_tree(upper, os.path.join(copied, _UPPER))
         if _libc().unshare(_CLONE_NEWNS) != 0:
             raise _last_error("this system allows no private mounts")
+        _mount("proc", "/proc", None, 0, kind="proc")  # that of its process namespace
         self._own = folder
         self._uncover()
         self._lay()

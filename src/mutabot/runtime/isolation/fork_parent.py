@@ -28,7 +28,8 @@ from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import Isolation, StateBeforeFork
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
-from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent
+from mutabot.runtime.isolation.namespaces import ForkedPids, end_first, fork, leave_out
+from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
 from mutabot.runtime.plugins import alarm_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are
@@ -57,7 +58,7 @@ class Child:
     Attributes:
         mutant: id of its mutant.
         fork: its number among those that were forked here.
-        pid, pidfd: its process.
+        pids, pidfd: its process, and what keeps its namespace.
         test: the number of the test that it was in when its time began.
         limit: the seconds it was given for that test.
         used: how much of them it has used.
@@ -68,7 +69,7 @@ class Child:
 
     mutant: str
     fork: int
-    pid: int
+    pids: ForkedPids
     pidfd: int
     test: int
     limit: float
@@ -82,11 +83,11 @@ class Child:
         """Whether it is to be ended. If the clock has run out, but not its time, it gets what is left."""
         if now < self.until or self.overdue:
             return False
-        left = self.used.left(self.limit, [self.pid])
+        left = self.used.left(self.limit, [self.pids.fork])
         if left > 0:
             self.until = now + max(left, _LEAST)
             return False
-        self.hindered = self.used.hindrance([self.pid])
+        self.hindered = self.used.hindrance([self.pids.fork])
         self.is_starved = now >= self.used.began + MOST * self.limit
         return True
 
@@ -212,7 +213,7 @@ class ForkParent:
             self._places = None
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
-            own = (child.pid for child in self._children.values())
+            own = (pid for child in self._children.values() for pid in child.pids)
             reason = STARTED if self._is_overtaken() else self.isolation.reason() or why_not(own, self._known)
             if reason is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
@@ -226,54 +227,74 @@ class ForkParent:
         return self._overtaken
 
     def _fork_each(self, mutants: Sequence[Mutant]) -> None:
+        began = monotonic()
         for mutant in mutants:
-            pid = self._fork_one(mutant)
-            if pid == 0:
+            try:
+                pids = self._fork_one(mutant, began)
+            except OSError as error:
+                self._tell_unforked(mutant, error)
+                continue
+            if pids is None:
                 return
             limit, used = self._limit(self._number), TimeUsed.from_now()
             child = Child(
-                mutant.id, self.pipe.forks, pid, os.pidfd_open(pid), self._number, limit, used,
+                mutant.id, self.pipe.forks, pids, os.pidfd_open(pids.fork), self._number, limit, used,
                 until=used.began + limit,
             )  # fmt: skip
             self._children[child.pidfd] = child
             self._take_token()
+        with suppress(OSError):  # not while others run: if a test of the original minds, the campaign notices
+            leave_out(monotonic() - began)
 
-    def _fork_one(self, mutant: Mutant) -> int:
-        """Fork; 0 in the child, which is this mutant then."""
+    def _fork_one(self, mutant: Mutant, began: float) -> ForkedPids | None:
+        """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
         slot = self._slots[mutant.id]
         self._finished[slot], self._tests[slot] = 0, self._number
         before = StateBeforeFork()
         self.pipe.forks += 1
         reading, writing = os.pipe()
         self._forking = True
-        pid = os.fork()
-        self._forking = False
-        if pid == 0:
+        try:
+            pids = fork()
+        except OSError:
             os.close(reading)
-            self._begin_child(mutant, before)
             os.close(writing)
-            return pid
+            raise
+        finally:
+            self._forking = False
+        if pids is None:
+            os.close(reading)
+            die_with_parent()
+            if nobody_listens(writing):  # the parent died before the kernel was asked
+                os._exit(ALONE)
+            self._begin_child(mutant, before, began)
+            os.close(writing)
+            return None
         os.close(writing)
         with open(reading, "rb") as ready:  # what it inherits must not change before it has its own
             ready.read()
-        return pid
+        return pids
 
-    def _begin_child(self, mutant: Mutant, before: StateBeforeFork) -> None:
+    def _begin_child(self, mutant: Mutant, before: StateBeforeFork, began: float) -> None:
         """Let go of what is the parent's, and become the mutant."""
-        die_with_parent(self._pid)
+        os.setsid()  # it leads its group and session, as a test process does
         self.pipe.go_on_apart()
         for descriptor in (*self._children, *self.forking.tokens):
             os.close(descriptor)
         try:
             folder = self.isolation.enter(self.pipe.name)
+            leave_out(monotonic() - began)
         except OSError as error:
-            why = f"a fork cannot have files of its own: {error.strerror or error}"
             try:
-                self.pipe.send(Unforked(self._test, (mutant.id,), why))
+                self._tell_unforked(mutant, error)
             finally:
                 os._exit(STOPPED)
         before.restore()
         self.become(mutant, folder)
+
+    def _tell_unforked(self, mutant: Mutant, error: OSError) -> None:
+        why = f"a fork cannot be kept apart: {error.strerror or error}"
+        self.pipe.send(Unforked(self._test, (mutant.id,), why))
 
     def _note_copy(self) -> None:
         """This process is about to be forked, by whomever."""
@@ -351,7 +372,7 @@ class ForkParent:
             self._note_progress(child, now)
             if child.is_out_of_time(now):
                 child.overdue = True
-                os.kill(child.pid, signal.SIGKILL)
+                os.kill(child.pids.fork, signal.SIGKILL)
         for descriptor in ready:
             ended = self._children.pop(descriptor, None)
             if ended is not None:
@@ -363,13 +384,14 @@ class ForkParent:
         """A child whose time seems to be up may have begun another test meanwhile."""
         test = self._tests[self._slots[child.mutant]] if now >= child.until else child.test
         if test != child.test:
-            child.test, child.used = test, TimeUsed.from_now([child.pid])
+            child.test, child.used = test, TimeUsed.from_now([child.pids.fork])
             child.limit = self._limit(test)
             child.until = now + child.limit
 
     def _bury(self, child: Child) -> None:
         """Tell how a child has ended."""
-        _, status = os.waitpid(child.pid, 0)
+        _, status = os.waitpid(child.pids.fork, 0)
+        end_first(child.pids.first)
         os.close(child.pidfd)
         slot, code = self._slots[child.mutant], os.waitstatus_to_exitcode(status)
         # at the end of the session the exit code is the suite's own
