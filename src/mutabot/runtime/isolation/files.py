@@ -451,7 +451,11 @@ def isolate_files(log: tuple[int, int], instead: int | None = None) -> None:
 
 def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) -> None:
     """Let a descriptor lead to the same file, but to an opening of it that is this process's own."""
-    position, flags = os.lseek(descriptor, 0, os.SEEK_CUR), fcntl.fcntl(descriptor, fcntl.F_GETFL)
+    try:
+        position = os.lseek(descriptor, 0, os.SEEK_CUR)
+    except OSError:  # a namespace, which has no positions
+        return
+    flags = fcntl.fcntl(descriptor, fcntl.F_GETFL)
     shared = (status.st_dev, status.st_ino, position, flags)
     if shared not in copies:
         is_deleted = status.st_nlink == 0

@@ -243,8 +243,9 @@ class ForkParent:
             )  # fmt: skip
             self._children[child.pidfd] = child
             self._take_token()
-        with suppress(OSError):  # not while others run: if a test of the original minds, the campaign notices
-            leave_out(monotonic() - began)
+        if not self._children:  # else a test of the original may notice, which the campaign will see
+            with suppress(OSError):
+                leave_out(monotonic() - began)
 
     def _fork_one(self, mutant: Mutant, began: float) -> ForkedPids | None:
         """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""

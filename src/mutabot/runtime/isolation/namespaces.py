@@ -8,6 +8,7 @@ to nothing. Clone flags and ``clone_args``: <linux/sched.h>.
 from __future__ import annotations
 
 import ctypes
+import errno
 import os
 import signal
 from functools import cache
@@ -38,9 +39,11 @@ def left_out() -> float:
 def leave_out(seconds: float) -> None:
     """Set the monotonic clock back, here and in all processes that start from now on.
 
-    Raises OSError if that is not possible, for example while another process shares this one's memory.
+    Raises OSError if that is not possible. To be called while no first process shares this one's memory.
     """
     global _left_out  # noqa: PLW0603  # a process has one clock
+    if len(os.listdir("/proc/self/task")) > 1:  # the kernel would refuse when it is too late
+        raise OSError(errno.EUSERS, "there are other threads")
     _call("unshare", _CLONE_NEWTIME)
     whole, rest = divmod(-round((_left_out + seconds) * 1e9), 10**9)
     with open("/proc/self/timens_offsets", "w", encoding="ascii") as file:
