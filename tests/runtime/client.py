@@ -214,9 +214,7 @@ class ClientStage:
         session.install()
         self.sessions.append(session)
         session.start_test("test")
-        messages = session.interception.of("messages")
-        assert isinstance(messages, Messages)
-        return session, Client(messages)
+        return session, Client(session.messages or Messages(session.inspection.target_is_wrong))
 
     def mutated(
         self,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mutabot.errors import PathError
@@ -12,8 +12,12 @@ from mutabot.model import Call, Operation, Vocabulary
 from mutabot.model.events import Event, Problem, Remark
 from mutabot.model.quantity import Value
 from mutabot.runtime.observation.probes import is_bound, needed_arguments
-from mutabot.runtime.targets.callables import not_imported
-from mutabot.runtime.targets.target import Finding, Interception, NotFoundError, resolve
+from mutabot.runtime.targets.callables import Callables, not_imported
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Finding, NotFoundError, resolve
+
+#: the targets of a process
+Kinds = Sequence[Callables | Messages]
 
 
 class Inspection:
@@ -69,27 +73,29 @@ class Inspection:
         problem = Problem(source, finding.key, finding.text, finding.name, finding.known)
         self._send(Remark(source, finding.key, finding.text) if finding.is_remark else problem)
 
-    def look_ahead(self, interception: Interception) -> None:
+    def look_ahead(self, kinds: Kinds) -> None:
         """The tests are about to begin: say what can be said about the targets that are there already."""
         if self.is_asked:
             for operation in self._vocabulary.operations:
-                self.check_target(operation, interception)
+                self.check_target(operation, kinds)
 
-    def check_target(self, operation: Operation, interception: Interception) -> None:
+    def check_target(self, operation: Operation, kinds: Kinds) -> None:
         """Say what of an operation does not fit its target."""
-        for finding in interception.of(operation.kind).check(operation):
-            self.tell(operation.source, finding)
+        for targets in kinds:
+            for finding in targets.check(operation):
+                self.tell(operation.source, finding)
 
-    def inspect(self, interception: Interception) -> None:
+    def inspect(self, kinds: Kinds) -> None:
         """Find what no test led to, so that every target of the vocabulary is looked at."""
-        for targets in interception.kinds:
+        for targets in kinds:
             for target, finding in targets.seek():
                 self.tell(self._source_of(target), finding)
         for operation in self._vocabulary.operations:
-            self.check_target(operation, interception)
+            self.check_target(operation, kinds)
             self._check_current(operation)
-            for finding in interception.of("messages").unheard(operation):
-                self.tell(operation.source, finding)
+            for targets in kinds:
+                for finding in targets.unheard(operation) if isinstance(targets, Messages) else ():
+                    self.tell(operation.source, finding)
         for tell in self._unfit.values():
             tell()
         self._check_idle()

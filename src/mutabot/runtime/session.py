@@ -16,7 +16,7 @@ from mutabot.model.job import Budget, Job
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import Sink
 from mutabot.runtime.evidence import Evidence, Meter, together
-from mutabot.runtime.inspection import Inspection
+from mutabot.runtime.inspection import Inspection, Kinds
 from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Aside, Dispatcher
@@ -32,7 +32,8 @@ from mutabot.runtime.program_text.session_text import SessionText
 from mutabot.runtime.program_text.standing import Standing, StandIns, last_name
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.target import Finding, Handler, Interception
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Finding, Handler
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -47,7 +48,7 @@ class Session:
         pipe: where reports go.
         locator: finds the site of a frame, and of a function that is called back.
         recorder: traces; always kept, since survivors are compared with the original.
-        interception: what stands around the vocabulary's targets.
+        callables, messages: what stands around the vocabulary's targets; no messages where none is asked for.
         passing: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
         is_fork: whether this process was forked to be its mutant.
@@ -68,7 +69,8 @@ class Session:
     pipe: Sink
     locator: Locator
     recorder: Recorder = field(init=False)
-    interception: Interception = field(init=False)
+    callables: Callables = field(init=False)
+    messages: Messages | None = None
     passing: Dispatcher = field(init=False)
     inspection: Inspection = field(init=False)
     placed: ProcessFaults = field(init=False)
@@ -100,7 +102,7 @@ class Session:
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
         self.placed = ProcessFaults(self._acted)
-        self.interception = Interception(self.inspection.target_is_wrong)
+        self.callables = Callables(self.inspection.target_is_wrong)
         self.passing = Dispatcher(
             self.locator, self.recorder, self.instances, self.along, self._raised, self._on_end
         )
@@ -114,7 +116,11 @@ class Session:
             self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
         for operation in vocabulary.operations:
-            self.interception.wrap(operation, self._handler(operation))
+            handler = self._handler(operation)
+            if operation.kind == "messages":
+                self._heeded().wrap(operation.target, handler)
+            elif operation.kind is None:
+                self.callables.wrap(operation.target, handler)
         self._see_calls()
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.wait is not None:
@@ -122,7 +128,7 @@ class Session:
         if vocabulary.clock is not None:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
-            self.interception.of().wrap(clock.tick, reader.handler())
+            self.callables.wrap(clock.tick, reader.handler())
         self._listen()
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
@@ -132,9 +138,7 @@ class Session:
     def _see_calls(self) -> None:
         """See calls where they are written, of whatever stands in the place of an operation."""
         called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
-        callables = self.interception.of()
-        assert isinstance(callables, Callables)
-        self.standing = Standing(called, callables, self.locator, self._sees_itself)
+        self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
         self._tell_standing()
         names = {last_name(one.operation) for one in called}
         self.handing = Handing(self.standing, self.passing.given)
@@ -145,7 +149,8 @@ class Session:
         """Intercept nothing any more."""
         self.call_sites.remove()
         self.handing.remove()
-        self.interception.remove()
+        for targets in self.targets:
+            targets.remove()
 
     def _tell_standing(self) -> None:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
@@ -166,7 +171,17 @@ class Session:
         if any(refused.topic is not None for refused in told) or any(
             adapter.operation.named is not None for adapter in self._telling
         ):
-            self.interception.of("messages").on_heard = self._heard
+            self._heeded().on_heard = self._heard
+
+    def _heeded(self) -> Messages:
+        """The names on middlewares, which are hooked as soon as anybody asks for one."""
+        self.messages = self.messages or Messages(self.inspection.target_is_wrong)
+        return self.messages
+
+    @property
+    def targets(self) -> Kinds:
+        """All targets of this process."""
+        return [self.callables] if self.messages is None else [self.callables, self.messages]
 
     def _heard(self, name: str, message: Any) -> None:
         for activation in self.activations:
@@ -387,7 +402,7 @@ class Session:
 
     def look_ahead(self) -> None:
         """The tests are about to begin: say what can be said about the targets that are there already."""
-        self.inspection.look_ahead(self.interception)
+        self.inspection.look_ahead(self.targets)
 
     def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
         """All tests are over: wait for forks, tell what was seen, and check the vocabulary if asked to.
@@ -414,7 +429,7 @@ class Session:
 
     def inspect_targets(self) -> None:
         """Look at every target of the vocabulary, also of what no test has led to."""
-        self.inspection.inspect(self.interception)
+        self.inspection.inspect(self.targets)
 
     def _raised(self, error: BaseException, made: SiteCall) -> None:
         names = self._refusals(made.call.operation)

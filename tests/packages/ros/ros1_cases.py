@@ -582,5 +582,5 @@ def test_nothing_of_us_is_left_when_a_session_is_over(make: Making) -> None:
     before = [vars(owner)[name] for owner, name in places]
     session = make("", GOAL).session()
     assert all(vars(owner)[name] is not was for (owner, name), was in zip(places, before, strict=True))
-    session.interception.remove()
+    session.remove()
     assert [vars(owner)[name] for owner, name in places] == before

@@ -658,7 +658,7 @@ def test_what_does_not_fit_a_type_is_told_with_the_nearest_name(make: Making) ->
 def test_hooks_are_taken_away(make: Making) -> None:
     stage = make(PUBLISHING, GOAL)
     stage.run(stage.session())
-    stage.sessions[-1].interception.remove()
+    stage.sessions[-1].remove()
     for kind, name in [
         (rclpy.node.Node, "create_publisher"),
         (rclpy.publisher.Publisher, "publish"),

@@ -21,7 +21,7 @@ import wrapt
 from mutabot.model import Operation
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, signature_of, takes_anything
-from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Targets, Tell, resolve
+from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Tell, resolve
 
 _ONLY_READ = "only its reading is seen; describe the method that its setter calls"
 
@@ -71,8 +71,11 @@ class NotCallableError(TypeError):
     """A target names something that cannot be wrapped."""
 
 
-class Callables(Targets):
+class Callables:
     """Wrappers put in place, and how to take them away again.
+
+    Args:
+        tell: told about a target that turns out wrong when it is found.
 
     Attributes:
         pending: targets whose module has not been imported yet.
@@ -81,7 +84,7 @@ class Callables(Targets):
     """
 
     def __init__(self, tell: Tell) -> None:
-        super().__init__(tell)
+        self._tell = tell
         self.pending: set[str] = set()
         self.found: dict[str, Any] = {}
         self.owners: dict[str, type] = {}
@@ -210,7 +213,3 @@ def _rebind(modules: Iterable[Any], original: Any, wrapper: Any) -> Iterator[Und
             if value is original:
                 setattr(module, name, wrapper)
                 yield functools.partial(setattr, module, name, original)
-
-
-#: what this file is, to ``interception``
-KIND = Callables
