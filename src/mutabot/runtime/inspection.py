@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -11,7 +10,6 @@ from mutabot.errors import PathError
 from mutabot.model import Call, Operation, Vocabulary
 from mutabot.model.events import Event, Problem, Remark
 from mutabot.model.quantity import Value
-from mutabot.runtime.observation.probes import is_bound, needed_arguments
 from mutabot.runtime.targets.callables import Callables, not_imported
 from mutabot.runtime.targets.messages import Messages
 from mutabot.runtime.targets.target import Finding, NotFoundError, resolve
@@ -38,15 +36,12 @@ class Inspection:
         self._send = send
         self.elsewhere: set[str] = set()
         self._told: set[tuple[str, str]] = set()
-        self._askers: dict[str, type | None] = {}
         self._unfit: dict[tuple[str, str], Callable[[], None]] = {}
         self._fit: dict[str, set[str]] = {}
 
     def note(self, call: Call, read: Mapping[str, Value]) -> None:
         """A call was made, and these values were read from its result."""
         self._fit.setdefault(call.operation.target, set()).update(read)
-        instance = call.payload.instance
-        self._askers[call.operation.target] = None if instance is None else type(instance)
 
     def target_is_wrong(self, target: str, finding: Finding) -> None:
         """A target of the vocabulary turned out wrong when it was found."""
@@ -92,7 +87,6 @@ class Inspection:
                 self.tell(self._source_of(target), finding)
         for operation in self._vocabulary.operations:
             self.check_target(operation, kinds)
-            self._check_current(operation)
             for targets in kinds:
                 for finding in targets.unheard(operation) if isinstance(targets, Messages) else ():
                     self.tell(operation.source, finding)
@@ -101,20 +95,6 @@ class Inspection:
         self._check_idle()
         self._check_exceptions()
         self._check_probes()
-
-    def _check_current(self, operation: Operation) -> None:
-        if operation.target not in self._askers:
-            return
-        for current in operation.currents:
-            reading = self._vocabulary.operation(current)
-            if reading is not None and reading.named is not None:
-                continue  # nothing is asked: what came last tells
-            try:
-                why = why_not_asked(current, self._askers[operation.target])
-            except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own
-                continue
-            if why is not None:
-                self.tell(operation.source, Finding("current", why))
 
     def _check_idle(self) -> None:
         """Functions that make the answer of a command that is left out."""
@@ -164,27 +144,3 @@ class Inspection:
             sources[self._vocabulary.clock.tick] = self._vocabulary.clock.source
         operation = self._vocabulary.operation(target)
         return operation.source if operation is not None else sources.get(target, "")
-
-
-def why_not_asked(reading: str, asker: type | None) -> str | None:
-    """Why an operation's ``current`` cannot be asked where the robot is, and what is needed; None if it can.
-
-    Args:
-        reading: the callable that reads it.
-        asker: the class of the object that the operation is called on; None for a function.
-    """
-    module, _, qualname = reading.partition(":")
-    owner, name, _ = resolve(sys.modules[module], qualname)
-    if asker is not None and "." in qualname and hasattr(asker, name):
-        owner = asker
-    elif isinstance(owner, type) and is_bound(owner, name):
-        of = f"the operation is called on {asker.__name__}" if asker else "the operation is a function"
-        return (
-            f"{reading} is read from an object of {owner.__name__}, but {of}; "
-            f"name {'a method of that class' if asker else 'a function'} that needs no arguments"
-        )
-    found = getattr(owner, name)
-    needed = needed_arguments(found) if callable(found) else []
-    if isinstance(owner, type) and is_bound(owner, name):
-        needed = needed[1:]  # self
-    return f"{reading} needs {', '.join(needed)}, but it is asked without arguments" if needed else None

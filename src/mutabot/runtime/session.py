@@ -23,7 +23,7 @@ from mutabot.runtime.interception.dispatcher import Aside, Dispatcher
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
 from mutabot.runtime.observation.clock import ClockReader, ProgramTime
 from mutabot.runtime.observation.instances import Instances
-from mutabot.runtime.observation.probes import Along, Reading, Rehearsal, TestRecording, rehearse, take
+from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
 from mutabot.runtime.process_fault import ProcessFaults
 from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.handing import Handing
@@ -77,7 +77,6 @@ class Session:
     recording: TestRecording = field(init=False)
     instances: Instances = field(default_factory=Instances)
     along: Along = field(init=False)
-    rehearsal: Rehearsal = field(default_factory=Rehearsal)
     is_fork: bool = False
     text: SessionText | None = None
     returns: Returns | None = None
@@ -379,7 +378,7 @@ class Session:
             self.returns.stop()
         self.along.stop()
         self.recording.stop()
-        reading, self.rehearsal = rehearse(self._read_probes)
+        reading = rehearse(self._read_probes)
         self.instances.let_go()  # what the program is done with may go
         return reading
 
