@@ -25,6 +25,7 @@ from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.messages import Messages, deliver, wait_for
 from mutabot.runtime.targets.target import Means, Where
+from tests.runtime.stage import take_away
 
 from .stage import ListPipe
 
@@ -234,7 +235,7 @@ class ClientStage:
         session, client = self.session(program)
         client.coming = list(coming)
         program.run(client)
-        session.remove()
+        take_away(session)
         return self.again(program, operator, variant, quantity, coming=coming, oracle_nodes=oracle_nodes)
 
     def again(
@@ -257,5 +258,7 @@ class ClientStage:
             result: Any = program.run(client)
         except Exception as error:
             result = error
-        session.remove()
+        assert session.meter is not None
+        self.operations = session.meter.operations
+        take_away(session)
         return result, client, session.activations[0]

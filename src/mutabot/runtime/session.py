@@ -144,13 +144,6 @@ class Session:
         self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
         self.call_sites.install()
 
-    def remove(self) -> None:
-        """Intercept nothing any more."""
-        self.call_sites.remove()
-        self.handing.remove()
-        for targets in self.targets:
-            targets.remove()
-
     def _tell_standing(self) -> None:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
         mutants = self.job.branching.mutants if self.job.branching is not None else ()

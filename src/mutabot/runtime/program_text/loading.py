@@ -56,13 +56,6 @@ def add(step: SourceStep) -> None:
     SourceFileLoader.get_code = _get_code  # type: ignore[method-assign, assignment]
 
 
-def remove(step: SourceStep) -> None:
-    """Import without a step from now on."""
-    _steps.remove(step)
-    if not _steps and "get_code" in vars(SourceFileLoader):
-        del SourceFileLoader.get_code
-
-
 def is_wanted(path: str) -> bool:
     """Whether any step has anything to do with a file."""
     return any(step.wants(path) for step in _steps)

@@ -96,11 +96,6 @@ class SessionText:
         loading.add(self)
         loading.hook_runpy()
 
-    def remove(self) -> None:
-        """Import as ever from now on; text that is instrumented goes on as the original."""
-        loading.remove(self)
-        (self.sightings or self.alternatives).remove()
-
     def wants(self, path: str) -> bool:
         """Whether there are alternatives for a file."""
         return self._text_of(path) is not None
