@@ -181,6 +181,7 @@ class ClientStage:
     folder: Path
     operations: tuple[Operation, ...]
     sessions: list[Session] = field(default_factory=list)
+    counted: int = 0
     pipe: ListPipe = field(default_factory=ListPipe)
 
     def program(self, text: str) -> ModuleType:
@@ -259,6 +260,6 @@ class ClientStage:
         except Exception as error:
             result = error
         assert session.meter is not None
-        self.operations = session.meter.operations
+        self.counted = session.meter.operations
         take_away(session)
         return result, client, session.activations[0]
