@@ -275,7 +275,8 @@ class Session:
         self.activate(mutant)
         self._start_activations()
         if self.text is not None:
-            self.text.become(choices)
+            self.text.alternatives.on_place = None
+            self.text.alternatives.activate(*choices)
 
     def take_on(self, job: Job, pipe: Sink) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""

@@ -88,7 +88,7 @@ def with_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None
     return replace(
         end,
         failure=evidence.failure or cause.failure,
-        invalid=evidence.invalid or cause.invalid,
+        invalid=cause.invalid,
         refused=refusal,
         caught=is_caught and end.outcome == FAILED and cause.refused is None,
         hits=evidence.hits,

@@ -58,7 +58,7 @@ ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "len('äß') * sensor().x < 0.8": ("0.5 < 0.8", 0.3),
     "0.2 <= sensor().x <= 0.3": ("0.2 <= 0.25", 0.05),
     "sensor().x == pytest.approx(0.26, abs=0.05)": ("0.25 == approx(0.26)", 0.04),
-    "[sensor().x, 1.0] == pytest.approx([0.26, 1.0], abs=0.05)": ("[0.25, 1] == approx([0.26, 1])", 0.04),
+    "[sensor().x, 1.0] == pytest.approx([0.26, 1.0], abs=0.05)": ("[0.25, 1.0] == approx([0.26, 1.0])", 0.04),
     "{'x': sensor().x} == pytest.approx({'x': 0.26}, abs=0.05)": ("{'x': 0.25} == approx({'x': 0.26})", 0.04),
     "np.array([sensor().x]) == pytest.approx(np.array([0.26]), abs=0.05)": (None, 0.04),
     "abs(sensor().x - 0.26) <= 0.05": ("0.01 <= 0.05", 0.04),

@@ -141,34 +141,27 @@ def _without_numpy(value: Any) -> Any:
     return value.tolist() if value.dtype.kind in "biuf" and value.size <= _MOST_ITEMS else value
 
 
-def in_words(value: Any) -> str | None:
+def _in_words(value: Any) -> str | None:
     """Return a plain value as people read it; None for others, whose ``repr`` may have effects."""
     value = _without_numpy(value)
-    kind = type(value)
-    text = None
     if _is_approximate(value):
-        inner = in_words(value.expected)
-        text = None if inner is None else f"approx({inner})"
-    elif kind is float:
-        text = f"{value:.6g}"
-    elif kind in _PLAIN:
-        text = repr(value)
-    elif kind in (list, tuple) and len(value) <= _MOST_ITEMS:
-        text = _joined("[]" if kind is list else "()", [("", one) for one in value])
-    elif kind is dict and len(value) <= _MOST_ITEMS and all(type(key) in _PLAIN for key in value):
-        text = _joined("{}", [(f"{key!r}: ", one) for key, one in value.items()])
-    return text if text is None or len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"
-
-
-def _joined(brackets: str, parts: list[tuple[str, Any]]) -> str | None:
-    texts = [(name, in_words(one)) for name, one in parts]
-    if any(text is None for _, text in texts):
+        inner = _in_words(value.expected)
+        return None if inner is None else f"approx({inner})"
+    if not _is_plain(value):
         return None
-    return f"{brackets[:-1]}{', '.join(f'{name}{text}' for name, text in texts)}{brackets[-1]}"
+    text = f"{value:.6g}" if type(value) is float else repr(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"
+
+
+def _is_plain(value: Any) -> bool:
+    kind = type(value)
+    if kind in (list, tuple, dict) and len(value) <= _MOST_ITEMS:
+        return all(map(_is_plain, value)) and (kind is not dict or all(map(_is_plain, value.values())))
+    return kind in _PLAIN
 
 
 def _words(left: Any, operator: str, right: Any) -> str:
-    sides = in_words(left), in_words(right)
+    sides = _in_words(left), _in_words(right)
     return f"{sides[0]} {operator} {sides[1]}" if None not in sides else ""
 
 

@@ -263,7 +263,6 @@ class Member:
             acted=now.acted - before.acted,
             away={why: count for why, count in away.items() if count},
             example=now.example if before.example is None else None,
-            invalid=now.invalid and not before.invalid,
             failure=now.failure if before.failure is None else None,
             refused=now.refusal if is_refused and not now.is_of_text else None,
             is_final=now.said is not None,
