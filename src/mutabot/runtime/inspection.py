@@ -68,12 +68,6 @@ class Inspection:
         problem = Problem(source, finding.key, finding.text, finding.name, finding.known)
         self._send(Remark(source, finding.key, finding.text) if finding.is_remark else problem)
 
-    def look_ahead(self, kinds: Kinds) -> None:
-        """The tests are about to begin: say what can be said about the targets that are there already."""
-        if self.is_asked:
-            for operation in self._vocabulary.operations:
-                self.check_target(operation, kinds)
-
     def check_target(self, operation: Operation, kinds: Kinds) -> None:
         """Say what of an operation does not fit its target."""
         for targets in kinds:
@@ -94,7 +88,6 @@ class Inspection:
             tell()
         self._check_idle()
         self._check_exceptions()
-        self._check_probes()
 
     def _check_idle(self) -> None:
         """Functions that make the answer of a command that is left out."""
@@ -117,13 +110,6 @@ class Inspection:
             found = self._look_up(source, f"{key} {name}", name)
             if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
                 self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
-
-    def _check_probes(self) -> None:
-        for probe in self._vocabulary.probes:
-            # what its objects have is not known to a class
-            owner = self._look_up(probe.source, "call", probe.owner or probe.target)
-            if owner is not None and probe.owner and not isinstance(owner, type):
-                self._look_up(probe.source, "call", probe.target)
 
     def _look_up(self, source: str, key: str, target: str) -> Any:
         """What ``module:qualified.name`` names; None, and a problem, if there is no such thing."""

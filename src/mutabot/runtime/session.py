@@ -11,7 +11,7 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Choice, Moment, Mutant, Operation, Probe
-from mutabot.model.events import Acted, Called, Event, KnownLater, SiteSeen, TextsSeen
+from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Budget, Job
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import Sink
@@ -59,9 +59,8 @@ class Session:
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
-        refused_calls: in the baseline, calls of the running test that the robot refused: see ``TestEnd``.
-        live: in the baseline, sites that returned the robot's own memory: see ``TestEnd``.
-        on_refused, on_live: told of each of them; None if nobody asks.
+        noted: in the baseline, calls of the running test that the robot refused, or that returned its memory.
+        on_noted: told of each of them; None if nobody asks.
         placed: faults that their providers put in place before each test.
     """
 
@@ -84,10 +83,8 @@ class Session:
     standing: Standing = field(init=False)
     handing: Handing = field(init=False)
     test: str = ""
-    refused_calls: list[tuple[int, int]] = field(default_factory=list)
-    live: set[int] = field(default_factory=set)
-    on_refused: Callable[[int, int], None] | None = None
-    on_live: Callable[[int], None] | None = None
+    noted: dict[Noted, None] = field(default_factory=dict)
+    on_noted: Callable[[Noted], None] | None = None
     _adapters: list[Adapter] = field(default_factory=list)
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
     _telling: list[Adapter] = field(default_factory=list)
@@ -301,8 +298,7 @@ class Session:
         self.recorder.clock = self.recording.clock if self.job.evidence else None
         self.instances.start(fixtures)
         self.passing.calls.clear()
-        self.refused_calls.clear()
-        self.live.clear()
+        self.noted.clear()
         self.passing.on_live = self._is_live if is_baseline else None
         self.passing.refused.on_refused = self._refused if is_baseline else None
         self.passing.refused.start(self.job.refused.get(test, ()))
@@ -393,10 +389,6 @@ class Session:
         files = {probe: getattr(module, "__file__", None) or "" for probe, module in modules.items()}
         return tuple(probe for probe in probes if not self.returns.wants(files[probe]))
 
-    def look_ahead(self) -> None:
-        """The tests are about to begin: say what can be said about the targets that are there already."""
-        self.inspection.look_ahead(self.targets)
-
     def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
         """All tests are over: wait for forks, tell what was seen, and check the vocabulary if asked to.
 
@@ -434,16 +426,16 @@ class Session:
 
     def _refused(self, made: SiteCall) -> None:
         """The robot refused a call of the original."""
-        self.refused_calls.append((self._index_of(made), made.number))
-        if self.on_refused is not None:
-            self.on_refused(*self.refused_calls[-1])
+        self._note(Noted(self._index_of(made), made.number))
 
     def _is_live(self, made: SiteCall) -> None:
         """A call of the original returned the robot's own memory."""
-        site = self._index_of(made)
-        if site not in self.live and self.on_live is not None:
-            self.on_live(site)
-        self.live.add(site)
+        self._note(Noted(self._index_of(made)))
+
+    def _note(self, one: Noted) -> None:
+        if one not in self.noted and self.on_noted is not None:
+            self.on_noted(one)
+        self.noted[one] = None
 
     def _index_of(self, made: SiteCall) -> int:
         return self.recorder.index_of(replace(seen_by(made), direct=False))

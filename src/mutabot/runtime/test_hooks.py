@@ -222,8 +222,8 @@ class TestHooks:
             timeout=meter.exceeded or end.timeout,
             # what the machine had to do with a time-out of the suite's own
             hindered=self._used.hindrance([os.getpid()]) if end.timeout is not None else None,
-            refused_calls=tuple(session.refused_calls),
-            live=tuple(sorted(session.live)),
+            refused_calls=tuple((one.site, one.refused) for one in session.noted if one.refused is not None),
+            live=tuple(sorted(one.site for one in session.noted if one.refused is None)),
             operations=meter.operations,
             commands=session.commands,
             wall=wall,

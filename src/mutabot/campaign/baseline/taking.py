@@ -117,7 +117,7 @@ class _Suite:
         """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
         for result in self.executor.events(tasks):
             if not isinstance(result, Result):
-                if isinstance(result[1], Remark):  # told when it is made, before the tests run if possible
+                if isinstance(result[1], Remark):
                     self.remarks.append(result[1])
                     self.progress.note(str(result[1]))
                 continue

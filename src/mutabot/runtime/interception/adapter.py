@@ -16,7 +16,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from inspect import Parameter, Signature
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Role, Span, Vocabulary
@@ -28,8 +28,10 @@ from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
-from mutabot.runtime.observation.clock import ProgramTime
 from mutabot.runtime.targets.target import NOWHERE, Handler, Where, resolve
+
+if TYPE_CHECKING:  # which reads its time from calls as they are read here
+    from mutabot.runtime.observation.clock import ProgramTime
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})

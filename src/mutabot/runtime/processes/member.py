@@ -25,7 +25,6 @@ from mutabot.model.events import (
     Did,
     Event,
     Found,
-    Noted,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -198,8 +197,7 @@ class Member:
                 self.poll()
 
         session.recorder.on_hit, session.passing.on_end, session.passing.turn = hit, is_over, self.turn
-        session.on_refused = lambda site, number: self.file.send(Noted(site, number))
-        session.on_live = lambda site: self.file.send(Noted(site))
+        session.on_noted = self.file.send
         messages = session.messages
         if messages is not None and messages.on_heard is not None:
             messages.on_heard = partial(heard, messages.on_heard)
