@@ -184,7 +184,8 @@ class Session:
         vocabulary = self.job.vocabulary
         readings = {name: vocabulary.operation(name) for name in operation.currents}
         told = partial(self.inspection.path_is_wrong, operation)
-        adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), self._time)
+        time = (self._time.now, self._time.wait)
+        adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), *time)
         self._adapters.append(adapter)
         adapter.handler = self.passing.handler(adapter)
         self._sees_itself.add(adapter.handler)

@@ -12,11 +12,11 @@ from __future__ import annotations
 import copy
 import inspect
 import sys
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Awaitable, Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from inspect import Parameter, Signature
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Role, Span, Vocabulary
@@ -29,9 +29,6 @@ from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
 from mutabot.runtime.targets.target import NOWHERE, Handler, Where, resolve
-
-if TYPE_CHECKING:  # which reads its time from calls as they are read here
-    from mutabot.runtime.observation.clock import ProgramTime
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
@@ -167,7 +164,7 @@ class Adapter:
         on_problem: told about each path or argument that does not fit: (key, error).
         lately: values that last came by under the names of a middleware, by target; adapters share it.
         handles: classes that are part of the robot API: their objects are never copied.
-        time: the program's time.
+        now, wait: tell the program's time, s, and let so much of it pass.
         handler: what stands around the operation.
         commands: how often the robot was made to do this, if it does anything.
     """
@@ -177,7 +174,8 @@ class Adapter:
     on_problem: Callable[[str, PathError], None]
     lately: dict[str, Mapping[str, Value]]
     handles: Collection[str]
-    time: ProgramTime
+    now: Callable[[], float]
+    wait: Callable[[float], Awaitable[None]]
     handler: Handler = field(init=False)
     commands: int = 0
     _message: Path | None = None
@@ -218,7 +216,7 @@ class Adapter:
         return Call(
             self.operation, pattern, values, current=partial(self._where_is, invocation, pattern),
             payload=invocation, cannot=partial(why_not, means), previous=lambda: before,
-            time=self.time.now, wait=self.time.wait if means is None else means.sleep,
+            time=self.now, wait=self.wait if means is None else means.sleep,
         )  # fmt: skip
 
     def _read_message(self, invocation: Invocation, path: Path) -> None:
