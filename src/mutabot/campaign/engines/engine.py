@@ -47,7 +47,7 @@ def run_trials(
             return
         for one in _by_branch(campaign, runs, left) if engine == BRANCH else _by_replay(campaign, runs):
             if isinstance(one, ControlEnd):
-                writer.journal.add_control(one.test_file, one.control, one.ok, one.detail)
+                writer.journal.add_control(one)
                 continue
             mutant = mutants[one.mutant]
             if not _counts(campaign, mutant, one):
