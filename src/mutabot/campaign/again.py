@@ -10,7 +10,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.isolated_run import replay
+from mutabot.campaign.engines.engine import replay
 from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Progress, Request

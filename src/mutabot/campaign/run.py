@@ -6,7 +6,7 @@ import errno
 import platform
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -17,7 +17,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.budget import OUT_OF_TIME, run_planned
-from mutabot.campaign.campaign import Campaign, OutcomeWriter, on_this_machine
+from mutabot.campaign.campaign import Campaign, on_this_machine
 from mutabot.campaign.engines.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
@@ -25,7 +25,7 @@ from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import Reused, note_outdated, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot, State
@@ -39,7 +39,7 @@ from mutabot.execution.task import Executor, Result
 from mutabot.journal.files import at_work
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
-from mutabot.model import LeftOut, Mutant, Outcome
+from mutabot.model import LeftOut, Mutant
 from mutabot.model.codec import to_data
 
 #: remarks that are told where there are no mutants
@@ -210,7 +210,7 @@ def _run(
         altered = altered_since(revision, campaign, dependencies, found, part.mutants)
         part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
     try:
-        writer = OutcomeWriter(journal, _key_of(journal, dependencies, plan))
+        writer = OutcomeWriter(journal, dependencies, plan.mutants)
         is_whole = _run_all(campaign, part, writer, found, started)
     finally:
         _forget_if_edited(campaign, journal, dependencies, after)
@@ -261,21 +261,6 @@ def _note_others(journal: Journal, progress: Progress) -> None:
         )
     for line in journal.altered:
         progress.note(f"the journal was changed by something else and was restored: {line}")
-
-
-def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callable[[Outcome], str]:
-    by_id = {mutant.id: mutant for mutant in plan.mutants}
-
-    def key_of(outcome: Outcome) -> str:
-        executed = dependencies.stored(outcome.executed)
-        if outcome.repeats and outcome.executed is None:  # it is in the journal, and was run once more
-            before = journal.row(outcome.mutant, outcome.round)
-            executed = before.key.split()[-1] if before is not None and before.key else executed
-        key = dependencies.key_of(outcome, by_id[outcome.mutant], executed)
-        journal.add_parts(dependencies.new_parts())
-        return key
-
-    return key_of
 
 
 def _forget_if_edited(

@@ -20,7 +20,7 @@ from mutabot.errors import JournalError
 
 from .files import previous_of
 
-SCHEMA_VERSION = 8
+SCHEMA_VERSION = 9
 
 TABLES = f"""
 PRAGMA user_version = {SCHEMA_VERSION};

@@ -16,7 +16,7 @@ from mutabot.campaign.again import as_it_is_now
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.isolated_run import task
+from mutabot.campaign.engines.tasks import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import open_executor
 from mutabot.frozen import frozen

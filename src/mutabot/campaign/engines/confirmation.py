@@ -13,9 +13,10 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate
 
-from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.request import REPLAY
+from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import CONFIRMATION, Confirmation, is_wrong, run_short
 from mutabot.model import Mutant, Outcome
