@@ -29,21 +29,8 @@ from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import from_data, printable, storable, to_data
 from mutabot.model.events import TestEnd
 
-from . import records
-from .database import (
-    LAST,
-    TABLES,
-    check_schema,
-    columns,
-    connect,
-    connect_to_read,
-    differences,
-    loaded,
-    make_way,
-    named_row,
-    no_journal,
-    write_anew,
-)
+from . import database, records
+from .database import LAST, columns
 from .files import WriterLock, previous_of, refuse_tracked
 from .records import UNFIT, BaselineTest, ControlEnd, Kept
 
@@ -121,12 +108,12 @@ class JournalReader:
     def open(path: Path) -> JournalReader:
         """Open an existing journal, as it is now. It may be written meanwhile."""
         if not path.is_file():
-            raise no_journal(path)
+            raise database.no_journal(path)
         refuse_tracked(path)
         with guarded(path), ExitStack() as opened:
-            with closing(connect_to_read(path)) as file:
-                copy = opened.enter_context(closing(loaded(file)))
-            check_schema(path, copy)
+            with closing(database.connect_to_read(path)) as file:
+                copy = opened.enter_context(closing(database.loaded(file)))
+            database.check_schema(path, copy)
             copy.execute("PRAGMA query_only = ON")
             opened.pop_all()
         return JournalReader(path, copy)
@@ -294,7 +281,7 @@ class JournalReader:
         try:
             yield
         except UNFIT:
-            self._unfit[f"{named_row(table, values)}"] = None
+            self._unfit[f"{database.named_row(table, values)}"] = None
 
 
 class Journal(JournalReader):
@@ -322,7 +309,7 @@ class Journal(JournalReader):
         self._waits = not self._is_new  # for its campaign to begin: until then it is that of the one before
         self._identity, self._version = (0, 0), -1
         if self._is_new:
-            copy.executescript(TABLES)
+            copy.executescript(database.TABLES)
         else:
             self._know_file()
 
@@ -350,9 +337,9 @@ class Journal(JournalReader):
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
             opened.callback(lock.release)
-            moved = make_way(path)
-            file = opened.enter_context(closing(connect(path)))
-            copy = opened.enter_context(closing(loaded(file)))
+            moved = database.make_way(path)
+            file = opened.enter_context(closing(database.connect(path)))
+            copy = opened.enter_context(closing(database.loaded(file)))
             journal = opened.enter_context(cls(path, copy, file, lock))
             journal.moved = moved
             if journal._waits:
@@ -380,7 +367,7 @@ class Journal(JournalReader):
             return  # nothing was there before
         if self.finished == "complete":
             with guarded(self.path):
-                write_anew(self._copy, previous_of(self.path))
+                database.write_anew(self._copy, previous_of(self.path))
         self._begin(meta)
         self._waits = False
 
@@ -609,8 +596,8 @@ class Journal(JournalReader):
         found: list[str] = []
         if whole or version != self._version:
             try:
-                with closing(connect_to_read(self.path)) as file:
-                    found = differences(file, self._copy)
+                with closing(database.connect_to_read(self.path)) as file:
+                    found = database.differences(file, self._copy)
             except (sqlite3.Error, OSError) as error:
                 found = [f"the file cannot be read any more ({error})"]
         self.altered += found
@@ -629,9 +616,9 @@ class Journal(JournalReader):
         with suppress(sqlite3.Error):
             self._file.close()
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        write_anew(self._copy, self.path)
+        database.write_anew(self._copy, self.path)
         self._lock.renew()
-        self._file, self._is_new = connect(self.path), False
+        self._file, self._is_new = database.connect(self.path), False
         self._know_file()
 
 

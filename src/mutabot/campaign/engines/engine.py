@@ -39,18 +39,7 @@ from mutabot.errors import in_short
 from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
-from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
-from mutabot.model.events import (
-    Event,
-    ForkDied,
-    ForkSessionEnd,
-    ForkTestEnd,
-    SiteSeen,
-    TestEnd,
-    Undiverged,
-    Unforked,
-    Untrusted,
-)
+from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
 from mutabot.model.job import Forking
 from mutabot.model.mutant import Place
 
@@ -354,7 +343,7 @@ class _ForkedRun:
     """
 
     run: Run
-    ends: dict[str, TestEnd] = field(default_factory=dict)
+    ends: dict[str, events.TestEnd] = field(default_factory=dict)
     forked: int | None = None
 
 
@@ -368,7 +357,7 @@ class _ForkParent:
         self._open: dict[str, _ForkedRun] = {}
         self._tests = self._baseline.suite(round)
         self._numbers = {test: number for number, test in enumerate(self._tests)}
-        self._own_ends: list[TestEnd] = []
+        self._own_ends: list[events.TestEnd] = []
         self._is_off = False
         self._waiting: dict[int, set[str]] = {}
         self._undiverged: dict[str, Mapping[str, int]] = {}
@@ -432,7 +421,7 @@ class _ForkParent:
             key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=forking.serial
         )
 
-    def take(self, event: Event) -> Iterator[Outcome]:
+    def take(self, event: events.Event) -> Iterator[Outcome]:
         """Sort in an event. Yields the outcomes that it settles.
 
         What goes wrong with it is an error of its mutant, or leaves its test to replay.
@@ -441,38 +430,42 @@ class _ForkParent:
             yield from self._take(event)
         except Exception as error:
             refuse_others(error)
-            fork = self._open.get(event.mutant) if isinstance(event, ForkTestEnd | ForkDied) else None
+            fork = (
+                self._open.get(event.mutant)
+                if isinstance(event, events.ForkTestEnd | events.ForkDied)
+                else None
+            )
             if fork is not None:
                 del self._open[fork.run.mutant.id]
                 yield not_judged(fork.run.mutant, self._round, error, FORK)
                 return
             text = f"a report of the fork parent cannot be used: {type(error).__name__}: {error}"
             self._left.notes.append(text)
-            self._is_off = self._is_off or isinstance(event, TestEnd)
+            self._is_off = self._is_off or isinstance(event, events.TestEnd)
 
-    def _take(self, event: Event) -> Iterator[Outcome]:
+    def _take(self, event: events.Event) -> Iterator[Outcome]:
         match event:
-            case ForkTestEnd() if event.mutant in self._open:
+            case events.ForkTestEnd() if event.mutant in self._open:
                 yield from self._fork_ended(event)
-            case ForkDied() if event.mutant in self._open:
+            case events.ForkDied() if event.mutant in self._open:
                 self._open[event.mutant].run.death = _death_of(event)
                 yield from self._settle(event.mutant)
-            case ForkSessionEnd():
+            case events.ForkSessionEnd():
                 for mutant in self._open.keys() & set(event.mutants):
                     run = self._open[mutant].run
                     run.exit_code = event.exit_code
                     run.death = Death("; ".join(event.errors)) if event.errors else run.death
                     yield from self._settle(mutant)
-            case Unforked():
+            case events.Unforked():
                 self._left.reasons.setdefault(event.test, event.reason)
                 self._leave(self._open.keys() & set(event.mutants))
-            case Undiverged():
+            case events.Undiverged():
                 self._undiverged[event.test] = event.hits
-            case SiteSeen():
+            case events.SiteSeen():
                 self._places[event.index] = place_of(event, self._sources)
-            case TestEnd():
+            case events.TestEnd():
                 yield from self._test_ended(event)
-            case Untrusted():  # forks have files of their own: outcomes that are settled are not concerned
+            case events.Untrusted():  # forks have files of their own: what is settled is not concerned
                 self._left.notes.append(
                     f"round {self._round + 1}: {event.reason}; mutants that may have to do with it run in "
                     "processes of their own"
@@ -496,7 +489,7 @@ class _ForkParent:
                 yield self._judged(fork, len(self._tests))
         self._leave(list(self._open))
 
-    def _fork_ended(self, event: ForkTestEnd) -> Iterator[Outcome]:
+    def _fork_ended(self, event: events.ForkTestEnd) -> Iterator[Outcome]:
         fork, test = self._open[event.mutant], event.end.test
         if fork.forked is None:
             fork.forked = -1 if event.is_early else self._numbers[test]
@@ -508,7 +501,7 @@ class _ForkParent:
             fork.run.observations[test] = observation(event.end, places)
         yield from self._settle(event.mutant)
 
-    def _test_ended(self, end: TestEnd) -> Iterator[Outcome]:
+    def _test_ended(self, end: events.TestEnd) -> Iterator[Outcome]:
         """The parent has run a test: the second opinion on the original."""
         undiverged = self._undiverged.pop(end.test, {})
         if end.lasting != self._baseline.ends[self._round, end.test].lasting:
@@ -559,7 +552,7 @@ class _ForkParent:
         return outcome
 
 
-def _death_of(event: ForkDied) -> Death:
+def _death_of(event: events.ForkDied) -> Death:
     during = f" during {event.test}" if event.test else ""
     return Death(
         text=f"{event.overdue or how_ended(event.exit_code)}{during}",

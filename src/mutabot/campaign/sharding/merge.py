@@ -11,19 +11,10 @@ from mutabot.campaign.plan import renumbered
 from mutabot.campaign.reuse.keys import changes
 from mutabot.errors import MergeError
 from mutabot.frozen import frozen
+from mutabot.journal import records
 from mutabot.journal.files import HOME, JOURNAL, is_written, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.recordings import Recordings
-from mutabot.journal.records import (
-    ALTERED,
-    FACTS,
-    FLAKY,
-    REPEATS,
-    SHARD,
-    VERIFICATION,
-    Flaky,
-    ShardOf,
-)
 from mutabot.model import Mutant
 from mutabot.model.codec import from_data, to_data
 
@@ -48,18 +39,20 @@ class ShardJournal:
     path: Path
     journal: JournalReader
     meta: Mapping[str, Any]
-    shard: ShardOf
+    shard: records.ShardOf
     mutants: tuple[Mutant, ...]
 
     @classmethod
     def of(cls, path: Path, journal: JournalReader) -> ShardJournal:
         """What is in the journal. Raises MergeError if that is no shard."""
         meta = journal.meta()
-        if SHARD not in meta:
+        if records.SHARD not in meta:
             raise MergeError(
                 f"{path} holds a whole campaign, not a shard: shards come from `mutabot run --shard 1/8`"
             )
-        return cls(path, journal, meta, from_data(ShardOf, meta[SHARD]), tuple(journal.mutants()))
+        return cls(
+            path, journal, meta, from_data(records.ShardOf, meta[records.SHARD]), tuple(journal.mutants())
+        )
 
     @property
     def words(self) -> str:
@@ -189,22 +182,24 @@ def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
 def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
     """What the campaign says about itself: that of the first shard, and sums of what was counted."""
     metas = [part.meta for part in parts]
-    found = {key: value for key, value in metas[0].items() if key != SHARD}
+    found = {key: value for key, value in metas[0].items() if key != records.SHARD}
     found["shards"] = parts[0].shard.of
     for key, together in (("started", min), ("seconds", max)):
         values = [meta[key] for meta in metas if meta.get(key) is not None]
         if values:
             found[key] = together(values)
-    for key in (ALTERED, FLAKY, VERIFICATION, REPEATS):
-        said = [from_data(FACTS[key], meta[key]) for meta in metas if key in meta]
+    for key in (records.ALTERED, records.FLAKY, records.VERIFICATION, records.REPEATS):
+        said = [from_data(records.FACTS[key], meta[key]) for meta in metas if key in meta]
         if said:
-            found[key] = to_data(_flaky(said)) if key == FLAKY else _summed([to_data(one) for one in said])
+            found[key] = (
+                to_data(_flaky(said)) if key == records.FLAKY else _summed([to_data(one) for one in said])
+            )
     return found
 
 
-def _flaky(said: Sequence[Flaky]) -> Flaky:
+def _flaky(said: Sequence[records.Flaky]) -> records.Flaky:
     tests = dict.fromkeys(test for one in said for test in one.tests)
-    return Flaky(tuple(tests), max(one.known for one in said))
+    return records.Flaky(tuple(tests), max(one.known for one in said))
 
 
 def _summed(said: Sequence[Any]) -> Any:
