@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -13,11 +13,12 @@ import pytest
 import mutabot
 from mutabot.campaign.engines import engine as engines
 from mutabot.campaign.run import run_campaign
+from mutabot.evidence.recording import Recording, to_text
 from mutabot.execution.task import Result
 from mutabot.journal.journal import Journal
 from mutabot.model.events import ForkTestEnd
 from tests.campaign.project import Quiet, request_for, write_project
-from tests.campaign.scripted import Script, Scripted
+from tests.campaign.scripted import CHECKED, Script, Scripted
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n"
 TESTS = """
@@ -30,6 +31,11 @@ TESTS = """
 #: from the end of a mutant's test, as the executor hands it to the engine, to its row in the file: engine,
 #: baseline, verdict, comparison with the original, key, journal. Plain data do not count
 MOST = 6
+#: what was recorded of the world has a way beside it: kept recordings, what is in them, and how they differ
+RECORDED = {
+    "campaign/evidence.py", "journal/recordings.py", "evidence/recording.py", "evidence/tracks.py",
+    "evidence/story.py",
+}  # fmt: skip
 ROOT = Path(mutabot.__file__).parent
 
 
@@ -56,13 +62,20 @@ class Follower:
             sys.setprofile(None)
 
 
-@pytest.mark.parametrize("verdict", ["killed", "survived"])
+@pytest.mark.parametrize("is_recorded", [False, True])
+@pytest.mark.parametrize("ends", [CHECKED, {}], ids=["killed", "survived"])
 @pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_an_outcome_goes_through_few_files(
-    tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch, engine: str, verdict: str
+    tmp_path: Path,
+    script: Script,
+    monkeypatch: pytest.MonkeyPatch,
+    engine: str,
+    ends: Mapping[str, Any],
+    is_recorded: bool,
 ) -> None:
-    if verdict == "killed":
-        script.kill("reverse")
+    recorded = {"recording": to_text(Recording())} if is_recorded else {}
+    script.original = lambda run: recorded
+    script.mutated = lambda run: {**ends, **recorded}
     follower, add, told = Follower(), Journal.add_outcome, Scripted.events
     visited: list[list[str]] = []
 
@@ -79,7 +92,10 @@ def test_an_outcome_goes_through_few_files(
     monkeypatch.setattr(engines, "controls_of", lambda *_, **__: [])
     monkeypatch.setattr(engines, "run_controls", lambda *_: iter(()))
     write_project(tmp_path, MISSION, TESTS)
-    run_campaign(request_for(tmp_path, engine=engine, only=("reverse",), rounds=2), Quiet())
+    run_campaign(
+        request_for(tmp_path, engine=engine, only=("reverse",), rounds=2, evidence=is_recorded), Quiet()
+    )
     _, files = visited  # the first outcome makes what later ones find
     assert {"campaign/verdict.py", "campaign/reuse/keys.py", "journal/journal.py"} <= {*files}
-    assert len(files) <= MOST, files
+    assert len({*files} - RECORDED) <= MOST, files
+    assert (not RECORDED.isdisjoint(files)) is is_recorded
