@@ -67,7 +67,7 @@ def run_trials(
 ) -> None:
     """Run these mutants in these rounds, with their controls. Each outcome is in the journal within a second.
 
-    An outcome that counts with the whole suite only goes to ``campaign.again`` instead.
+    An outcome that counts with the whole suite only goes to ``Campaign.again`` instead.
 
     Args:
         found: called with each outcome. Nothing else keeps them: a campaign may have a million.
