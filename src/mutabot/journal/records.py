@@ -18,7 +18,9 @@ from mutabot.model.outcome import same_end
 #: keys of the journal's meta
 DRAWING = "drawing"
 VERIFICATION, FLAKY = "verification", "flaky"
-REPEATS, CONFIRMATION = "repeats", "confirmation"
+REPEATS = "repeats"
+#: whether mutants were run at first without tests that do not reach them
+CONFIRMATION = "confirmation"
 SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
 #: what is to be known of the machines that the campaign ran on, a line each
@@ -255,21 +257,6 @@ class Flaky:
         return f"{counts}; the limit is {limit:.0%} (unstable_limit):{shown}{more}"
 
 
-@frozen
-class Confirmation:
-    """Whether mutants were run at first without tests that do not reach them, and why.
-
-    Attributes:
-        is_short: whether they were.
-        rest: seconds that these tests take, if all mutants survive.
-        without: seconds that the campaign takes without them.
-    """
-
-    is_short: bool
-    rest: float
-    without: float
-
-
 def run_short(outcomes: Iterable[Outcome], seed: int) -> list[Outcome]:
     """Those that were found without some tests, or were before the whole suite was asked, in random order.
 
@@ -376,7 +363,7 @@ FACTS: Mapping[str, Any] = {
     VERIFICATION: Verification,
     FLAKY: Flaky,
     REPEATS: Repeats,
-    CONFIRMATION: Confirmation,
+    CONFIRMATION: bool,
     SINCE: Since,
     BUDGET: Budgeted,
     SHARD: ShardOf,
