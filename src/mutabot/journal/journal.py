@@ -446,13 +446,13 @@ class Journal(JournalReader):
     def add_parts(self, parts: Mapping[str, Mapping[str, str]]) -> None:
         """Write down what digests in keys stand for."""
         for digest, data in parts.items():
-            self._put("parts", digest, _dump(data))
+            self._write("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
 
     def add_texts(self, texts: Mapping[str, bytes]) -> None:
         """Write down what stands in Python files, by the digest."""
         with self._transaction():
             for digest, text in texts.items():
-                self._put("text", digest, text)
+                self._write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, text)
 
     def forget_keys(self) -> None:
         """Never reuse what this campaign has found itself."""
