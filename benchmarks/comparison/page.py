@@ -37,7 +37,7 @@ operators suit robot programs badly. These figures come from `make comparison` o
 repository. [Comparing families](compare.md) explains the terms.
 
 A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly above
-zero, *against* it if wholly below, else it is *undecided*; of places the larger number decides. *Not measured*
+zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not measured*
 means that the family has no mutants there, or that a sample does not tell the number of places. Shares are
 written as count/total, percentage (95 % interval); intervals speak about other mutants and rounds like these.
 """
