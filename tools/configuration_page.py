@@ -19,16 +19,15 @@ HEAD = """\
 
 <!-- Written by tools/make_docs.py from src/mutabot/config/configuration.py and others. Do not edit. -->
 
-The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml`, there without that
-heading. `mutabot init` proposes one. An unknown key or a wrong value is an error that names the line and the
-nearest key. Paths are relative to the project's folder, in which the file lies, and must not lead out of it.
-`-o KEY=VALUE` sets a key for one command: `mutabot run -o rounds=5 -o when=once`.
+The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml` without that
+heading. `mutabot init` proposes one. Paths are relative to the project's folder and must not lead out of
+it. A wrong key or value is an error with its line and the nearest key. For one command: `mutabot run -o
+rounds=5 -o when=once`.
 
 ```toml
 [tool.mutabot]
 program = ["mission.py"]
 vocabulary = ["robot.toml"]
-rounds = 5
 ```
 """
 
@@ -36,10 +35,11 @@ rounds = 5
 def page() -> str:
     """The text of the page."""
     tables = tables_of_ours()
-    lines = [HEAD, "| key | value | default |", "|---|---|---|", *_rows(Settings)]
-    for name, table in tables.items():
-        lines += [f"| [`{name}`](#{name}) | table | none |", *_rows(table, f"{name}.")]
-    lines += _texts_of(Settings)
+    keys = [
+        *Settings.model_fields,
+        *(f"{name}.{key}" for name, one in tables.items() for key in one.model_fields),
+    ]
+    lines = [HEAD + "\n" + ", ".join(f"[`{key}`](#{_anchor(key)})" for key in keys), *_texts_of(Settings)]
     for name, table in tables.items():
         lines += ["", f"## {name}", "", inspect.cleandoc(table.__doc__ or ""), *_texts_of(table, name)]
     return "\n".join([*lines, ""])
@@ -51,18 +51,16 @@ def tables_of_ours() -> dict[str, type[Table]]:
     return {name: part.load_class(Table) for name, part in parts if part.owner == GROUP}
 
 
-def _rows(model: type[Table], prefix: str = "") -> Iterator[str]:
-    schema = model.model_json_schema()
-    for key in model.model_fields:
-        values, default = values_of(schema["properties"][key], schema), _default(model, key)
-        yield f"| [`{prefix}{key}`](#{_anchor(prefix + key)}) | {values} | {default} |"
-
-
 def _texts_of(model: type[Table], table: str = "") -> Iterator[str]:
+    schema = model.model_json_schema()
     for key, (text, example) in documented(model).items():
         name = f"{table}.{key}" if table else key
-        shown = [f"[tool.mutabot.{table}]", example] if table else [example]
-        yield from ("", f"{'###' if table else '##'} {name}", "", text, "", "```toml", *shown, "```")
+        yield from ("", f"{'###' if table else '##'} {name}", "", text, "")
+        yield f"*Value:* {values_of(schema['properties'][key], schema)}. *Default:* {_default(model, key)}."
+        if "\n" in example:
+            yield from ("", "```toml", example, "```")
+        else:
+            yield f"*Example:* `{example}`"
 
 
 def _anchor(heading: str) -> str:
