@@ -81,9 +81,9 @@ def _section(each: ConventionalOperator) -> Iterator[str]:
         if place and len(after) > _SHOWN + 1:
             after[_SHOWN:] = ["…"]
         yield f"- {_code(example.before)} → {', '.join(after)}{f' ({note})' if note else ''}"
-    staying = [example for example in each.examples if not example.after and _note(example)]
-    if staying:
-        yield f"- Left alone: {'; '.join(f'{_code(one.before)} ({_note(one)})' for one in staying)}"
+    reasons = {_note(example): None for example in each.examples if not example.after and _note(example)}
+    if reasons:
+        yield f"- Left alone: {'; '.join(reasons)}"
 
 
 def _code(text: str) -> str:

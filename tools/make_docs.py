@@ -28,12 +28,13 @@ HEAD = """\
 <!-- Written by tools/make_docs.py from the operators' own examples, which are tests as well. Do not edit. -->
 
 An *operator* makes one kind of small fault in what the program tells the robot or hears from it. It acts on
-the operations and quantities that the [vocabulary](vocabulary.md) describes, never on program text. A call is
-left alone if the fault would change nothing, or would leave the range or the values that the vocabulary
-allows. Faults of messages on their way: [middleware](middleware.md). `mutabot operators` lists all.
+the operations and quantities that the [vocabulary](vocabulary.md) describes, never on program text. A call
+is left alone if the fault would change nothing, or would leave the range or the values that the vocabulary
+allows. Faults of messages on their way: [middleware](middleware.md). `mutabot operators --family NAME`
+prints where each operator of a family acts, and which bugs it stands for.
 
-In the examples, `original` → `mutant`. Operators marked *idle* answer the program in the place of the robot:
-see [answers to doing nothing](vocabulary.md#answers-to-doing-nothing).
+In the examples, `original` → `mutant`. Operators marked *idle* answer the program in the place of the
+robot: see [answers to doing nothing](vocabulary.md#answers-to-doing-nothing).
 
 ## Published operators
 
@@ -45,8 +46,8 @@ CATALOGUE_HEAD = """\
 
 `--family catalogue` adds faults that are common in robot programs: units and frames, order and time,
 readings, actuation. Number of bugs on commands and readings of each class in studies of ROS and
-PX4/ArduPilot software: {studies}. `mutabot check --family catalogue` names the operators that find nothing to
-act on in your vocabulary and program, and why.
+PX4/ArduPilot software: {studies}. `mutabot check --family catalogue` names the operators that find nothing
+to act on in your vocabulary and program, and why.
 
 Covered elsewhere: a skipped waypoint by [skip](#skip), a wrong sign of one number by [reverse](#reverse) or
 [negate](#negate), a wrong stamp by [shift-stamp](middleware.md#shift-stamp). Not covered: a lost blend
@@ -129,7 +130,7 @@ def page() -> str:
         lines += _section(each)
     lines.append(CATALOGUE_HEAD.replace("{studies}", _studies(operators)))
     for title, members in groups.items():
-        lines.append(f"- {title}: {' '.join(_overview(members))}.{_classes(members)}")
+        lines.append(f"- {title}: {' '.join(_overview(members))}")
     lines.append("")
     for each in (each for members in groups.values() for each in members):
         lines += _section(each)
@@ -169,30 +170,11 @@ def _studies(operators: list[Operator]) -> str:
     return ", ".join(f"{name} {number}" for name, number in sorted(numbers.items(), key=lambda one: -one[1]))
 
 
-def _class(each: Operator) -> str:
-    return _STUDIED.sub("", each.stands_for).rstrip(".")
-
-
-def _classes(members: list[Operator]) -> str:
-    """The classes of bugs that the operators of a group stand for, with their operators."""
-    found: dict[str, list[str]] = {}
-    for each in members:
-        found.setdefault(_class(each), []).append(each.name)
-    if len(found) == 1:
-        return f" They stand for: {next(iter(found))}."
-    most = max(found, key=lambda one: len(found[one]))
-    named = {one: names for one, names in found.items() if one != most or len(names) == 1}
-    told = [f"{one} ({', '.join(names)})" for one, names in named.items()]
-    told += [f"{most} (all others)" for _ in range(most not in named)]
-    return f" They stand for: {'; '.join(told)}."
-
-
 def _section(each: Operator) -> Iterator[str]:
     yield f"## {each.name}\n"
     yield f"{each.summary}{' *(idle)*' if Need.IDLE in each.needs else ''}\n"
-    if each.stands_for:
-        stands = f" Stands for: {_class(each)}." if each.family == GRADED else ""
-        yield f"Where: {each.where}.{stands}\n"
+    if each.stands_for and "vocabulary" in each.where and "vocabulary" not in each.summary:
+        yield f"Where: {each.where}.\n"
     if each.published:
         yield f"Published as: {re.sub(r'[0-9]+[.] ', '', each.published).rstrip('.')}.\n"
     acting = [example for example in each.examples if not example.away]

@@ -101,14 +101,14 @@ def decide(one: Mapping[str, Any], other: Mapping[str, Any]) -> Stance:
 
 
 def difference_text(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
-    """``17 percentage points more (3 to 25)``."""
+    """``17 points more (3 to 25)``."""
     found = difference(one, other)
     if found is None:
         return "nothing tells how sure the difference is"
     middle, low, high = (100 * number for number in found)
     word, ends = ("less", (-high, -low)) if middle < 0 else ("more", (low, high))
     between = " to ".join(f"{end:.1f}".replace("-", "−") for end in ends)
-    return f"{abs(middle):.1f} percentage points {word} ({between})"
+    return f"{abs(middle):.1f} points {word} ({between})"
 
 
 def share_text(share: Mapping[str, Any]) -> str:
@@ -155,7 +155,9 @@ def _uninformative(data: Data, robot: Family, other: Family) -> Finding:
 
 def _beside(other: Family, share: Mapping[str, Any], ours: Mapping[str, Any]) -> str:
     """Two shares and their difference in words."""
-    return f"{other['family']} {share_text(share)}; robot {share_text(ours)}: {difference_text(share, ours)}"
+    shares = ((other["family"], share), ("robot", ours))
+    told = ", ".join(f"{name} {one['count']}/{one['of']} ({percent(one['share'])})" for name, one in shares)
+    return f"{told}: {difference_text(share, ours)}"
 
 
 CLAIMS: Sequence[Claim] = (

@@ -32,14 +32,15 @@ HEAD = """\
 
 <!-- Written by benchmarks/comparison/page.py from docs/data/*.json. Do not edit. -->
 
-The study "Mutation Testing for Industrial Robotic Systems" says, without figures, that conventional mutation
-operators suit robot programs badly. These figures come from `make comparison` on the examples of this
-repository. [Comparing families](compare.md) explains the terms.
+The study "Mutation Testing for Industrial Robotic Systems" says, without figures, that conventional
+mutation operators suit robot programs badly. These figures come from `make comparison` on the examples of
+this repository. [Comparing families](compare.md) explains the terms.
 
-A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly above
-zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not measured*
-means that the family has no mutants there, or that a sample does not tell the number of places. Shares are
-written as count/total, percentage (95 % interval); intervals speak about other mutants and rounds like these.
+A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly
+above zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not
+measured* means that the family has no mutants there, or that a sample does not tell the number of places.
+Shares are count/total, percentage (95 % interval), differences in percentage points; intervals speak about
+other mutants and rounds like these.
 """
 TAIL = """\
 ## Limits of this comparison
