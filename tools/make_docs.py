@@ -180,7 +180,7 @@ def _section(each: Operator) -> Iterator[str]:
     acting = [example for example in each.examples if not example.away]
     for place, example in enumerate(acting):
         published = example.note.replace(": ", " → ") in each.published
-        if place == 0 or (example.note and not published):
+        if (place == 0 and each.family != CATALOGUE) or (example.note and not published):
             note = f" ({example.note})" if example.note and not published else ""
             yield f"- {_before(example)} → {_after(example)}{note}"
     reasons = {example.away: None for example in each.examples if example.away}

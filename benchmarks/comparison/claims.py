@@ -131,10 +131,8 @@ def percent(share: float | None) -> str:
 def _places(data: Data, robot: Family, other: Family) -> Finding:
     if data["sample"] is not None:
         return Finding(Stance.UNKNOWN, "a sample of the mutants does not tell how many places there are")
-    sentence = (
-        f"{other['family']} {other['mutants']} mutants at {other['places']} places, "
-        f"robot {robot['mutants']} at {robot['places']}"
-    )
+    ours = f"robot {robot['mutants']} at {robot['places']}"
+    sentence = f"{other['mutants']} mutants at {other['places']} places, {ours}"
     if other["places"] == robot["places"]:
         return Finding(Stance.UNDECIDED, sentence)
     return Finding(Stance.FOR if other["places"] < robot["places"] else Stance.AGAINST, sentence)
@@ -143,21 +141,20 @@ def _places(data: Data, robot: Family, other: Family) -> Finding:
 def _weakness(key: str) -> Callable[[Data, Family, Family], Finding]:
     def judge(data: Data, robot: Family, other: Family) -> Finding:
         conventional, ours = other["weaknesses"][key], robot["weaknesses"][key]
-        return Finding(decide(conventional, ours), _beside(other, conventional, ours))
+        return Finding(decide(conventional, ours), _beside(conventional, ours))
 
     return judge
 
 
 def _uninformative(data: Data, robot: Family, other: Family) -> Finding:
     conventional, ours = other["informative"], robot["informative"]
-    return Finding(decide(ours, conventional), _beside(other, conventional, ours))
+    return Finding(decide(ours, conventional), _beside(conventional, ours))
 
 
-def _beside(other: Family, share: Mapping[str, Any], ours: Mapping[str, Any]) -> str:
+def _beside(share: Mapping[str, Any], ours: Mapping[str, Any]) -> str:
     """Two shares and their difference in words."""
-    shares = ((other["family"], share), ("robot", ours))
-    told = ", ".join(f"{name} {one['count']}/{one['of']} ({percent(one['share'])})" for name, one in shares)
-    return f"{told}: {difference_text(share, ours)}"
+    told = (f"{one['count']}/{one['of']} ({percent(one['share'])})" for one in (share, ours))
+    return f"{', robot '.join(told)}: {difference_text(share, ours)}"
 
 
 CLAIMS: Sequence[Claim] = (

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from .bars import FamilyBar, picture_of
-from .claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, percent, share_text
+from .claims import CLAIMS, CONVENTIONAL, Data, Finding, Stance, finding, percent, share_text
 from .drawing import svg
 from .ends import End
 
@@ -97,9 +97,7 @@ def pages(comparisons: Mapping[str, Data]) -> dict[str, str]:
 
 def page(comparisons: Mapping[str, Data]) -> str:
     """The text of the page."""
-    lines = [HEAD, *_summary(comparisons)]
-    for claim in CLAIMS:
-        lines += _claim(claim, comparisons)
+    lines = [HEAD, *_claims(comparisons)]
     for name, data in comparisons.items():
         lines += _example(name, data)
     return "\n".join([*lines, "", TAIL])
@@ -118,28 +116,16 @@ def picture(data: Data, name: str) -> str:
     return svg(picture_of(bars, f"What became of the mutants: {name}"), by="make comparison")
 
 
-def _summary(comparisons: Mapping[str, Data]) -> Iterator[str]:
+def _claims(comparisons: Mapping[str, Data]) -> Iterator[str]:
     yield from ("## In short", "")
+    yield from (f"- *{claim.name}*: {claim.statement}" for claim in CLAIMS)
+    yield ""
     yield _row("claim", "family", *comparisons)
     yield f"|{'---|' * (2 + len(comparisons))}"
     for claim in CLAIMS:
         for family in CONVENTIONAL:
-            stances = [finding(claim, data, family).stance for data in comparisons.values()]
-            yield _row(claim.name, family, *(_shown(stance) for stance in stances))
-    yield ""
-
-
-def _claim(claim: Claim, comparisons: Mapping[str, Data]) -> Iterator[str]:
-    yield from (f"## {claim.name[0].upper()}{claim.name[1:]}?", "", f"*{claim.statement}*", "")
-    found = {
-        (name, family): finding(claim, data, family)
-        for name, data in comparisons.items()
-        for family in CONVENTIONAL
-    }
-    for stance in (Stance.FOR, Stance.AGAINST, Stance.UNDECIDED):
-        for (name, _), one in found.items():
-            if one.stance is stance:
-                yield f"- {_shown(stance)}, on {name}: {one.sentence}."
+            found = (finding(claim, data, family) for data in comparisons.values())
+            yield _row(claim.name, family, *(_shown(one) for one in found))
     yield ""
 
 
@@ -159,10 +145,11 @@ def _rows(families: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list[str
         yield key, [str(family[key]) for family in families]
     for key, label in (("wall", "wall clock"), ("cpu", "processor time"), ("simulated", "simulated time")):
         yield f"{label}, s", [_seconds(family["cost"][key]) for family in families]
+    yield "outcomes", [str(family["done"]) for family in families]
     for end in End:
         shares = [family["ends"][end.value] for family in families]
         if any(share["count"] for share in shares):
-            yield end.value, [share_text(share) for share in shares]
+            yield end.value, [_share(share) for share in shares]
     yield "score", [_score(family["scores"], "score", "killed") for family in families]
     yield "check score", [_score(family["scores"], "check_score", "by_check") for family in families]
     if any(family["without_oracle"] for family in families):
@@ -212,12 +199,21 @@ def _score(scores: Mapping[str, Any] | None, key: str, counted: str) -> str:
     return f"{scores[counted]}/{scores['valid']}, {percent(scores[key])}{between}"
 
 
+def _share(share: Mapping[str, Any]) -> str:
+    interval = share["interval"]
+    between = f" ({100 * interval['low']:.0f}–{100 * interval['high']:.0f})" if interval else ""
+    return f"{percent(share['share'])}{between}"
+
+
 def _seconds(seconds: float | None) -> str:
     return "–" if seconds is None else f"{seconds:.1f}"
 
 
-def _shown(stance: Stance) -> str:
-    return f"**{stance}**" if stance in {Stance.FOR, Stance.AGAINST} else stance.value
+def _shown(one: Finding) -> str:
+    if one.stance is Stance.UNKNOWN:
+        return one.stance.value
+    word = one.stance.value if one.stance is Stance.UNDECIDED else f"**{one.stance}**"
+    return f"{word}: {one.sentence}"
 
 
 def _row(*cells: str) -> str:
