@@ -41,7 +41,13 @@ def page() -> str:
     ]
     lines = [HEAD + "\n" + ", ".join(f"[`{key}`](#{_anchor(key)})" for key in keys), *_texts_of(Settings)]
     for name, table in tables.items():
-        lines += ["", f"## {name}", "", inspect.cleandoc(table.__doc__ or ""), *_texts_of(table, name)]
+        lines += [
+            "",
+            f"## {name}",
+            "",
+            f"{inspect.cleandoc(table.__doc__ or '')} Below `[tool.mutabot.{name}]`:",
+            *_texts_of(table, name),
+        ]
     return "\n".join([*lines, ""])
 
 
@@ -56,11 +62,11 @@ def _texts_of(model: type[Table], table: str = "") -> Iterator[str]:
     for key, (text, example) in documented(model).items():
         name = f"{table}.{key}" if table else key
         yield from ("", f"{'###' if table else '##'} {name}", "", text, "")
-        yield f"*Value:* {values_of(schema['properties'][key], schema)}. *Default:* {_default(model, key)}."
+        told = f"{values_of(schema['properties'][key], schema)}; default: {_default(model, key)}"
         if "\n" in example:
-            yield from ("", "```toml", example, "```")
+            yield from (f"({told})", "", "```toml", example, "```")
         else:
-            yield f"*Example:* `{example}`"
+            yield f"`{example}` ({told})"
 
 
 def _anchor(heading: str) -> str:
@@ -131,7 +137,7 @@ def _bounds(schema: Mapping[str, Any]) -> str:
 def _default(model: type[Table], key: str) -> str:
     field = model.model_fields[key]
     if field.is_required():
-        return "must be given"
+        return "none, required"
     if field.default is None:
         return "none"
     if key == "memory":

@@ -141,7 +141,7 @@ def page_of_middleware() -> str:
     """The text of the page on the family ``middleware``."""
     operators = _operators(of_middleware=True)
     text = (Path(__file__).parent / "middleware_page.md").read_text(encoding="utf-8")
-    lines = [text.replace("{overview}", " ".join(_overview(operators)))]
+    lines = [text]
     for each in operators:
         lines += _section(each)
     return "\n".join(lines).rstrip() + "\n"
