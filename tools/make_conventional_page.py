@@ -6,6 +6,7 @@ if the page is out of date.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -77,13 +78,22 @@ def _section(each: ConventionalOperator) -> Iterator[str]:
         note = _note(example)
         if place and not note:
             continue
-        after = [_code(text) for text in example.after]
+        before, *mutants = _without_target([example.before, *example.after])
+        after = [_code(text) for text in mutants]
         if place and len(after) > _SHOWN + 1:
             after[_SHOWN:] = ["…"]
-        yield f"- {_code(example.before)} → {', '.join(after)}{f' ({note})' if note else ''}"
+        yield f"- {_code(before)} → {', '.join(after)}{f' ({note})' if note else ''}"
     reasons = {_note(example): None for example in each.examples if not example.after and _note(example)}
     if reasons:
         yield f"- Left alone: {'; '.join(reasons)}"
+
+
+def _without_target(texts: list[str]) -> list[str]:
+    """The values alone, where all texts assign to one variable."""
+    target = re.match(r"\w+ = ", texts[0])
+    if target and all(text.startswith(target[0]) for text in texts):
+        return [text.removeprefix(target[0]) for text in texts]
+    return texts
 
 
 def _code(text: str) -> str:

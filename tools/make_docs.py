@@ -97,18 +97,7 @@ reason:
 one that does is an error, never a verdict. `family = "…"`: a family of its own, run where `--family` or
 `families` names it.
 
-From an installed package, as in `tests/plugins/package`:
-
-```python
-from mutabot.extensions import Extension
-
-EXTENSION = Extension(interface=1, operators={"creep": "mutabot_creep.creep:Creep"})
-```
-
-```toml
-[project.entry-points.mutabot]
-creep = "mutabot_creep:EXTENSION"
-```
+From an installed package: see [packages](packages.md).
 """
 
 
