@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Generator, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
@@ -18,6 +17,7 @@ from mutabot.model.events import TestEnd, TestStart
 from mutabot.model.process_time import TimeUsed
 from mutabot.model.source_units import Executed
 from mutabot.runtime import seeds
+from mutabot.runtime.audit import listen
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.executed import ExecutedUnits
 from mutabot.runtime.interception.trace import Locator
@@ -112,7 +112,7 @@ class TestHooks:
         self.looks.clear()
         if not self._hears:
             self._hears = True
-            sys.addaudithook(self._hear)
+            listen(("socket.bind",), self._hear)
         session = self.session
         session.pipe.send(TestStart(test))
         limit = watched_by_faulthandler(item)
@@ -129,11 +129,10 @@ class TestHooks:
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Note a fixed address that the test waits at: two processes cannot have it at the same time."""
-        if event == "socket.bind" and self._address is None:
-            address = arguments[1]
-            is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
-            if not is_chosen:  # by the system, which gives one that nobody else has
-                self._address = f"waits at the address {address!r}"
+        address = arguments[1]
+        is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
+        if not is_chosen and self._address is None:  # by the system, which gives one that nobody else has
+            self._address = f"waits at the address {address!r}"
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:

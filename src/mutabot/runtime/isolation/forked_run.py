@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import os
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from mutabot.model import Mutant
 from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd
 from mutabot.model.job import write_job
 from mutabot.runtime import test_end
+from mutabot.runtime.audit import listen
 from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
@@ -46,7 +46,7 @@ class ForkedRun:
         self._is_early = not session.test
         self._has_acted = False
         gc.freeze()  # what is never looked at stays shared with the parent
-        sys.addaudithook(self._hear)
+        listen(_PROCESSES, self._hear)
 
     def start_test(self) -> None:
         """A test begins, its second at least."""
@@ -78,7 +78,7 @@ class ForkedRun:
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """The program is about to start its first process, which is to be the mutant as well."""
-        if event in _PROCESSES and self.members is None and os.getpid() == self._pid:
+        if self.members is None and os.getpid() == self._pid:
             self.members = self._own_processes()
 
     def _own_processes(self) -> Members:

@@ -38,9 +38,10 @@ from mutabot.model.events import (
 )
 from mutabot.model.job import Budget, Job, read_job
 from mutabot.runtime import FOLDER as OURS
+from mutabot.runtime.audit import listen
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves, together
-from mutabot.runtime.processes.environment import Now, carry, starts_a_killer
+from mutabot.runtime.processes.environment import STARTS, Now, carry, starts_a_killer
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.session_text import SessionText
 
@@ -327,7 +328,7 @@ class Member:
 
         sys.excepthook, threading.excepthook = in_main, in_thread
         os._exit = leave_at_once  # type: ignore[assignment]
-        sys.addaudithook(self._hear)
+        listen(("os.kill", "os.killpg", *STARTS), self._hear)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in ("os.kill", "os.killpg") and _member is self:
