@@ -13,7 +13,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -49,13 +49,27 @@ if TYPE_CHECKING:
     from mutabot.model import Call
     from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import Sink
-    from mutabot.runtime.processes.waiting import Begun
     from mutabot.runtime.session import Session  # of no use to a job that has nothing to do with calls
 
 
 def is_of_text_alone(job: Job) -> bool:
     """Whether a job has nothing to do with calls, so that what sees them need not be loaded."""
     return not (job.vocabulary.operations or job.vocabulary.clock or job.faults)
+
+
+@dataclass(frozen=True, slots=True)
+class Begun:
+    """What a process has told and done that waited before it became a member.
+
+    Attributes:
+        name: the name of its file of events.
+        number: of the last event in it.
+        loaded: program files that were loaded with the mutant in them, and their text.
+    """
+
+    name: str
+    number: int
+    loaded: Mapping[str, bytes]
 
 
 class TextOnly:

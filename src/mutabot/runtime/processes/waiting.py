@@ -133,6 +133,7 @@ class _Waiting:
             os._exit = self._exit
         SourceFileLoader.get_code = self._original  # type: ignore[method-assign]
         atexit.unregister(self._end)
+        from mutabot.runtime.processes.member import Begun  # noqa: PLC0415
         from mutabot.runtime.processes.member import join as become  # noqa: PLC0415
 
         become(self._folder, Begun(self._name, self._number, self._loaded))
@@ -171,19 +172,6 @@ class _Waiting:
             with open(os.path.join(self._folder, "now"), "r+b") as file:
                 file.seek(8)
                 file.write(b"\1")
-
-
-class Begun:
-    """What a process that waited has told and done.
-
-    Attributes:
-        name: the name of its file of events.
-        number: of the last event in it.
-        loaded: program files that were loaded with the mutant in them, and their text.
-    """
-
-    def __init__(self, name: str, number: int, loaded: dict[str, bytes]) -> None:
-        self.name, self.number, self.loaded = name, number, loaded
 
 
 class _Switch:
