@@ -356,7 +356,7 @@ RESCUE = {
     """,
     "parts.py": """
         def halves(length):
-            while length > 0.06:
+            for _ in range(4):
                 length = length / 2
                 yield length
 
