@@ -101,6 +101,7 @@ class NameContext:
         values: values that were seen, and what the program compares them with.
         names: the names of all arguments.
         relative: what an argument ``relative`` said; empty if there is none.
+        angle_unit: unit of angles, as an argument such as ``degrees`` said; empty if none did.
     """
 
     words: tuple[str, ...] = ()
@@ -110,6 +111,7 @@ class NameContext:
     values: Sequence[Any] = ()
     names: frozenset[str] = frozenset()
     relative: frozenset[bool] = frozenset()
+    angle_unit: str = ""
 
     @property
     def is_of_gripper(self) -> bool:
@@ -121,7 +123,9 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     """What an argument means; an empty guess if neither the callable's name nor its own tells."""
     words, unit = _without_unit(words_of(name))
     noun = noun_of(words)
-    if noun == "none" or any(isinstance(value, str) for value in setting.values):
+    if noun == "none" or (words and words[-1] in ("type", "kind")):  # how to do it, not what
+        return Guess()
+    if any(isinstance(value, str) for value in setting.values):
         return _chosen(setting)
     is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")
     if setting.is_of_gripper and is_open and (len(words) == 1 or not _are_truth(setting)):
@@ -135,7 +139,7 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
         return _output(setting)
     stem = "_".join(words)
     motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
-    limits = _documented_range(_about(name, setting.doc)) if noun == "generic" else None
+    limits = _documented_range(_about(name, setting.doc), setting) if noun == "generic" else None
     if limits is not None and abs(limits[0]) in (0.0, 1.0) and limits[1] == 1.0:
         return Guess({"kind": "output", "range": limits})
     along = words[-1] if len(words) > 1 and words[-1] in ("x", "y", "z") else None
@@ -221,8 +225,13 @@ def measured(table: Table, dimension: str, unit: str | None, name: str, setting:
     if unit in fitting:
         return Guess({**table, "unit": unit})
     about = _about(name, setting.doc)
+    if dimension == "angle" and setting.angle_unit:
+        return Guess({**table, "unit": setting.angle_unit})
     said = units_in(about, dimension)
-    limits = _documented_range(about) if not said and dimension in _SCALED else None
+    if dimension in _SCALED and "percent" in units_in(about, "ratio"):
+        asked = [f"the unit: {', '.join(said)}, or a ratio in percent?"] if said else []
+        return Guess({**table, "unit": said[0]} if said else {"kind": "ratio", "unit": "percent"}, asked)
+    limits = _documented_range(about, setting) if not said and dimension in _SCALED else None
     if limits is not None and limits[1] in (1.0, 100.0):
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "ratio", "unit": unit, "range": limits})
@@ -245,10 +254,13 @@ def _about(name: str, doc: str) -> str:
     return "\n".join(found)
 
 
-def _documented_range(text: str) -> list[float] | None:
-    """The least and greatest value that the docstring of an argument gives, if it gives one range."""
-    found = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
-    return list(found.pop()) if len(found) == 1 else None
+def _documented_range(text: str, setting: NameContext) -> list[float] | None:
+    """The least and greatest value that the docstring of an argument gives, if it gives one that fits."""
+    pairs = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
+    seen = [value for value in setting.values if isinstance(value, int | float)]
+    found = [[least, most] for least, most in pairs if least < most and least <= min(seen, default=least)]
+    found = [pair for pair in found if max(seen, default=pair[0]) <= pair[1]]
+    return found[0] if len(found) == 1 else None
 
 
 def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
@@ -274,7 +286,7 @@ def _opening(unit: str | None, name: str, setting: NameContext) -> Guess:
     if len(values) == 2 and set(values) == {0, 1}:
         return Guess({"kind": "opening", "values": values})
     about = _about(name, setting.doc)
-    said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about)
+    said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about, setting)
     if limits in ([0.0, 1.0], [0.0, 100.0]) and not said:
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "opening", "unit": unit, "range": limits})
@@ -360,6 +372,7 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
         return {}
     for about, told in ((words, noun), (setting.words, verb)):
         is_turning = told == "joints" or (told == "angle" and length > 3)
+        is_turning = is_turning or (told == "place" and ("joint" in about or _is_no_pose(setting.values)))
         is_turning = is_turning or bool({"movej", "servoj", "getj", "j"} & set(about))
         if is_turning and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
             axis = "j1" if length == 1 else f"j1..j{length}"
@@ -370,6 +383,11 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
         if told == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
             return _pose(at, name, length, setting, written)
     return {}
+
+
+def _is_no_pose(values: Sequence[Any]) -> bool:
+    """Whether seven numbers do not end with a quaternion: then they are joints."""
+    return any(len(one) == 7 and abs(sum(part * part for part in one[3:]) - 1) > 0.1 for one in values)
 
 
 def _element(kind: str, read: str, axis: str, name: str, setting: NameContext, written: bool) -> Guess:

@@ -110,6 +110,7 @@ class ProposedCheck:
         spread: how far these are apart; None if both must be equal.
         tolerance: greatest distance; None if both must be equal.
         trials: the mutants and rounds that it would notice.
+        is_clear: whether all of these are far off: ten times what the original may be.
     """
 
     place: PlaceInTest
@@ -119,15 +120,16 @@ class ProposedCheck:
     spread: float | None = None
     tolerance: float | None = None
     trials: Trials = frozenset()
+    is_clear: bool = True
 
     @property
     def worth(self) -> tuple[int, ...]:
-        """What a person would rather write: the suite's reader, a relation, a place, few digits."""
+        """What a person would rather write: the suite's reader, a relation, a place, far off, few digits."""
         name = _last(self.reading)
         rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
         digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
-        return -self.reading.way, is_relation, -rank, -digits, -len(self.statement)
+        return -self.reading.way, is_relation, -rank, self.is_clear, -digits, -len(self.statement)
 
     @property
     def statement(self) -> str:
@@ -225,16 +227,22 @@ class _ReadAtEnd:
         floor = max(reading.tolerance, other.tolerance if other is not None else 0.0)
         band = band_of([apart(read) for read in self.runs], floor)
         sizes = self._furthest(lambda read: abs(apart(read) - band.middle))
-        outside = [size for size in sizes.values() if size > band.tolerance]
+        outside = sorted({size for size in sizes.values() if size > band.tolerance})
         if not outside:
             return None
-        value, wide = readable(band, min(outside), self.stated.get(_last(reading), 0.0))
+        stated = self.stated.get(_last(reading), 0.0)
+        written = [(size, *readable(band, size, stated)) for size in outside]
+        # survivors that only many digits would notice are let through, if there are others
+        nearest, value, wide = next((one for one in written if digits_of(one[1]) <= _DIGITS), written[0])
         if other is not None and abs(band.middle) > wide - band.tolerance:
             return None  # it is always as far from it, but not there
         middle = 0.0 if other is not None else value
         trials = _beyond(self._furthest(lambda read: abs(apart(read) - middle)), wide)
         expected = value if other is None else other
-        return ProposedCheck(self.place, reading, expected, len(self.runs), band.spread, wide, trials)
+        is_clear = nearest >= 10 * band.tolerance
+        return ProposedCheck(
+            self.place, reading, expected, len(self.runs), band.spread, wide, trials, is_clear
+        )
 
     def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
         """The check that something equals another reading, or a value; None if it does not always do so."""
