@@ -880,3 +880,8 @@ def test_replies_connections_and_what_is_created_are_no_operations(tmp_path: Pat
     found = operations(tmp_path)
     assert set(found) == {"robot:Arm.move_to", "robot:Arm.get_position"}
     assert found["robot:Arm.move_to"].current == "robot:Arm.get_position"
+
+
+def test_a_scale_of_bits_is_no_speed() -> None:
+    setting = NameContext(words_of("open"), doc="speed (int): Gripper speed between 0 and 255.", values=(64,))
+    assert guess_argument("speed", setting).table == {"kind": "output", "range": [0.0, 255.0]}

@@ -57,6 +57,8 @@ _RANGES = (
 )
 #: what libraries may scale to a share of its most
 _SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
+#: where a scale without a unit ends: a fraction, or so many bits
+_TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
 #: how the line of another argument begins
 _NEXT = re.compile(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)")
 #: more different numbers than these are no settings, but a scale
@@ -140,7 +142,7 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     stem = "_".join(words)
     motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
     limits = _documented_range(_about(name, setting.doc), setting) if noun == "generic" else None
-    if limits is not None and abs(limits[0]) in (0.0, 1.0) and limits[1] == 1.0:
+    if limits is not None and limits[1] in _TOPS and limits[0] in (0.0, -limits[1]):
         return Guess({"kind": "output", "range": limits})
     along = words[-1] if len(words) > 1 and words[-1] in ("x", "y", "z") else None
     if along is not None and noun == "place":
@@ -231,8 +233,10 @@ def measured(table: Table, dimension: str, unit: str | None, name: str, setting:
     if dimension in _SCALED and "percent" in units_in(about, "ratio"):
         asked = [f"the unit: {', '.join(said)}, or a ratio in percent?"] if said else []
         return Guess({**table, "unit": said[0]} if said else {"kind": "ratio", "unit": "percent"}, asked)
-    limits = _documented_range(about, setting) if not said and dimension in _SCALED else None
-    if limits is not None and limits[1] in (1.0, 100.0):
+    limits = _documented_range(about, setting) if dimension in _SCALED else None
+    if limits is not None and limits[1] in _TOPS[1:]:
+        return Guess({"kind": "output", "range": limits})
+    if limits is not None and limits[1] in (1.0, 100.0) and not said:
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "ratio", "unit": unit, "range": limits})
     said = said or units_in(setting.doc, dimension)

@@ -129,7 +129,8 @@ def _is_housekeeping(call: WatchedCallable) -> bool:
 
 
 def _is_setup(call: WatchedCallable) -> bool:
-    return bool(SETUP & set(words_of(call.name)))
+    words = set(words_of(call.name))
+    return bool(SETUP & words) or {"pin", "mode"} <= words
 
 
 def _is_command(call: WatchedCallable) -> bool:
