@@ -617,7 +617,6 @@ MOVED = {"kind": "translation", "unit": "m"}
         ("code", "set_position", "", {}),
         ("distance_tolerance", "move_by", "In m.", {}),
         ("velocity_unit", "move", "", {}),
-        ("move_type", "move", "", {}),
         ("beta", "MovePose", "In degrees.", {"kind": "rotation", "unit": "deg", "mode": "to"}),
         ("z", "look_at", "In m.", {**MOVED, "axis": "z", "mode": "to"}),
         ("p", "set_joint_vel", "p: Percentage of the top.", {"kind": "ratio", "unit": "percent"}),

@@ -125,10 +125,8 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     """What an argument means; an empty guess if neither the callable's name nor its own tells."""
     words, unit = _without_unit(words_of(name))
     noun = noun_of(words)
-    if noun == "none" or (words and words[-1] in ("type", "kind")):  # how to do it, not what
-        return Guess()
-    if any(isinstance(value, str) for value in setting.values):
-        return _chosen(setting)
+    if noun == "none" or any(isinstance(value, str) for value in setting.values):
+        return Guess()  # a text says how to do it, not what
     is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")
     if setting.is_of_gripper and is_open and (len(words) == 1 or not _are_truth(setting)):
         return _opening(unit, name, setting)
@@ -145,8 +143,6 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     if limits is not None and limits[1] in _TOPS and limits[0] in (0.0, -limits[1]):
         return Guess({"kind": "output", "range": limits})
     along = words[-1] if len(words) > 1 and words[-1] in ("x", "y", "z") else None
-    if along is not None and noun == "place":
-        motion = ("translation", along, None)
     if motion is not None:
         return _moved(motion[0], motion[1] or along, motion[2], unit, name, setting)
     subject, is_only = noun_of(setting.words), len(setting.names - _HOW) <= 1
@@ -313,11 +309,6 @@ def _literals(annotation: str) -> list[str]:
     return re.findall(r"'([^']*)'", literal[1]) if literal else []
 
 
-def _chosen(setting: NameContext) -> Guess:
-    values = _literals(setting.annotation)
-    return Guess({"kind": "output", "values": values}) if len(values) >= 2 else Guess()
-
-
 def guess_reading(name: str, setting: NameContext) -> Guess:
     """What a result, or the part of it with this name, means."""
     words, unit = _without_unit(words_of(name))
@@ -381,9 +372,6 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
         if is_turning and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
             axis = "j1" if length == 1 else f"j1..j{length}"
             return {f"{at}[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
-        if told == "turned" and length == 3:
-            table: Table = {"kind": "euler", "order": "…", "unit": "rad"}
-            return {f"{at}[0:3]": Guess(table, ["which order, which unit?"])}
         if told == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
             return _pose(at, name, length, setting, written)
     return {}
