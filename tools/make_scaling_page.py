@@ -24,10 +24,10 @@ DATA, PAGE, PICTURE = (
 )
 WIDTH, HEIGHT = 860, 400
 INK, FAINT, GRID, PAPER = "#222222", "#6b6b6b", "#e6e8eb", "#ffffff"
-ENGINES = {"replay": "#2f6fb0", "branch": "#1b7837"}
+ENGINES = {"replay": "#2f6fb0", "fork": "#1b7837"}
 #: what time is lost to, in the order of the bars, with its colour
 LOST = {
-    "trunks": ("the original's own runs", "#8d8d8d"),
+    "originals": ("the original's own runs", "#8d8d8d"),
     "shipped": ("shipping", "#d9c84a"),
     "waited": ("the controller", "#c51b29"),
     "begun": ("beginning", "#9ecae1"),
@@ -45,7 +45,7 @@ TEXT = """\
 
 A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with costs
 that were measured: nobody has run one yet. At 100 workers the efficiency is {replay} with replay and
-{branch} with branch; efficiency is the time on one worker, divided by that on so many and by their number.
+{fork} with fork; efficiency is the time on one worker, divided by that on so many and by their number.
 
 ![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
 
@@ -53,18 +53,18 @@ that were measured: nobody has run one yet. At 100 workers the efficiency is {re
 
 *Shipping* is what a unit costs beside its session: a folder, a job, an answer. *The controller* judges
 answers one after the other; while one waits, its worker has nothing to do. *The original's own runs* are
-what a trunk runs of each test before and beside its branches: each part of a trunk runs its tests again,
+what a fork parent runs of each test before and beside its forks: each of its parts runs its tests again,
 and a worker alone does so once. *Stragglers* is how much longer workers are idle at the end than if equal
 units took equal times and no worker died; *the last unit* is the rest of that. One worker that dies in the
-middle of a trunk that is not cut loses half a round, hence the first row of branch.
+middle of a fork parent that is not cut loses half a round, hence the first row of fork.
 
 The controller is the next limit: it is one process, and what it takes for an outcome, {replay_ms} ms or
-{branch_ms} ms, decides how many workers it keeps busy. Of mutants that take longer than these, a few seconds
-with replay and a quarter of a second with branch, it keeps busy as many more.
+{fork_ms} ms, decides how many workers it keeps busy. Of mutants that take longer than these, a few seconds
+with replay and a quarter of a second with fork, it keeps busy as many more.
 
 ## How large should a unit be?
 
-Replay's are as small as can be: a mutant in a round. A trunk is cut. With 100 workers:
+Replay's are as small as can be: a mutant in a round. A fork parent is cut. With 100 workers:
 
 {sizes}
 
@@ -84,11 +84,11 @@ cores, or run fewer rounds.
 
 - The program is {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), whose
   {own} mutants of family `robot` its suite of {suite} s judges: each copy has its own tests.
-- {sessions} sessions of replay took {session_range} s, {branches} branches {branch_range} s; a mutant's
+- {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; a mutant's
   cost is drawn from these.
 - Equal runs of a test took {quickest} to {slowest} times their mean, on a machine with other work; each
   unit is as much longer or shorter than expected, one of n mutants by 1/√n of that.
-- The controller took {replay_ms} ms for an outcome of replay and {branch_ms} ms for one of branch,
+- The controller took {replay_ms} ms for an outcome of replay and {fork_ms} ms for one of fork,
   recordings included (`python benchmarks/controller.py`), and 3 ms for a unit; a unit cost 28 ms on a
   worker beside its session, a worker 4 s to begin and 0.2 s for the project.
 - Assumed: a worker dies once in 24 hours of work, is missed after 5 s, and its unit runs again as a whole;
@@ -203,7 +203,7 @@ def page(data: Mapping[str, Any]) -> str:
         mutants=f"{found['mutants']:,}",
         rounds=found["rounds"],
         replay=f"{row_of(found, 'replay', 100)['efficiency']:.2f}",
-        branch=f"{row_of(found, 'branch', 100)['efficiency']:.2f}",
+        fork=f"{row_of(found, 'fork', 100)['efficiency']:.2f}",
         curve=_curve_table(found),
         sizes=_size_table(found),
         baselines=_baselines(found),
@@ -212,12 +212,12 @@ def page(data: Mapping[str, Any]) -> str:
         suite=f"{costs['suite']:.1f}",
         sessions=len(costs["replay"]),
         session_range=_range(costs["replay"]),
-        branches=len(costs["branch"]),
-        branch_range=_range(costs["branch"]),
+        forks=len(costs["fork"]),
+        fork_range=_range(costs["fork"]),
         quickest=f"{min(costs['spread']):.2f}",
         slowest=f"{max(costs['spread']):.2f}",
         replay_ms=f"{1e3 * costs['controller']['replay']:.1f}",
-        branch_ms=f"{1e3 * costs['controller']['branch']:.1f}",
+        fork_ms=f"{1e3 * costs['controller']['fork']:.1f}",
         made_by=data["made_by"],
     )
 
@@ -237,7 +237,8 @@ def _curve_table(found: Mapping[str, Any]) -> str:
         (
             engine, f"{row['workers']:,}", f"{row['units']:,}", f"{row['hours']:,.1f}",
             f"{row['speed_up']:,.0f}", f"{row['efficiency']:.2f}",
-            *(percent(row["shares"][name]) for name in ("trunks", "shipped", "waited", "stragglers", "last")),
+            *(percent(row["shares"][one]) for one in ("originals", "shipped", "waited", "stragglers")),
+            percent(row["shares"]["last"]),
             f"{row['controller']:.0%}",
         )
         for engine in ENGINES
@@ -249,13 +250,13 @@ def _curve_table(found: Mapping[str, Any]) -> str:
 def _size_table(found: Mapping[str, Any]) -> str:
     rows = [
         (
-            one["name"], f"{one['units']:,}", f"{one['efficiency']:.2f}", percent(one["shares"]["trunks"]),
+            one["name"], f"{one['units']:,}", f"{one['efficiency']:.2f}", percent(one["shares"]["originals"]),
             percent(one["shares"]["waited"]), percent(one["shares"]["idle"]), percent(one["shares"]["lost"]),
         )
         for one in found["sizes"]
     ]  # fmt: skip
     heads = (
-        "trunk of a round",
+        "fork_parent of a round",
         "units",
         "efficiency",
         "original's runs",

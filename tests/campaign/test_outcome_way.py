@@ -26,7 +26,7 @@ TESTS = """
 """
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_an_outcome_visits_few_files(
     tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch, engine: str
 ) -> None:

@@ -66,7 +66,7 @@ class Run:
         death: set if a process did not live to the end of its tests.
         wall: seconds spent on it.
         shared: simulated seconds that it did not have to spend, since the original had.
-        engine: ``replay`` or ``branch``.
+        engine: ``replay`` or ``fork``.
         exit_code: how the process ended after the whole session; None if it did not get that far.
         problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
         left_out: tests that it was to leave out, unless the original has run them for it.

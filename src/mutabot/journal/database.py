@@ -24,7 +24,7 @@ from mutabot.model.codec import printable
 
 from .files import WriterLock, previous_of, refuse_tracked
 
-SCHEMA_VERSION = 7
+SCHEMA_VERSION = 8
 
 TABLES = f"""
 PRAGMA user_version = {SCHEMA_VERSION};

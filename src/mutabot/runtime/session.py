@@ -149,7 +149,7 @@ class Session:
 
     def _tell_standing(self) -> None:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
-        mutants = self.job.branching.mutants if self.job.branching is not None else ()
+        mutants = self.job.forking.mutants if self.job.forking is not None else ()
         own = (self.job.mutant,) if self.job.mutant is not None else ()
         self.standing.known = dict(self.job.known) | {
             one.site.span: one.operation for one in (*mutants, *own)
@@ -287,7 +287,7 @@ class Session:
         self.test = test
         self._look_again()
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
-        is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
+        is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()
         self.recorder.clock = self.recording.clock if self.job.evidence else None

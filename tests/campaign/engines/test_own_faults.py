@@ -33,7 +33,7 @@ def project(tmp_path: Path, script: Script) -> Path:
     return write_project(tmp_path, MISSION, TESTS)
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_a_mutant_that_cannot_be_judged_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch, engine: str
 ) -> None:
@@ -67,22 +67,22 @@ def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
     assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
 
 
-def test_a_report_of_a_branch_that_cannot_be_used_is_an_error(
+def test_a_report_of_a_fork_that_cannot_be_used_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = fork_parent._ForkParent._branch_ended
+    ended = fork_parent._ForkParent._fork_ended
 
     def broken(self: Any, line: Any) -> Any:
         if line.mutant == CHOSEN:
             raise RuntimeError("broken")
         return ended(self, line)
 
-    monkeypatch.setattr(fork_parent._ForkParent, "_branch_ended", broken)
-    found = run(project, engine="branch")
+    monkeypatch.setattr(fork_parent._ForkParent, "_fork_ended", broken)
+    found = run(project, engine="fork")
     assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
 
 
-def test_a_test_of_the_trunk_that_cannot_be_used_is_left_to_replay(
+def test_a_test_of_the_fork_parent_that_cannot_be_used_is_left_to_replay(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def broken(self: Any, end: Any) -> Any:
@@ -100,4 +100,4 @@ def test_an_error_of_the_disk_is_none_of_the_mutant(project: Path, monkeypatch: 
 
     monkeypatch.setattr(verdict, "judge", full)
     with pytest.raises(JournalError):
-        run(project, engine="branch")
+        run(project, engine="fork")

@@ -29,7 +29,7 @@ MORE = """
         arm.grip(True)
 """
 CHANGES = {
-    "rounds": 2, "evidence": True, "families": ("robot", "graded"), "engine": "branch",
+    "rounds": 2, "evidence": True, "families": ("robot", "graded"), "engine": "fork",
     "only": ("mission.py:run:arm.move_by#1:*",),
 }  # fmt: skip
 

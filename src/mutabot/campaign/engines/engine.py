@@ -1,8 +1,8 @@
 """The engines, which give mutants their outcomes, and what one leaves to the other.
 
-``branch`` runs the suite once as the original and forks it where a mutant differs. ``replay`` runs each
+``fork`` runs the suite once as the original and forks it where a mutant differs. ``replay`` runs each
 mutant in a process of its own: it is the reference, and it takes every mutant. With ``auto``, ``replay``
-judges what ``branch`` cannot.
+judges what ``fork`` cannot.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import replace
 from itertools import takewhile
 
 from mutabot.campaign.campaign import Campaign, OutcomeWriter
-from mutabot.campaign.request import BRANCH, REPLAY
+from mutabot.campaign.request import FORK, REPLAY
 from mutabot.errors import in_short
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
@@ -45,7 +45,7 @@ def run_trials(
         runs, left = left.runs, Unhandled()
         if not runs:
             return
-        for one in _by_branch(campaign, runs, left) if engine == BRANCH else _by_replay(campaign, runs):
+        for one in _by_fork(campaign, runs, left) if engine == FORK else _by_replay(campaign, runs):
             if isinstance(one, ControlEnd):
                 writer.journal.add_control(one.test_file, one.control, one.ok, one.detail)
                 continue
@@ -58,7 +58,7 @@ def run_trials(
             outcome = replace(one, confirmed=True) if is_confirmed else one
             _write(campaign, mutant, outcome, writer, found)
     for mutant, round in left.runs:
-        text = f"it could not be branched: {left.why(mutant) or 'its branch gave no answer'}"
+        text = f"it could not be forked: {left.why(mutant) or 'its fork gave no answer'}"
         error = Outcome(mutant.id, round, Verdict.ERROR, message=text, engine=campaign.request.engine)
         _write(campaign, mutant, error, writer, found)
 
@@ -98,7 +98,7 @@ def _by_replay(campaign: Campaign, runs: Sequence[MutantRun]) -> Iterator[Outcom
     yield from replay(campaign, runs)
 
 
-def _by_branch(
+def _by_fork(
     campaign: Campaign, runs: Sequence[MutantRun], left: Unhandled
 ) -> Iterator[Outcome | ControlEnd]:
     """Run one fork parent per round, with controls and mutants as its forks."""
@@ -109,7 +109,7 @@ def _by_branch(
     hindered: list[tuple[Mutant, Outcome]] = []
     for outcome in parents.run([*(one.run for one in controls.values()), *runs]):
         if outcome.mutant in controls:
-            yield from settled(campaign, BRANCH, controls[outcome.mutant], outcome)
+            yield from settled(campaign, FORK, controls[outcome.mutant], outcome)
         elif outcome.beside is not None:
             hindered.append((mutants[outcome.mutant], outcome))
         else:
@@ -123,21 +123,21 @@ def _by_branch(
 def _forked_controls(campaign: Campaign, mutants: Collection[Mutant]) -> dict[str, Control]:
     """The controls that are to be forked, by the ids of their mutants."""
     found = controls_of(campaign.baseline, mutants, forked=True)
-    return {one.mutant.id: one for one in found if (BRANCH, *one.way) not in campaign.proven}
+    return {one.mutant.id: one for one in found if (FORK, *one.way) not in campaign.proven}
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Unhandled]:
-    """Run the controls alone. Returns how many ended as they must, and what ``branch`` leaves.
+    """Run the controls alone. Returns how many ended as they must, and what ``fork`` leaves.
 
     Raises ControlError for a control that ends wrongly.
     """
     left, ended = Unhandled(), 0
     rest = mutants
-    if BRANCH in campaign.request.engines:
+    if FORK in campaign.request.engines:
         controls = _forked_controls(campaign, mutants)
         campaign.progress.stage("controls", len(controls))
         for outcome in ForkParents(campaign, left).run([one.run for one in controls.values()]):
-            ended += len(list(settled(campaign, BRANCH, controls[outcome.mutant], outcome, is_step=True)))
+            ended += len(list(settled(campaign, FORK, controls[outcome.mutant], outcome, is_step=True)))
         apart = [one for one in mutants if campaign.baseline.is_apart(one)]
         rest = mutants if left.runs else apart
     if REPLAY in campaign.request.engines and rest:
@@ -151,8 +151,8 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)
     for reason, names in tests.items():
-        during = "no branches while the program is imported"
-        where = f"no branches in {in_short(names, 1)}" if names[0] else during
+        during = "no forks while the program is imported"
+        where = f"no forks in {in_short(names, 1)}" if names[0] else during
         campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
     if left.apart:
         text = "each is in place from the start of each test, in a process of its own"

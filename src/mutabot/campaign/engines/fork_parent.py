@@ -14,23 +14,23 @@ from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.baseline.baseline import observation, place_of
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.request import BRANCH
+from mutabot.campaign.request import FORK
 from mutabot.campaign.verdict import Death, Run, judged, not_judged, refuse_others
 from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.model import Instrumentation, Mutant, Outcome
 from mutabot.model.events import (
-    BranchDied,
-    BranchEnd,
-    BranchFinished,
     Event,
+    ForkDied,
+    ForkSessionEnd,
+    ForkTestEnd,
     SiteSeen,
     TestEnd,
-    Unbranched,
     Undiverged,
+    Unforked,
     Untrusted,
 )
-from mutabot.model.job import Branching
+from mutabot.model.job import Forking
 from mutabot.model.mutant import Place
 
 from .isolated_run import MutantRun, job_of, not_run, startup_limit, wall_limits, without_tests
@@ -47,7 +47,7 @@ _FORK = 0.01
 
 @dataclass(slots=True)
 class Unhandled:
-    """What ``branch`` leaves to replay.
+    """What ``fork`` leaves to replay.
 
     Attributes:
         runs: mutants and rounds.
@@ -154,7 +154,7 @@ class _ForkParent:
 
     def add(self, mutant: Mutant) -> None:
         """Add a mutant to fork."""
-        self._open[mutant.id] = _ForkedRun(Run(mutant, self._round, self._tests, engine=BRANCH))
+        self._open[mutant.id] = _ForkedRun(Run(mutant, self._round, self._tests, engine=FORK))
 
     @property
     def mutants(self) -> tuple[Mutant, ...]:
@@ -190,7 +190,7 @@ class _ForkParent:
             for test in baseline.tests_reaching(self._round, mutant):
                 if baseline.ends[self._round, test].processes:
                     at_start[test] = (*at_start.get(test, ()), mutant.id)
-        branching = Branching(
+        forking = Forking(
             mutants=mutants,
             walls=walls,
             wall=max(walls.values(), default=0.0),
@@ -200,14 +200,14 @@ class _ForkParent:
             serial=baseline.is_exclusive(self._round),
             at_start=at_start,
         )
-        job = job_of(campaign, self._round, self._tests, mutants, branching=branching, instrumentation=text)
+        job = job_of(campaign, self._round, self._tests, mutants, forking=forking, instrumentation=text)
         for fork in self._open.values():
             fork.run.left_out = job.left_out(fork.run.mutant.id)
         # it waits for forks that go to the end
-        patience = 2.0 * sum(walls.values()) + branching.startup + _PATIENCE
+        patience = 2.0 * sum(walls.values()) + forking.startup + _PATIENCE
         may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
         return Task(
-            key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=branching.serial
+            key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=forking.serial
         )
 
     def take(self, event: Event) -> Iterator[Outcome]:
@@ -219,10 +219,10 @@ class _ForkParent:
             yield from self._take(event)
         except Exception as error:
             refuse_others(error)
-            fork = self._open.get(event.mutant) if isinstance(event, BranchEnd | BranchDied) else None
+            fork = self._open.get(event.mutant) if isinstance(event, ForkTestEnd | ForkDied) else None
             if fork is not None:
                 del self._open[fork.run.mutant.id]
-                yield not_judged(fork.run.mutant, self._round, error, BRANCH)
+                yield not_judged(fork.run.mutant, self._round, error, FORK)
                 return
             text = f"a report of the fork parent cannot be used: {type(error).__name__}: {error}"
             self._left.notes.append(text)
@@ -230,18 +230,18 @@ class _ForkParent:
 
     def _take(self, event: Event) -> Iterator[Outcome]:
         match event:
-            case BranchEnd() if event.mutant in self._open:
-                yield from self._branch_ended(event)
-            case BranchDied() if event.mutant in self._open:
+            case ForkTestEnd() if event.mutant in self._open:
+                yield from self._fork_ended(event)
+            case ForkDied() if event.mutant in self._open:
                 self._open[event.mutant].run.death = _death_of(event)
                 yield from self._settle(event.mutant)
-            case BranchFinished():
+            case ForkSessionEnd():
                 for mutant in self._open.keys() & set(event.mutants):
                     run = self._open[mutant].run
                     run.exit_code = event.exit_code
                     run.death = Death("; ".join(event.errors)) if event.errors else run.death
                     yield from self._settle(mutant)
-            case Unbranched():
+            case Unforked():
                 self._left.reasons.setdefault(event.test, event.reason)
                 self._leave(self._open.keys() & set(event.mutants))
             case Undiverged():
@@ -274,7 +274,7 @@ class _ForkParent:
                 yield self._judged(fork, len(self._tests))
         self._leave(list(self._open))
 
-    def _branch_ended(self, event: BranchEnd) -> Iterator[Outcome]:
+    def _fork_ended(self, event: ForkTestEnd) -> Iterator[Outcome]:
         fork, test = self._open[event.mutant], event.end.test
         if fork.forked is None:
             fork.forked = -1 if event.is_early else self._numbers[test]
@@ -337,7 +337,7 @@ class _ForkParent:
         return outcome
 
 
-def _death_of(event: BranchDied) -> Death:
+def _death_of(event: ForkDied) -> Death:
     during = f" during {event.test}" if event.test else ""
     return Death(
         text=f"{event.overdue or how_ended(event.exit_code)}{during}",

@@ -322,7 +322,7 @@ def clear_up(campaign: Campaign, suspects: Iterable[tuple[int, str]]) -> None:
             else:
                 baseline.doubt(test)
                 progress.note(
-                    f"{test} failed once while mutants were branched off in round {round + 1}, and passes "
-                    "without: by chance, or by what a branch left behind; mutants of this test and of later "
+                    f"{test} failed once while mutants were forked in round {round + 1}, and passes "
+                    "without: by chance, or by what a fork left behind; mutants of this test and of later "
                     "ones run in processes of their own"
                 )

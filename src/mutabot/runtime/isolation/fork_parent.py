@@ -22,8 +22,8 @@ from dataclasses import dataclass, field
 from time import monotonic  # tests may replace that of the module
 
 from mutabot.model import Call, Mutant, Span
-from mutabot.model.events import BranchDied, ForkEnded, TokensHeld, Unbranched, Undiverged
-from mutabot.model.job import Branching
+from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Unforked
+from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import Isolation, StateBeforeFork
@@ -63,7 +63,7 @@ class Child:
         used: how much of them it has used.
         until: moment (``time.monotonic``) at which its time is up.
         overdue: whether its time was up.
-        hindered, is_starved: as in ``BranchDied``.
+        hindered, is_starved: as in ``ForkDied``.
     """
 
     mutant: str
@@ -96,7 +96,7 @@ class ForkParent:
     """Forks a child for each mutant.
 
     Attributes:
-        branching: the mutants, and what children may use.
+        forking: the mutants, and what children may use.
         tests: the tests of the session, in their order.
         pipe: the file of events.
         isolation: how a child is kept apart from this process.
@@ -107,7 +107,7 @@ class ForkParent:
             running test.
     """
 
-    branching: Branching
+    forking: Forking
     tests: tuple[str, ...]
     pipe: EventFile
     isolation: Isolation
@@ -133,15 +133,15 @@ class ForkParent:
 
     def __post_init__(self) -> None:
         os.register_at_fork(before=self._note_copy)
-        self._slots = {mutant.id: slot for slot, mutant in enumerate(self.branching.mutants)}
+        self._slots = {mutant.id: slot for slot, mutant in enumerate(self.forking.mutants)}
         # the board, which children write: whether each has gone to the end, and the number of its test
         count = max(1, len(self._slots))
         board = memoryview(mmap.mmap(-1, 2 * count * _NUMBER_BYTES)).cast("i")
         self._finished, self._tests = board[:count], board[count:]
         self._known = open_now()
-        for mutant in self.branching.mutants:
+        for mutant in self.forking.mutants:
             keys: list[Key] = [(mutant.site.span, mutant.operation, mutant.pattern)]
-            keys += [choice.place for choice in self.branching.choices.get(mutant.id, ())]
+            keys += [choice.place for choice in self.forking.choices.get(mutant.id, ())]
             for key in keys:
                 self._live.setdefault(key, []).append(mutant)
 
@@ -150,12 +150,12 @@ class ForkParent:
         self._is_overtaken()  # also if no place is reached before
         self._test, self._number = test, self.tests.index(test)
         self._copied = False
-        due = set(self.branching.at_start.get(test, ())) - self._gone
+        due = set(self.forking.at_start.get(test, ())) - self._gone
         if due and self.has_nodes:
             self._gone |= due
-            self.pipe.send(Unbranched(test, tuple(sorted(due)), _NODES))
+            self.pipe.send(Unforked(test, tuple(sorted(due)), _NODES))
         elif due:
-            self._fork([one for one in self.branching.mutants if one.id in due])
+            self._fork([one for one in self.forking.mutants if one.id in due])
 
     def fork_at(self, span: Span, call: Call, number: int) -> None:
         """Fork for each mutant that acts at this call and has no process yet.
@@ -201,7 +201,7 @@ class ForkParent:
 
     def _index(self, mutant: Mutant) -> int:
         """Which alternative the mutant is; negative if it cannot wait until that changes something."""
-        return self.branching.choices[mutant.id][0].index
+        return self.forking.choices[mutant.id][0].index
 
     def _fork(self, mutants: Iterable[Mutant]) -> None:
         due = [mutant for mutant in mutants if mutant.id not in self._gone]
@@ -215,7 +215,7 @@ class ForkParent:
             own = (child.pid for child in self._children.values())
             reason = STARTED if self._is_overtaken() else self.isolation.reason() or why_not(own, self._known)
             if reason is not None:
-                self.pipe.send(Unbranched(self._test, tuple(mutant.id for mutant in due), reason))
+                self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
                 self._fork_each(due)
 
@@ -262,14 +262,14 @@ class ForkParent:
         """Let go of what is the parent's, and become the mutant."""
         die_with_parent(self._pid)
         self.pipe.go_on_apart()
-        for descriptor in (*self._children, *self.branching.tokens):
+        for descriptor in (*self._children, *self.forking.tokens):
             os.close(descriptor)
         try:
             folder = self.isolation.enter(self.pipe.name)
         except OSError as error:
             why = f"a fork cannot have files of its own: {error.strerror or error}"
             try:
-                self.pipe.send(Unbranched(self._test, (mutant.id,), why))
+                self.pipe.send(Unforked(self._test, (mutant.id,), why))
             finally:
                 os._exit(STOPPED)
         before.restore()
@@ -297,8 +297,8 @@ class ForkParent:
     def _limit(self, test: int) -> float:
         """Seconds for a test, by its number; -1 before any."""
         if test < 0:
-            return self.branching.startup
-        return self.branching.walls.get(self._name_of(test), self.branching.wall)
+            return self.forking.startup
+        return self.forking.walls.get(self._name_of(test), self.forking.wall)
 
     def _name_of(self, test: int) -> str:
         """The node id of a test, by its number: empty before any, the last one while the session ends."""
@@ -306,9 +306,9 @@ class ForkParent:
 
     def _take_token(self) -> None:
         """The parent's token went to the child: wait for another, from the pool or from a child's end."""
-        reading = self.branching.tokens[0]
-        while self.branching.serial or not self._take_free(reading):
-            if self._reap(self._wait(None if self.branching.serial else reading)):
+        reading = self.forking.tokens[0]
+        while self.forking.serial or not self._take_free(reading):
+            if self._reap(self._wait(None if self.forking.serial else reading)):
                 return
 
     def _take_free(self, reading: int) -> bool:
@@ -324,7 +324,7 @@ class ForkParent:
         """Put one token back into the pool."""
         self._hold(self._held - 1)
         with suppress(BlockingIOError):  # it is full, of what no parent has put there
-            os.write(self.branching.tokens[1], _TOKEN)
+            os.write(self.forking.tokens[1], _TOKEN)
 
     def _hold(self, count: int) -> None:
         self._held = count
@@ -377,7 +377,7 @@ class ForkParent:
         died = None
         if not is_told or child.overdue:
             test = self._name_of(self._tests[slot])
-            died = BranchDied(
+            died = ForkDied(
                 child.mutant, test, code, overdue(child.limit, test) if child.overdue else None,
                 hindered=child.hindered, is_starved=child.is_starved,
             )  # fmt: skip
