@@ -32,18 +32,18 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
-from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.run import begin, open_executor, selected
 from mutabot.cli.request import request_of
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.journal.journal import Journal
-from mutabot.model import Mutant, Outcome
+from mutabot.model import Mutant
 from mutabot.model.codec import to_data
 from mutabot.model.events import (
     Event,
@@ -251,7 +251,6 @@ def _play(
 ) -> dict[str, Any]:  # fmt: skip
     many = copies(mutants, given.mutants)
     journal.set_plan(many, ())
-    by_id = {one.id: one for one in many}
     looks: list[tuple[int, float, float]] = []
     step = max(1, given.mutants // LOOKS)
 
@@ -261,13 +260,7 @@ def _play(
 
     player = Player(told)
     playing = Campaign(request, campaign.baseline, player, Silent(look), evidence, campaign.proven)
-
-    def key_of(outcome: Outcome) -> str:
-        key = dependencies.key_of(outcome, by_id[outcome.mutant], dependencies.stored(outcome.executed))
-        journal.add_parts(dependencies.new_parts())
-        return key
-
-    sink = OutcomeWriter(journal, key_of)
+    sink = OutcomeWriter(journal, dependencies, many)
     profile = cProfile.Profile() if given.profile else None
     if profile is not None:
         profile.enable()

@@ -42,8 +42,8 @@ from rich.table import Table
 
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.fork_parent import ForkParents, Unhandled
-from mutabot.campaign.engines.isolated_run import MutantRun, replay
+from mutabot.campaign.engines.engine import ForkParents, Unhandled, replay
+from mutabot.campaign.engines.tasks import MutantRun
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected

@@ -43,65 +43,61 @@ TEXT = """\
 
 <!-- Written by tools/make_scaling_page.py from benchmarks/scaling.json. Do not edit. -->
 
-A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with costs
-that were measured: nobody has run one yet. At 100 workers the efficiency is {replay} with replay and
-{fork} with fork; efficiency is the time on one worker, divided by that on so many and by their number.
+A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with
+measured costs (nobody has run one yet). At 100 workers the efficiency, the time on one worker divided by
+that on so many and by their number, is {replay} with replay and {fork} with fork.
 
 ![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
 
 {curve}
 
-*Shipping* is what a unit costs beside its session: a folder, a job, an answer. *The controller* judges
-answers one after the other; while one waits, its worker has nothing to do. *The original's own runs* are
-what a fork parent runs of each test before and beside its forks: each of its parts runs its tests again,
-and a worker alone does so once. *Stragglers* is how much longer workers are idle at the end than if equal
-units took equal times and no worker died; *the last unit* is the rest of that. One worker that dies in the
-middle of a fork parent that is not cut loses half a round, hence the first row of fork.
+| column | meaning |
+|---|---|
+| original's runs | a fork parent's own runs of tests; each part runs its tests again |
+| shipping | a unit's folder, job and answer |
+| controller | it judges one answer after the other; a worker whose answer waits is idle |
+| stragglers | idle time at the end that equal units, equal times and no deaths would avoid |
+| last unit | the rest of the idle time at the end |
 
-The controller is the next limit: it is one process, and what it takes for an outcome, {replay_ms} ms or
-{fork_ms} ms, decides how many workers it keeps busy. Of mutants that take longer than these, a few seconds
-with replay and a quarter of a second with fork, it keeps busy as many more.
+The first row of fork: one worker that dies in an uncut fork parent loses half a round. The controller is
+the limit: one process that takes {replay_ms} ms or {fork_ms} ms per outcome. Mutants that take longer than
+here (a few seconds with replay, a quarter of a second with fork) keep as many more workers busy.
 
 ## How large should a unit be?
 
-Replay's are as small as can be: a mutant in a round. A fork parent is cut. With 100 workers:
+Replay: a mutant in a round. A fork parent is cut; with 100 workers:
 
 {sizes}
 
-The executor cuts 16 parts for each worker, none with fewer than ten mutants, mutants of the same tests
-together, and gives the longest away first, by the times of the baseline. Smaller parts end more evenly,
-lose less with a worker that dies, and keep the controller busy more evenly; they run tests of the original
-more often.
+The executor cuts 16 parts per worker, at least ten mutants each, mutants of the same tests together,
+longest first by baseline times. Smaller parts end more evenly, lose less with a dead worker and spread the
+controller's work, but run tests of the original more often.
 
 ## The baseline
 
-It runs on the controller's machine before anything is given away, as many tests side by side as that has
-`jobs`, and is not in the numbers above. Of a program of this size it takes, two runs in each of ten rounds,
-{baselines}. Beside a hundred workers, whose hours stand above, that counts: take it where there are many
-cores, or run fewer rounds.
+It runs first on the controller's machine, with `jobs` tests side by side, and is not in these numbers: two
+runs in each of ten rounds take {baselines}. Use many cores there, or fewer rounds.
 
 ## What was measured, and what is assumed
 
-- The program is {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), whose
-  {own} mutants of family `robot` its suite of {suite} s judges: each copy has its own tests.
-- {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; a mutant's
-  cost is drawn from these.
-- Equal runs of a test took {quickest} to {slowest} times their mean, on a machine with other work; each
-  unit is as much longer or shorter than expected, one of n mutants by 1/√n of that.
-- The controller took {replay_ms} ms for an outcome of replay and {fork_ms} ms for one of fork,
-  recordings included (`python benchmarks/controller.py`), and 3 ms for a unit; a unit cost 28 ms on a
-  worker beside its session, a worker 4 s to begin and 0.2 s for the project.
-- Assumed: a worker dies once in 24 hours of work, is missed after 5 s, and its unit runs again as a whole;
-  all workers are equally fast.
-
-Measured by
+- Program: {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), each with its
+  own tests: {own} mutants of family `robot`, a suite of {suite} s.
+- {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; costs are drawn from
+  these.
+- Equal runs of a test took {quickest} to {slowest} times their mean on a machine with other work; units
+  vary as much, one of n mutants by 1/√n of that.
+- Controller: {replay_ms} ms per outcome of replay, {fork_ms} ms of fork, with recordings (`python
+  benchmarks/controller.py`), and 3 ms per unit. Worker: 28 ms per unit, 4 s to start, 0.2 s for the
+  project.
+- Assumed: a worker dies once in 24 hours, is missed after 5 s, and its unit runs again; all workers are
+  equally fast.
 
 ```text
 {made_by}
 ```
 
-and simulated by `python benchmarks/cluster_simulation.py`, which stores what came of it in
-`benchmarks/scaling.json`; the page is made of that by `python tools/make_scaling_page.py`.
+`python benchmarks/cluster_simulation.py` then simulates and stores `benchmarks/scaling.json`; `python
+tools/make_scaling_page.py` writes this page.
 """
 
 
@@ -256,7 +252,7 @@ def _size_table(found: Mapping[str, Any]) -> str:
         for one in found["sizes"]
     ]  # fmt: skip
     heads = (
-        "fork_parent of a round",
+        "fork parent of a round",
         "units",
         "efficiency",
         "original's runs",

@@ -448,7 +448,7 @@ class Did(Event):
 
     Attributes:
         test: the test that runs.
-        hits, acted, away, example, invalid, failure: as in ``TestEnd``.
+        hits, acted, away, example, failure: as in ``TestEnd``.
         refused: how the robot refused a mutated call; None if it did not.
         is_final: whether this refusal decides about a test that fails, since it was told as data.
     """
@@ -458,7 +458,6 @@ class Did(Event):
     acted: int = 0
     away: Mapping[str, int] = field(default_factory=dict)
     example: tuple[Any, ...] | None = None
-    invalid: bool = False
     failure: str | None = None
     refused: str | None = None
     is_final: bool = False

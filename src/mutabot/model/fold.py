@@ -264,7 +264,6 @@ def _with_deeds(end: events.TestEnd, did: list[events.Did]) -> events.TestEnd:
         away=added([end.away, *(one.away for one in did)]),
         example=next((one for one in examples if one is not None), None),
         failure=next((one for one in failures if one is not None), None),
-        invalid=end.invalid or any(one.invalid for one in did),
     )
     if refused and end.refused is None:
         is_final = any(one.is_final for one in refused)

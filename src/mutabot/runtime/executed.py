@@ -170,21 +170,22 @@ class ExecutedUnits:
         return False
 
 
+def _who(readers: tuple[str, ...]) -> str:
+    """The name of the module that does what is heard of; one of ``readers`` does it for another."""
+    frame: FrameType | None = sys._getframe(3)
+    while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in readers:
+        frame = frame.f_back
+    return str(frame.f_globals.get("__name__", "")) if frame is not None else ""
+
+
 def _is_by_us() -> bool:
     """Whether it is Mutabot that does what is heard of, be it by modules that read program text."""
-    frame: FrameType | None = sys._getframe(2)
-    while frame is not None and frame.f_globals.get("__name__") in ("linecache", "tokenize", "codecs"):
-        frame = frame.f_back
-    return frame is not None and str(frame.f_globals.get("__name__", "")).startswith("mutabot.")
+    return _who(("linecache", "tokenize", "codecs")).startswith("mutabot.")
 
 
 def _is_import() -> bool:
     """Whether a program text is opened by what imports it, or by pytest."""
-    frame: FrameType | None = sys._getframe(2)
-    readers = ("pathlib", "linecache", "tokenize", "codecs")
-    while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in readers:
-        frame = frame.f_back
-    name = str(frame.f_globals.get("__name__", "")) if frame is not None else ""
+    name = _who(("pathlib", "linecache", "tokenize", "codecs"))
     return name.startswith("_pytest.") or name in (
         "_frozen_importlib_external",
         "importlib._bootstrap_external",

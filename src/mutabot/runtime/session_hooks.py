@@ -100,8 +100,9 @@ class SessionHooks:
             hooks._make_private(job, home)
         hooks.session.returns = Returns(hooks.locator)
         hooks.session.install()
-        hooks.look_at_checks()
-        hooks.record_units()
+        Checks(job.root, hooks._is_of_tests, hooks.tests.looks).install()
+        hooks.session.call_sites.hook_pytest()
+        hooks.tests.units.install()
         if job.serving is None:
             hooks._begin(home)
         return hooks
@@ -154,16 +155,6 @@ class SessionHooks:
         fork = ForkedRun(self.session, self.session.fork_parent, mutant, folder)
         self.tests.fork = fork
         self.session.become(mutant, fork.choices)
-
-    def look_at_checks(self) -> None:
-        """Note what tests check."""
-        looks, root = self.tests.looks, self.job.root
-        Checks(root, self._is_of_tests, looks).install()
-        self.session.call_sites.hook_pytest()
-
-    def record_units(self) -> None:
-        """Note what is executed."""
-        self.tests.units.install()
 
     def _is_of_tests(self, path: str) -> bool:
         """Whether a file is the project's own, and not the program's."""
@@ -240,7 +231,6 @@ class SessionHooks:
         if self._server is not None:
             session.items.clear()
             return (yield)
-        self.session.look_ahead()
         seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
         result = yield
         drop_idle_plugins(session.config)

@@ -15,7 +15,7 @@ from mutabot.errors import BaselineError, UnstableError
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
 from mutabot.model.call import derive
-from mutabot.runtime.plain_round import PlainRound
+from mutabot.runtime.pytest_plugin import PlainRound
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, request_for, write_project
 from tests.campaign.scripted import CHECKED, Script
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.run import plan_only, run_campaign
-from mutabot.campaign.sharding.merge import merge
+from mutabot.campaign.sharding.shards import merge
 from mutabot.config.options import Shard
 from mutabot.errors import MergeError, UsageError
 from mutabot.journal.files import recordings_path

@@ -25,7 +25,6 @@ from mutabot.model.events import (
     Did,
     Event,
     Found,
-    Noted,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -198,11 +197,10 @@ class Member:
                 self.poll()
 
         session.recorder.on_hit, session.passing.on_end, session.passing.turn = hit, is_over, self.turn
-        session.on_refused = lambda site, number: self.file.send(Noted(site, number))
-        session.on_live = lambda site: self.file.send(Noted(site))
-        for targets in session.interception.kinds:
-            if targets.on_heard is not None:
-                targets.on_heard = partial(heard, targets.on_heard)
+        session.on_noted = self.file.send
+        messages = session.messages
+        if messages is not None and messages.on_heard is not None:
+            messages.on_heard = partial(heard, messages.on_heard)
 
     def turn(self) -> None:
         """Look whether another test has begun."""
@@ -245,13 +243,13 @@ class Member:
 
     def _tell_found(self, session: Session) -> None:
         """Tell of targets that were found since the last time."""
-        targets = session.interception.found - self._targets
+        targets = {name for kind in session.targets for name in kind.here()} - self._targets
         if not targets:
             return
         self._targets |= targets
         for operation in session.job.vocabulary.operations:
             if operation.target in targets:
-                session.inspection.check_target(operation, session.interception)
+                session.inspection.check_target(operation, session.targets)
         self.file.send(Found(targets=tuple(sorted(targets))))
 
     def _did(self, before: Evidence, now: Evidence) -> Did:
@@ -263,7 +261,6 @@ class Member:
             acted=now.acted - before.acted,
             away={why: count for why, count in away.items() if count},
             example=now.example if before.example is None else None,
-            invalid=now.invalid and not before.invalid,
             failure=now.failure if before.failure is None else None,
             refused=now.refusal if is_refused and not now.is_of_text else None,
             is_final=now.said is not None,

@@ -121,7 +121,8 @@ class Members:
             case Signalled():
                 self._watch.signalled.add(event.pid)
             case Found():
-                self._session.interception.found_elsewhere(event.targets)
+                for targets in self._session.targets:
+                    targets.found_elsewhere(event.targets)
                 self._session.inspection.elsewhere.update(event.modules)
             case NotInstrumented() | Problem() | Remark():
                 self._session.pipe.send(event)

@@ -22,7 +22,7 @@ from mutabot.runtime.program_text.instrument import MismatchError, forms_of, ins
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:  # not every process makes calls, or forks
-    from mutabot.model import Call, Choice
+    from mutabot.model import Call
 
 
 class _ChangedError(MismatchError):
@@ -96,11 +96,6 @@ class SessionText:
         loading.add(self)
         loading.hook_runpy()
 
-    def remove(self) -> None:
-        """Import as ever from now on; text that is instrumented goes on as the original."""
-        loading.remove(self)
-        (self.sightings or self.alternatives).remove()
-
     def wants(self, path: str) -> bool:
         """Whether there are alternatives for a file."""
         return self._text_of(path) is not None
@@ -173,11 +168,6 @@ class SessionText:
             imported = dict.fromkeys([*self.imported, *(file for one in others for file in one.imported)])
             seen = [*self.sightings.seen(), *(seen for one in others for seen in one.sightings)]
             self._send(TextsSeen(tuple(imported), tuple(seen)))
-
-    def become(self, choices: Iterable[Choice]) -> None:
-        """In a process that was just forked: let these alternatives stand in the text, and watch none."""
-        self.alternatives.on_place = None
-        self.alternatives.activate(*choices)
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
