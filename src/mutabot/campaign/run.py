@@ -39,7 +39,16 @@ from mutabot.execution.processes import provide
 from mutabot.execution.task import Executor, Result
 from mutabot.journal.files import at_work
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, RAN_OVER, REACHING, REMARKS
+from mutabot.journal.records import (
+    DRAWING,
+    DRAWS,
+    INCOMPLETE,
+    OPERATORS,
+    RAN_OVER,
+    REACHING,
+    REMARKS,
+    SIMULATION,
+)
 from mutabot.model import LeftOut, Mutant, Outcome
 from mutabot.model.codec import to_data
 
@@ -104,7 +113,7 @@ def begin(
     campaign, results = take(request, executor, 2 if is_compared else 0)
     if tried is not None:
         campaign, results = simulation.chosen(campaign, results, tried)
-    note_fit(campaign.baseline, campaign.request.vocabulary, progress)
+    note_fit(campaign.baseline, request.vocabulary, progress)
     return campaign, results
 
 
@@ -362,6 +371,8 @@ def _write_beginning(
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
         journal.set_meta(DRAWING, to_data(plan.drawing))
+    journal.set_meta(SIMULATION, request.simulation)
+    journal.set_meta(RAN_OVER, request.ran_over)
     journal.set_meta(OPERATORS, summaries(plan.mutants))
     journal.set_meta(DRAWS, drawing(plan.mutants))
     journal.set_meta(REACHING, to_data(reaching(campaign.baseline, plan.mutants)))
@@ -385,7 +396,5 @@ def _meta(request: Request) -> dict[str, Any]:
         "every_test": request.every_test,
         "fresh": request.fresh,
         "started": time.time(),
-        "simulation": request.simulation,
-        RAN_OVER: request.ran_over,
         "vocabulary": to_data(request.vocabulary),
     }

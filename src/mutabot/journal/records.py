@@ -23,8 +23,8 @@ SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
 #: what is to be known of the machines that the campaign ran on, a line each
 REMARKS = "remarks"
-#: over what the tests ran, in a sentence
-RAN_OVER = "ran_over"
+#: the simulation over which the tests ran, if any, and why, in a sentence
+SIMULATION, RAN_OVER = "simulation", "ran_over"
 #: how a campaign ended of which all has run, but not every outcome is in the journal
 INCOMPLETE = "incomplete"
 #: rows of the journal that something else changed while the campaign ran, and that were restored, in words
@@ -380,7 +380,7 @@ PLAIN: Mapping[str, Any] = {
     "started": float,
     "seconds": float,
     "shards": int,
-    "simulation": str,
+    SIMULATION: str,
     RAN_OVER: str,
     REMARKS: tuple[str, ...],
 }

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from mutabot.frozen import frozen
-from mutabot.journal.records import RAN_OVER, REMARKS, Repeated
+from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated
 from mutabot.model import LeftOut, Span, Verdict
 from mutabot.results.divergence import first_line
 from mutabot.results.results import Results, unlooked
@@ -238,7 +238,7 @@ def _reliability(results: Results) -> Iterator[Section]:
 
 def _where(results: Results) -> str:
     """Where outcomes were verified."""
-    return "over the real middleware" if results.meta.get("simulation") else "in fresh processes"
+    return "over the real middleware" if results.meta.get(SIMULATION) else "in fresh processes"
 
 
 def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repeated]]) -> Iterator[Section]:

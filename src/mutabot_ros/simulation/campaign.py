@@ -68,7 +68,7 @@ class Ros2Simulation(Simulation):
         if table.schedule != "first-in":
             arguments += ["--ros-schedule", table.schedule]
         configuration = request.configuration
-        changed = replace(configuration, pytest_args=(*arguments, *configuration.pytest_args))
+        changed = configuration.model_copy(update={"pytest_args": (*arguments, *configuration.pytest_args)})
         clock = request.vocabulary.clock or CLOCK
         return replace(request, configuration=changed, vocabulary=replace(request.vocabulary, clock=clock))
 
@@ -79,7 +79,7 @@ class Ros2Simulation(Simulation):
 
     @staticmethod
     def _is_of(request: Request) -> bool:
-        """Whether it is a project over the installed rclpy whose tests do not run over the simulation anyway."""
+        """Whether it is a project over the installed rclpy, and does not name the plug-in itself."""
         root = request.root
         if not speaks_of(str(root), "rclpy") or (root / "rclpy").exists() or (root / "rclpy.py").exists():
             return False
