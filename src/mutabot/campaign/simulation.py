@@ -18,9 +18,6 @@ from mutabot.extensions import brought
 from mutabot.frozen import frozen
 from mutabot.model import Vocabulary
 
-#: so many calls of a site in a test are a stream
-STREAM = 10
-
 
 class Simulation(ABC):
     """A simulation of a middleware that packages bring. Its name is the one in the extension.
@@ -166,13 +163,8 @@ def _value(first: Observation, second: Observation, other: Observation, words: V
 
 
 def _at(site: str, runs: Sequence[Observation]) -> list[Observation]:
-    """The calls of a site in some runs.
-
-    Of a stream, as a control loop and a sensor make it, the number of calls and the later values are a matter
-    of moments: only the first call is compared, if there are about as many.
-    """
+    """The first call of a site in some runs, if it is reached about as often: that is a matter of moments."""
     calls = [[call for call in one.events if call.key == site] for one in runs]
     counts = sorted(map(len, calls))
-    if counts[0] >= STREAM and counts[-1] <= 2 * counts[0]:
-        calls = [found[:1] for found in calls]
-    return [Observation(found) for found in calls]
+    is_alike = counts[-1] <= 2 * counts[0]
+    return [Observation(found[:1] if is_alike else found) for found in calls]
