@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline, observations_of
@@ -163,8 +163,16 @@ def _value(first: Observation, second: Observation, other: Observation, words: V
 
 
 def _at(site: str, runs: Sequence[Observation]) -> list[Observation]:
-    """The first call of a site in some runs, if it is reached about as often: that is a matter of moments."""
+    """The first call of a site in some runs, if it is reached about as often.
+
+    How often, and whether an answer comes before the test has ended, is a matter of moments.
+    """
     calls = [[call for call in one.events if call.key == site] for one in runs]
     counts = sorted(map(len, calls))
-    is_alike = counts[-1] <= 2 * counts[0]
-    return [Observation(found[:1] if is_alike else found) for found in calls]
+    if counts[0] == 0 or counts[-1] > 2 * counts[0]:
+        return [Observation(found) for found in calls]
+    first = [found[0] for found in calls]
+    if not all(isinstance(call.read, Mapping) for call in first):
+        return [Observation([call]) for call in first]
+    read = set.intersection(*({*call.read} for call in first))
+    return [Observation([replace(call, read={name: call.read[name] for name in read})]) for call in first]
