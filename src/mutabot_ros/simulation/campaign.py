@@ -67,6 +67,7 @@ class Ros2Simulation(Simulation):
         arguments = ["-p", PLUGIN]
         if table.schedule != "first-in":
             arguments += ["--ros-schedule", table.schedule]
+        self.draws = table.schedule != "first-in"
         configuration = request.configuration
         changed = configuration.model_copy(update={"pytest_args": (*arguments, *configuration.pytest_args)})
         clock = request.vocabulary.clock or CLOCK

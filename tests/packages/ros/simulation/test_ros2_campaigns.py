@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import re
+import shlex
+import subprocess
+import sys
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -9,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from campaign.project import Quiet, outcomes, request_for, write_project
+from campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
 from mutabot.campaign.again import replay_one
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_again
@@ -179,3 +184,55 @@ def test_an_explicit_engine_means_real_ros(tmp_path: Path) -> None:
     results = campaign(tmp_path, engine="replay")
     assert not results.meta["ran_over"]
     assert outcomes(tmp_path / ".mutabot" / "journal.sqlite")[0].engine == "replay"
+
+
+RACE = """
+    import time
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+    from std_msgs.msg import Float64
+    import mission
+
+    def test_the_speed_is_heard():
+        contexts = [rclpy.Context(), rclpy.Context()]
+        for context in contexts:
+            rclpy.init(context=context)
+        speaker, listener = (rclpy.create_node("node", context=context) for context in contexts)
+        executor = SingleThreadedExecutor(context=contexts[1])
+        executor.add_node(listener)
+        heard = []
+        listener.create_subscription(Float64, "/speed", lambda one: heard.append(one.data), 10)
+        publisher = speaker.create_publisher(Float64, "/speed", 10)
+        until = time.monotonic() + {patience}
+        while time.monotonic() < until and not ({is_real} and publisher.get_subscription_count()):
+            time.sleep(0.01)
+        mission.run(publisher)
+        executor.spin_once(2.0)
+        for context in contexts:
+            context.shutdown()
+        assert heard == [0.5]
+"""
+
+
+def test_an_order_in_which_the_original_fails_is_told_with_what_repeats_it(tmp_path: Path) -> None:
+    is_real = 'not __import__("mutabot_ros.simulation").simulation.is_running()'
+    tests = RACE.format(is_real=is_real, patience=f"(10.0 if {is_real} else 0.1)")
+    settings = f'{CONFIGURATION}\nunstable_limit = 1.0\n[ros]\nschedule = "random"\n'
+    write_project(tmp_path, MISSION.format(value="0.5"), tests, vocabulary=VOCABULARY, configuration=settings)
+    path = run_campaign(request_for(tmp_path, rounds=6, only=("*reverse*",), jobs=1, verify=0), Quiet())
+    with JournalReader.open(path) as journal:
+        results = read_results(journal)
+    assert results.meta["simulation"] == "ros2", results.meta["ran_over"]
+    (told, *_) = results.flaky.tests
+    assert "fails on the unmutated program with seed" in told
+    command = told.rpartition(" repeat it by ")[2].partition(" ")[2]
+    assert command.startswith("pytest -p mutabot_ros.simulation.plugin --ros-schedule random")
+
+    def end(round: int) -> int:
+        return subprocess.run(
+            [sys.executable, "-m", *shlex.split(command)], cwd=tmp_path, check=False,
+            env={**os.environ, "MUTABOT_ROUND": str(round)}, capture_output=True,
+        ).returncode  # fmt: skip
+
+    failing = {int(re.search(r"in round (\d+)", line)[1]) for line in results.flaky.tests}
+    assert {round for round in range(1, 7) if end(round)} == failing
