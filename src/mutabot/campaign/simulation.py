@@ -167,16 +167,13 @@ def _value(first: Observation, second: Observation, other: Observation, words: V
 
 
 def _at(site: str, runs: Sequence[Observation]) -> list[Observation]:
-    """The first call of a site in some runs, if it is reached about as often.
+    """The first call of a site in some runs.
 
-    How often, and whether an answer comes before the test has ended, is a matter of moments.
+    How often it is reached, and whether an answer comes before the test has ended, is a matter of moments.
     """
-    calls = [[call for call in one.events if call.key == site] for one in runs]
-    counts = sorted(map(len, calls))
-    if counts[0] == 0 or counts[-1] > 2 * counts[0]:
-        return [Observation(found) for found in calls]
-    first = [found[0] for found in calls]
-    if not all(isinstance(call.read, Mapping) for call in first):
-        return [Observation([call]) for call in first]
-    read = set.intersection(*({*call.read} for call in first))
-    return [Observation([replace(call, read={name: call.read[name] for name in read})]) for call in first]
+    first = [[call for call in one.events if call.key == site][:1] for one in runs]
+    calls = [call for found in first for call in found]
+    if len(calls) < len(runs) or not all(isinstance(call.read, Mapping) for call in calls):
+        return [Observation(found) for found in first]
+    read = set.intersection(*({*call.read} for call in calls))
+    return [Observation([replace(call, read={name: call.read[name] for name in read})]) for call in calls]
