@@ -82,9 +82,8 @@ class Ros2Simulation(Simulation):
     def _is_of(request: Request) -> bool:
         """Whether it is a project over the installed rclpy, and does not name the plug-in itself."""
         root = request.root
-        if not speaks_of(str(root), "rclpy") or (root / "rclpy").exists() or (root / "rclpy.py").exists():
-            return False
-        if find_spec("rclpy") is None:
+        is_own = (root / "rclpy").exists() or (root / "rclpy.py").exists()
+        if find_spec("rclpy") is None or is_own or not speaks_of(str(root), "rclpy"):
             return False
         return not any(PLUGIN in text for text in (*request.arguments, *_settings(root)))
 
