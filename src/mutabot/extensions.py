@@ -76,7 +76,7 @@ class Extension:
         formats: a function (``mutabot.report.format.Format``) each, by its name.
         sections: functions of ``mutabot.results.results.Results`` that make a section of the results
             document each, of plain data, by its name.
-        simulations: subclasses of ``mutabot.campaign.simulation.Simulation``, by their names: what campaigns
+        simulations: subclasses of ``mutabot.campaign.simulation.SimulatedMiddleware``, by their names: what campaigns
             may run the tests over instead of the real middleware.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
     """

@@ -19,7 +19,7 @@ from mutabot.frozen import frozen
 from mutabot.model import Vocabulary
 
 
-class Simulation(ABC):
+class SimulatedMiddleware(ABC):
     """A simulation of a middleware that packages bring. Its name is the one in the extension.
 
     Attributes:
@@ -49,7 +49,7 @@ class Simulation(ABC):
 def over(request: Request, name: str) -> Request:
     """A request whose tests run over the simulation of this name, as those of an earlier campaign did."""
     part = brought("simulations").get(name)
-    changed = part.make(Simulation).over(request) if part is not None else None  # type: ignore[type-abstract]
+    changed = part.make(SimulatedMiddleware).over(request) if part is not None else None  # type: ignore[type-abstract]
     if changed is None:
         raise UsageError(
             f"the campaign ran over the simulation {name!r}, which this project does not use now"
@@ -68,7 +68,7 @@ class Tried:
         why: why it did not run there.
     """
 
-    simulation: Simulation
+    simulation: SimulatedMiddleware
     campaign: Campaign | None = None
     results: Sequence[Result] = ()
     why: str = ""
@@ -83,7 +83,7 @@ def try_original(request: Request, take: Callable[[Request], tuple[Campaign, lis
     if request.engine != AUTO or request.executor is not None or request.simulation or request.ran_over:
         return None
     for name, part in brought("simulations").items():
-        simulation = part.make(Simulation)  # type: ignore[type-abstract]
+        simulation = part.make(SimulatedMiddleware)  # type: ignore[type-abstract]
         try:
             changed = simulation.over(request)
             if changed is not None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from mutabot.campaign.request import Request
-from mutabot.campaign.simulation import Simulation
+from mutabot.campaign.simulation import SimulatedMiddleware
 from mutabot.config.table import Table
 from mutabot.errors import MutabotError, UsageError
 from mutabot.model.operation import Clock
@@ -47,7 +47,7 @@ class RosTable(Table):
     """
 
 
-class Ros2Simulation(Simulation):
+class Ros2Simulation(SimulatedMiddleware):
     """ROS 2 in one process."""
 
     name = "ros2"
