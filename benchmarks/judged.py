@@ -35,6 +35,7 @@ EXAMPLES = {
     "pick_and_place": {"robot": 40, "graded": 120, "conventional": 40, "catalogue": 60},
     "ros1": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2": {"robot": 25, "middleware": 35, "conventional": 10},
+    "ros2_docking": {"robot": 23, "conventional": 10},
 }
 #: the styles of the table: a name, and patterns of the projects that have it; the first one counts
 STYLES = {
@@ -55,7 +56,7 @@ STYLES = {
     "other styles of suites": ("*",),
 }  # fmt: skip
 #: examples that need a package which their own environment has: see the Makefile
-NEEDED = {"ros1": "rospy", "ros2": "rclpy"}
+NEEDED = {"ros1": "rospy", "ros2": "rclpy", "ros2_docking": "rclpy"}
 
 
 def main() -> int:

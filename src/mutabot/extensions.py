@@ -76,6 +76,8 @@ class Extension:
         formats: a function (``mutabot.report.format.Format``) each, by its name.
         sections: functions of ``mutabot.results.results.Results`` that make a section of the results
             document each, of plain data, by its name.
+        simulations: subclasses of ``mutabot.campaign.simulation.SimulatedMiddleware``, by their names: what
+            campaigns may run the tests over instead of the real middleware.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
     """
 
@@ -92,6 +94,7 @@ class Extension:
     commands: Mapping[str, Described] = field(default_factory=dict)
     formats: Mapping[str, str] = field(default_factory=dict)
     sections: Mapping[str, str] = field(default_factory=dict)
+    simulations: Mapping[str, str] = field(default_factory=dict)
     faults: Mapping[str, str] = field(default_factory=dict)
 
 

@@ -11,6 +11,8 @@ EXTENSION = Extension(
         "tf2_ros": "mutabot_ros.tf",
     },
     environments={"ros": "mutabot_ros.environment"},
+    simulations={"ros2": "mutabot_ros.simulation.campaign:Ros2Simulation"},
+    tables={"ros": "mutabot_ros.simulation.campaign:RosTable"},
     futures={"rclpy.task.Future": "rclpy.task:Future"},
     libraries={
         "rospy": ("get_param", "get_param_cached", "wait_for_message"),

@@ -19,7 +19,7 @@ def end(process: subprocess.Popen[bytes]) -> int:
     while process.poll() is None:
         process.send_signal(signal.SIGINT)
         with suppress(subprocess.TimeoutExpired):
-            process.wait(0.5)
+            process.wait(5.0)  # a second signal while it ends would kill it
     return process.returncode
 
 

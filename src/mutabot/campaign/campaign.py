@@ -31,6 +31,7 @@ class Campaign:
         evidence: what is recorded; None if nothing is.
         proven: ways of running that controls have proven: an engine and ``Control.way``.
         is_short: whether mutants are run without tests that do not reach them, see ``engines.confirmation``.
+        real: the same over the real middleware, if this one is over a simulation of it.
         again: outcomes that were found so, and are to be found with the whole suite before they count.
     """
 
@@ -42,6 +43,7 @@ class Campaign:
     proven: set[tuple[str, str, str, bool]] = field(default_factory=set)
     is_short: bool = False
     again: list[Outcome] = field(default_factory=list)
+    real: Campaign | None = None
 
     @cached_property
     def sources(self) -> Sources:

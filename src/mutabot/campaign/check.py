@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from contextlib import ExitStack
 
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import Unhandled, try_controls
@@ -25,10 +26,10 @@ def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     refuse_tracked(request.journal_path)
     previews = dict(_previews(request.configuration))
-    with at_it(request, progress) as opened:
+    with at_it(request, progress) as opened, ExitStack() as stack:
         folders = {folder for one in previews.values() for folder in one.folders_left_out}
         with OpenedFiles(request.root, folders) as watch:
-            campaign, _ = begin(request, opened, progress)
+            campaign, _ = begin(request, opened, progress, stack=stack)
         plan = make_plan(campaign.baseline, request.project)
         mutants = selected(campaign, plan).mutants
         controls, unhandled = try_controls(campaign, mutants)
@@ -74,7 +75,7 @@ def _report(
     ]
     if clock is not None and never_ticks:
         lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
-    lines += [f"note      {remark}" for remark in baseline.remarks]
+    lines += [f"note      {remark}" for remark in (*baseline.remarks, request.ran_over) if remark]
     lines += [f"replay    {test}: {why}" for test, why in unhandled.reasons.items()]
     data = {
         "replay": dict(unhandled.reasons),

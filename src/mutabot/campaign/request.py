@@ -24,6 +24,8 @@ from mutabot.model.job import Job
 
 AUTO, FORK, REPLAY = "auto", "fork", "replay"
 ENGINES = (FORK, REPLAY)
+#: outcomes over a simulation that are run again over the real middleware, unless ``--verify`` says otherwise
+VERIFIED = 5
 
 
 class Preview(Protocol):
@@ -86,7 +88,8 @@ class Request:
         engine: name of the engine; ``auto`` for the first that can judge a mutant.
         executor: what runs the tasks; None for worker processes on this machine.
         fresh: whether to run everything, also what an earlier campaign has found.
-        verify: how many outcomes to run once more in fresh processes, and compare.
+        verify: how many outcomes to run once more in fresh processes, over the real middleware, and compare;
+            None for some if there is a simulation, else for none.
         repeats: whether to run once more the kills that may be chance.
         baseline: how often the baseline runs each round; None for as often as the engine needs.
         families: the families of operators whose mutants are made.
@@ -99,6 +102,8 @@ class Request:
         since: the revision of git from which on changes are looked at; None for no such comparison.
         other_journal: a journal, or the folder of a project, to take outcomes over from beside the own one.
         budget: seconds that the campaign may take; None for no limit.
+        simulation: name of the simulation over which the tests run; empty for none.
+        ran_over: why they run over it, or do not, in a sentence; empty if there is nothing to choose.
     """
 
     configuration: Configuration
@@ -112,7 +117,7 @@ class Request:
     engine: str = "auto"
     executor: ExecutorChoice | None = None
     fresh: bool = False
-    verify: int = 0
+    verify: int | None = None
     repeats: bool = True
     baseline: int | None = None
     families: tuple[str, ...] = USUAL
@@ -125,6 +130,8 @@ class Request:
     since: str | None = None
     other_journal: Path | None = None
     budget: float | None = None
+    simulation: str = ""
+    ran_over: str = ""
 
     @property
     def engines(self) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot import __version__, extensions
+from mutabot.campaign import simulation
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
@@ -44,7 +45,17 @@ from mutabot.execution.processes import provide
 from mutabot.execution.task import Executor, Result
 from mutabot.journal.files import at_work
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS, Replayed
+from mutabot.journal.records import (
+    DRAWING,
+    DRAWS,
+    INCOMPLETE,
+    OPERATORS,
+    RAN_OVER,
+    REACHING,
+    REMARKS,
+    SIMULATION,
+    Replayed,
+)
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.codec import to_data
 from mutabot.model.mutant import Place
@@ -77,19 +88,42 @@ def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
 
 
 def begin(
-    request: Request, executor: Executor, progress: Progress, evidence: CampaignEvidence | None = None
+    request: Request,
+    executor: Executor,
+    progress: Progress,
+    evidence: CampaignEvidence | None = None,
+    *,
+    stack: ExitStack | None = None,
 ) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
+
+    ``stack``: until when a simulation of the robot's middleware may run tests; None for no simulation.
 
     Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary,
     and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
     """
     refuse_typos(request)
     refuse_unhooked(request.vocabulary)
-    baseline, results = take_baseline(request, executor, progress, prepared=prepare(request.project))
-    refuse_unfit(baseline, request.vocabulary)
-    note_fit(baseline, request.vocabulary, progress)
-    return Campaign(request, baseline, executor, progress, evidence), results
+    prepared = prepare(request.project)
+
+    def take(
+        request: Request, executor: Executor | None = None, least: int = 0
+    ) -> tuple[Campaign, list[Result]]:
+        executor = executor or stack.enter_context(open_executor(request, progress))  # type: ignore[union-attr]
+        repetitions = max(request.repetitions, least)
+        baseline, results = take_baseline(
+            request, executor, progress, prepared=prepared, repetitions=repetitions
+        )
+        refuse_unfit(baseline, request.vocabulary)
+        return Campaign(request, baseline, executor, progress, evidence), results
+
+    tried = simulation.try_original(request, take) if stack is not None else None
+    is_compared = tried is not None and tried.campaign is not None
+    campaign, results = take(request, executor, 2 if is_compared else 0)
+    if tried is not None:
+        campaign, results = simulation.chosen(campaign, results, tried)
+    note_fit(campaign.baseline, request.vocabulary, progress)
+    return campaign, results
 
 
 def selected(campaign: Campaign, plan: Plan) -> Plan:
@@ -129,8 +163,8 @@ _VERSIONS = ("pytest", "wrapt", "pytest-bdd")
 
 def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
     """Take the baseline and plan, without running a mutant."""
-    with at_it(request, progress) as opened:
-        campaign, _ = begin(request, opened, progress)
+    with at_it(request, progress) as opened, ExitStack() as stack:
+        campaign, _ = begin(request, opened, progress, stack=stack)
     plan = selected(campaign, make_plan(campaign.baseline, request.project))
     return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
 
@@ -154,7 +188,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
             ):
                 others = [stack.enter_context(one) for one in open_others(request, progress)]
                 try:
-                    end = _run(request, opened, progress, journal, others, evidence)
+                    end = _run(request, opened, progress, journal, others, evidence, stack)
                 finally:
                     if opened.remarks:
                         with suppress(JournalError):
@@ -178,13 +212,15 @@ def _run(
     journal: Journal,
     others: Sequence[JournalReader],
     evidence: CampaignEvidence | None,
+    stack: ExitStack,
 ) -> str:
     """Returns how it ended: a budget may end before all was run."""
     started = request.clock()
     revision = Revision.find(request.root, request.since) if request.since is not None else None
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
-        campaign, results = begin(request, opened, progress, evidence)
+        campaign, results = begin(request, opened, progress, evidence, stack=stack)
+    request = campaign.request
     _note_lacking(request, watch, progress)
     baseline, decided = campaign.baseline, earlier_decision(journal)
     whole = make_plan(baseline, request.project)
@@ -329,6 +365,8 @@ def _write_beginning(
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
         journal.set_meta(DRAWING, to_data(plan.drawing))
+    journal.set_meta(SIMULATION, request.simulation)
+    journal.set_meta(RAN_OVER, request.ran_over)
     journal.set_meta(OPERATORS, summaries(plan.mutants))
     journal.set_meta(DRAWS, drawing(plan.mutants))
     journal.set_meta(REACHING, to_data(reaching(campaign.baseline, plan.mutants)))

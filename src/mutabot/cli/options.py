@@ -87,7 +87,7 @@ Since = Annotated[str | None, Option("--since", metavar="REF", help=_SINCE)]
 OtherJournal = Annotated[Path | None, Option("--journal", metavar="PATH", help=_JOURNAL)]
 Compared = Annotated[Path | None, Option("--compare", metavar="OLD", help=_COMPARE)]
 Budget = Annotated[str | None, Option("--budget", metavar="TIME", help=_BUDGET)]
-Verify = Annotated[int, Option("--verify", metavar="N", min=0, max=limits.VERIFIED, help=_VERIFY)]
+Verify = Annotated[int | None, Option("--verify", metavar="N", min=0, max=limits.VERIFIED, help=_VERIFY)]
 Round = Annotated[
     int | None, Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
 ]
@@ -127,7 +127,7 @@ class Running(Planning, total=False):
     budget: Budget
 
 
-_DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False, "verify": 0}
+_DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False}
 #: a parameter of this name stands for the options of all executors
 _EXECUTOR = "executor"
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
 from mutabot.campaign.request import ExecutorChoice, Request
+from mutabot.campaign.simulation import over
 from mutabot.config.configuration import load_configuration
 from mutabot.config.options import Sample, Shard, seconds_of
 from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
 from mutabot.faults import asked_for
+from mutabot.journal.records import RAN_OVER
 from mutabot.model import Moment
 from mutabot.results.results import Results
 
@@ -67,7 +70,7 @@ def request_of(
         engine=engine,
         executor=chosen,
         fresh=given.get("fresh", False),
-        verify=given.get("verify", 0),
+        verify=given.get("verify"),
         repeats=configuration.repeats,
         baseline=configuration.baseline_repetitions,
         families=families,
@@ -85,10 +88,13 @@ def request_of(
 def request_again(root: Path, results: Results, jobs: int | None) -> Request:
     """The request of the campaign that had these results, for some of its mutants."""
     meta = results.meta
-    return request_of(
+    request = request_of(
         root, rounds=results.rounds, seed=meta.get("seed"), jobs=jobs, family=meta.get("families"),
         every_test=bool(meta.get("every_test")), configured_selection=False,
     )  # fmt: skip
+    request = replace(request, ran_over=str(meta.get(RAN_OVER) or ""))
+    name = meta.get("simulation")
+    return over(request, name) if name else request
 
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:

@@ -25,6 +25,8 @@ SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
 #: what is to be known of the machines that the campaign ran on, a line each
 REMARKS = "remarks"
+#: the simulation over which the tests ran, if any, and why, in a sentence
+SIMULATION, RAN_OVER = "simulation", "ran_over"
 #: how a campaign ended of which all has run, but not every outcome is in the journal
 INCOMPLETE = "incomplete"
 #: rows of the journal that something else changed while the campaign ran, and that were restored, in words
@@ -351,6 +353,8 @@ PLAIN: Mapping[str, Any] = {
     "started": float,
     "seconds": float,
     "shards": int,
+    SIMULATION: str,
+    RAN_OVER: str,
     REMARKS: tuple[str, ...],
 }
 #: the types of all facts that are read as they are

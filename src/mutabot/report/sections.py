@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from mutabot.frozen import frozen
-from mutabot.journal.records import REMARKS, Repeated
+from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated
 from mutabot.model import LeftOut, Span, Verdict
 from mutabot.results.divergence import first_line
 from mutabot.results.results import Results, unlooked
@@ -210,7 +210,10 @@ def _reliability(results: Results) -> Iterator[Section]:
     for text, rows in ((_DAMAGED, results.set_aside), (_ALTERED, results.altered)):
         if rows:
             yield Section(text, lines=rows, is_alarm=True)
-    yield from (Section(str(remark)) for remark in results.meta.get(REMARKS) or ())
+    said = results.meta.get(RAN_OVER)
+    yield from (
+        Section(str(remark)) for remark in (*([said] if said else ()), *(results.meta.get(REMARKS) or ()))
+    )
     if confirmed is not None:
         yield Section(f"{confirmed.text}.", is_alarm=bool(confirmed.wrong))
     if checked is not None:
@@ -218,7 +221,7 @@ def _reliability(results: Results) -> Iterator[Section]:
             f"mutant {one.number}, round {one.round + 1}: {one.first}; re-run: {one.second}"
             for one in checked.disagreements
         ]
-        text = f"Verified: {checked.agreed} of {checked.checked} outcomes end the same in fresh processes."
+        text = f"Verified: {checked.agreed} of {checked.checked} outcomes end the same {_where(results)}."
         yield Section(text, lines=lines, is_alarm=bool(lines))
     repeats = results.repeats
     kinds = (("kill that might be a coincidence", repeats.doubted), ("other kill", repeats.others))
@@ -231,6 +234,11 @@ def _reliability(results: Results) -> Iterator[Section]:
         files = plural(len({one.test_file.partition("::")[0] for one in results.controls}), "test file")
         text = f"Self-check passed in {files} (a no-op mutant survived, a crashing one was killed)"
         yield Section(text, is_detail=True)
+
+
+def _where(results: Results) -> str:
+    """Where outcomes were verified."""
+    return "over the real middleware" if results.meta.get(SIMULATION) else "in fresh processes"
 
 
 def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repeated]]) -> Iterator[Section]:

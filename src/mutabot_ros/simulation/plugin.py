@@ -39,6 +39,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+def pytest_report_header(config: pytest.Config) -> list[str]:
+    """Say which order is drawn: its seed gives it again."""
+    schedule, seed = config.getoption("ros_schedule"), config.getoption("ros_seed")
+    return [f"simulated ROS: --ros-schedule random --ros-seed {seed}"] if schedule == "random" else []
+
+
 def _written_by_tests() -> str:
     """Where the fixture `tmp_path` has its folders."""
     try:

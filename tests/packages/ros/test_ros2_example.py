@@ -73,5 +73,5 @@ def test_a_move_in_the_wrong_direction_is_noticed(example: Path) -> None:
 
 @pytest.mark.usefixtures("plugins")
 def test_mutants_in_the_mission_node_end_as_they_must(example: Path) -> None:
-    found = run(example, rounds=1, baseline=1, only=tuple(EXPECTED))
+    found = run(example, rounds=1, baseline=1, only=tuple(EXPECTED), engine="replay")
     assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED, found

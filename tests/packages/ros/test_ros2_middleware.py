@@ -165,7 +165,7 @@ def test_faults_of_the_middleware_act_in_the_node_and_the_suite_notices_those_it
 ) -> None:
     write_project(tmp_path, MISSION, TESTS, vocabulary=VOCABULARY, configuration=CONFIGURATION)
     only = tuple(f"*:{name}" for name in WANTED)
-    found = run(tmp_path, families=("middleware",), only=only, rounds=1)
+    found = run(tmp_path, families=("middleware",), only=only, rounds=1, engine="replay")
     ends = {name.split(":", 2)[2]: one for name, one in found.items()}
     assert {name: str(one.verdict) for name, one in ends.items()} == {
         name: verdict for name, (verdict, _) in WANTED.items()

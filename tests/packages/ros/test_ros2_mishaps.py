@@ -124,7 +124,7 @@ def end_of(
     monkeypatch.setenv("LIMIT", str(limit))
     progress = Quiet()
     try:
-        request = request_for(project, only=(mutant,), rounds=1, jobs=1, fresh=True)
+        request = request_for(project, only=(mutant,), rounds=1, jobs=1, fresh=True, engine="replay")
         (found,) = outcomes(run_campaign(request, progress))
     finally:
         starts.unlink(missing_ok=True)

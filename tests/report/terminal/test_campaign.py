@@ -309,6 +309,7 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
         "rounds 6 and 7: S survived",
         "acted at 3 of 3 hits, 1 test run, 0.2 s",
         "round 8: · not run",
+        "`mutabot replay 1 --round 6` re-runs it as in that round",
     ]
 
 

@@ -1,6 +1,8 @@
 """Run outcomes once more in fresh processes, and write down what differs.
 
-``--verify N`` runs outcomes chosen at random and compares how they end. Kills that may be chance are run
+``--verify N`` runs outcomes chosen at random and compares how they end. Of a campaign over a simulation they
+run over the real middleware, a few of them in any case: what comes out otherwise there, twice, is believed
+instead, and the next ones are run until as many agree. Kills that may be chance are run
 again too. A test in simulated time whose runs of the original are equal to the last bit is taken to be
 deterministic. Of any other test a kill is in doubt if the test is known to be unreliable, or if it kills so
 few of the mutants that it judges that it might do so by failing at random. An end is in doubt where its
@@ -23,7 +25,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import FAILS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.faults.providers import provider
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import VERIFIED, Request
 from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.errors import UnstableError
 from mutabot.journal.records import (
@@ -151,8 +153,9 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
     by_id = {mutant.id: mutant for mutant in mutants}
     outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
     reruns = _Reruns(campaign, writer, Doubts(campaign.baseline, by_id, outcomes))
-    if request.verify:
-        reruns.verify(choose(outcomes.values(), request.verify, request.seed))
+    default = VERIFIED if campaign.real is not None else 0
+    if count := default if request.verify is None else request.verify:
+        reruns.verify(count)
     if request.repeats:
         reruns.repeat(max(SHARE * spent, SECONDS), max(MOST_SHARE * spent, MOST_SECONDS))
     journal.set_meta(REPEATS, to_data(reruns.summary()))
@@ -165,6 +168,7 @@ class _Reruns:
     Attributes:
         found: the last rerun of each outcome.
         times: how often those were repeated that have come out again.
+        settled: those that the real middleware has decided.
     """
 
     campaign: Campaign
@@ -172,19 +176,56 @@ class _Reruns:
     doubts: Doubts
     found: dict[Key, Outcome] = field(default_factory=dict)
     times: Counter[Key] = field(default_factory=Counter)
+    settled: set[Key] = field(default_factory=set)
 
-    def verify(self, keys: Sequence[Key]) -> None:
-        """Run these once more and note which ended otherwise. What was found first stays."""
-        self._run(keys)
-        pairs = [(self.doubts.outcomes[key], self.found[key]) for key in keys]
-        wrong = [
-            _disagreement(self.doubts.mutants[first.mutant], first, second)
-            for first, second in pairs
-            if not same_end(first, second)
-        ]
-        result = Verification(self.campaign.request.verify, len(keys), tuple(wrong))
+    def verify(self, count: int) -> None:
+        """Run so many outcomes once more, and note which ended otherwise.
+
+        What was found first stays, unless it was over a simulation.
+        """
+        real, seed = self.campaign.real, self.campaign.request.seed
+        left, checked, wrong = dict(self.doubts.outcomes), 0, list[Disagreement]()
+        if real is not None:
+            left = {
+                key: one for key, one in left.items()
+                if real.baseline.tests_reaching(key[1], self.doubts.mutants[key[0]])
+            }  # fmt: skip
+        while keys := choose(left.values(), count, seed):
+            self._run(keys, over=real)
+            differing = [key for key in keys if self._differs(key)]
+            if real is not None:
+                differing = self._believe(real, differing)
+            checked += len(keys)
+            wrong += [
+                _disagreement(self.doubts.mutants[key[0]], self.doubts.outcomes[key], self.found[key])
+                for key in differing
+            ]
+            left = {key: one for key, one in left.items() if key not in self.found}
+            if real is None or not differing:
+                break
+        result = Verification(count, checked, tuple(wrong))
         self.writer.journal.set_meta(VERIFICATION, to_data(result))
-        self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree")
+        where = "" if real is None else " over the real middleware"
+        self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree{where}")
+
+    def _differs(self, key: Key) -> bool:
+        """Whether an outcome came out otherwise; tests and messages of a simulation may be others."""
+        first, second = self.doubts.outcomes[key], self.found[key]
+        return self._is_changed(key) if self.campaign.real is not None else not same_end(first, second)
+
+    def _believe(self, real: Campaign, keys: Sequence[Key]) -> list[Key]:
+        """Run these over the real middleware again: what comes out so twice counts, else it is unstable.
+
+        Returns the first ones.
+        """
+        first = {key: self.found[key] for key in keys}
+        self._run(keys, over=real)
+        self.settled.update(keys)
+        equal = [key for key in keys if self.found[key].verdict is first[key].verdict]
+        for key in keys:
+            second = self.found[key]
+            self.writer.add_outcome(second if key in equal else unconfirmed(first[key], second))
+        return equal
 
     def repeat(self, seconds: float, most: float) -> None:
         """Run what is in doubt once more, and what that puts in doubt; what is left to chance several times.
@@ -212,7 +253,8 @@ class _Reruns:
         """What is to be repeated next."""
         found = dict.fromkeys([*self.doubts.in_doubt(), *raced])
         times = {key: RACES if key in raced else 1 for key in found}
-        return [key for key in found if key not in changed and self.times[key] < times[key]]
+        done = self.settled.union(changed)
+        return [key for key in found if key not in done and self.times[key] < times[key]]
 
     def summary(self) -> Repeats:
         """How many outcomes of each kind were repeated, and how many of these changed."""
@@ -228,10 +270,12 @@ class _Reruns:
         looked = [key for key in keys if key in self.found]
         return Repeated(len(keys), len(looked), sum(map(self._is_changed, looked)))
 
-    def _run(self, keys: Sequence[Key], until: float | None = None) -> list[Key]:
+    def _run(
+        self, keys: Sequence[Key], until: float | None = None, over: Campaign | None = None
+    ) -> list[Key]:
         """Run these in fresh processes, cheapest first. Returns those that were run.
 
-        None begins after ``until`` (``Request.clock``).
+        None begins after ``until`` (``Request.clock``). ``over``: another campaign than this one.
         """
         clock, looked = self.campaign.request.clock, list[Key]()
         if not keys or (until is not None and clock() >= until):
@@ -239,7 +283,8 @@ class _Reruns:
         self.campaign.progress.stage("second look", len(keys))
         cheapest = sorted(keys, key=self.doubts.cost)
         runs = ((self.doubts.mutants[mutant], round) for mutant, round in cheapest)
-        for outcome in replay(self.campaign, takewhile(lambda _: until is None or clock() < until, runs)):
+        campaign = over or self.campaign
+        for outcome in replay(campaign, takewhile(lambda _: until is None or clock() < until, runs)):
             looked.append((outcome.mutant, outcome.round))
             self.found[looked[-1]] = outcome
             self.campaign.progress.advance(in_words(outcome))

@@ -119,6 +119,10 @@ def _rounds(result: MutantResult, *, everything: bool) -> Section:
             )
             details = "\n".join(_details(outcome)).splitlines() if outcome is not None else []
             lines += (f"    {line}" for line in (details if everything else details[:_LINES]))
+    if len(groups) > 1 and most is not None:
+        lines.append(
+            f"`mutabot replay {result.mutant.number} --round {most[0] + 1}` re-runs it as in that round"
+        )
     return Section("Rounds", lines=lines)
 
 

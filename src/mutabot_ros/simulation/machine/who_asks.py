@@ -7,6 +7,7 @@ were.
 from __future__ import annotations
 
 import builtins
+import importlib.util
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -23,6 +24,7 @@ MARK = "__sees_simulation__"
 
 _builders: dict[str, Callable[[], ModuleType]] = {}
 _built: dict[str, ModuleType] = {}
+_refusals: dict[str, Callable[[], None]] = {}
 _tops: set[str] = set()
 _roots: list[str] = []
 _answers: dict[str, bool] = {}
@@ -33,6 +35,12 @@ def provide(name: str, build: Callable[[], ModuleType]) -> None:
     """Put a simulated module in the place of the module of this name."""
     _builders[name] = build
     _tops.add(name.partition(".")[0])
+
+
+def refuse(name: str, refusal: Callable[[], None]) -> None:
+    """Call this where the project imports an installed package of this name; it raises."""
+    _refusals[name] = refusal
+    _tops.add(name)
 
 
 def is_provided(name: str) -> bool:
@@ -95,6 +103,11 @@ def _import(
     level: int = 0,
 ) -> ModuleType:
     if level or globals is None or name.partition(".")[0] not in _tops or not sees_simulation(globals):
+        return _real_import(name, globals, locals, fromlist or (), level)
+    if (top := name.partition(".")[0]) in _refusals:
+        spec = importlib.util.find_spec(top)
+        if spec is not None and not is_of_project(spec.origin or ""):
+            _refusals[top]()
         return _real_import(name, globals, locals, fromlist or (), level)
     if name not in _builders:
         real = _real_import(name, globals, locals, ("*",), 0)

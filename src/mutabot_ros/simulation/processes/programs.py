@@ -11,14 +11,17 @@ import signal as real_signal
 import subprocess as real_subprocess
 import sys
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER, NeedsRealRos
-from mutabot_ros.simulation.machine.who_asks import add_root, copied, is_of_project, provide
+from mutabot_ros.simulation.machine.who_asks import add_root, copied, is_of_project, provide, refuse
 from mutabot_ros.simulation.processes.process import STARTED, Pipe, Process
 
+#: packages that start nodes in real processes, out of sight of the project's modules
+_LAUNCHERS = ("launch", "launch_ros", "launch_testing", "launch_testing_ros", "launch_pytest")
 #: programs that start nodes which are not Python's, or not seen here
 _STARTERS = {"ros2", "roslaunch", "gz", "gazebo", "ign", "gzserver", "rviz2"}
 _FLAGS_WITH_VALUE = {"-W", "-X", "--check-hash-based-pycs"}
@@ -241,3 +244,9 @@ def _subprocess() -> ModuleType:
 def install() -> None:
     """Provide `subprocess` to those who see the simulation."""
     provide("subprocess", _subprocess)
+    for name in _LAUNCHERS:
+        refuse(name, partial(_refuse_launcher, name))
+
+
+def _refuse_launcher(name: str) -> None:
+    raise NeedsRealRos(f"the package {name} starts nodes outside this process")

@@ -161,3 +161,24 @@ def test_multiprocessing_starts_processes_too(node: Node) -> None:
     assert queue.get(timeout=1.0) == ("speaker", process.pid)
     process.join()
     assert process.exitcode == 0
+
+
+def test_launch_needs_real_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "site-packages" / "launch"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "actions.py").write_text("")
+    monkeypatch.syspath_prepend(package.parent)
+    with pytest.raises(RuntimeError, match="needs real ROS: the package launch starts nodes outside"):
+        import launch.actions  # noqa: F401, PLC0415
+
+
+def test_a_module_of_the_project_may_be_called_launch(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "launch.py").write_text("number = 3")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "launch", raising=False)
+    import launch  # noqa: PLC0415
+
+    assert launch.number == 3
