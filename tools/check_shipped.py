@@ -31,7 +31,6 @@ from mutabot.model.signature import parse_signature, signature_of
 from mutabot.runtime.event_file import Held
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
-from mutabot.runtime.targets.callables import Callables
 
 #: a member of an enumeration, as pybind11 writes one that is a default
 _DEFAULT_MEMBER = re.compile(r"<[^<>]*>")
@@ -64,7 +63,7 @@ def main() -> int:
 
 
 def compare(vocabulary: Vocabulary) -> Iterator[str]:
-    """What does not fit the installed packages."""
+    """What does not fit the installed packages. What it wraps stays wrapped in this process."""
     pipe = Held()
     job = Job(root=".", program=(), oracle=(), vocabulary=vocabulary, seed=1, round=0, inspect=True)
     session = Session(job, pipe, Locator(job.root, job.program, job.oracle))
@@ -74,13 +73,10 @@ def compare(vocabulary: Vocabulary) -> Iterator[str]:
     for line in pipe.events:
         if isinstance(line, Problem):
             yield f"{line.source}: {line.text}"
-    callables = session.interception.of()
-    assert isinstance(callables, Callables)
     for operation in vocabulary.operations:
-        original = callables.found.get(operation.target)
+        original = session.callables.found.get(operation.target)
         if operation.signature is not None and original is not None:
             yield from (f"{operation.source}: {text}" for text in compare_native(operation, original))
-    session.interception.remove()
 
 
 def compare_native(operation: Operation, original: Any) -> Iterator[str]:
