@@ -35,11 +35,14 @@ class Arm:
     Poses are in the base frame: m, and Euler angles x, y, z in degrees (R = Rz·Ry·Rx). Joint angles are in
     degrees.
     Every move returns when it has been carried out.
+
+    Attributes:
+        kinematics: the controller's model of the arm; it also turns encoder readings into a tool pose.
     """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._kinematics = Kinematics()
+        self.kinematics = Kinematics()
         self._setpoint: Array = np.array(kinova.HOME)
         self._stream: Array | None = None
         self._streamed = 0
@@ -48,8 +51,7 @@ class Arm:
         self._stop: ProtectiveStop | None = None
         self._lag = np.array(kinova.SERVO_LAG)
         self._torque_limit = np.array(EXTERNAL_TORQUE_LIMIT)
-        # views of the physics' own memory
-        self._joints = simulation.data.qpos[: kinova.JOINT_COUNT]
+        # a view of the physics' own memory
         self._external = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
@@ -60,7 +62,7 @@ class Arm:
 
     def commanded_pose(self) -> Pose:
         """Tool pose that the setpoints stand for: relative moves start here."""
-        position, rotation = self._kinematics.tool(self._setpoint)
+        position, rotation = self.kinematics.tool(self._setpoint)
         return pose_of(position, rotation)
 
     def home(self) -> None:
@@ -118,12 +120,12 @@ class Arm:
         _check_numbers("pose", values, 6)
         _check_speed(speed)
         self._check_ready()
-        start, rotation = self._kinematics.tool(self._setpoint)
+        start, rotation = self.kinematics.tool(self._setpoint)
         end_rotation = rotation_from_euler(*values[3:])
         line = Line.between(start, rotation, np.array(values[:3]), end_rotation)
         if line.length < 1e-7 and line.angle < 1e-7:
             return
-        knots = self._kinematics.follow(self._setpoint, line)
+        knots = self.kinematics.follow(self._setpoint, line)
         self._run(line_motion(knots, line.length, line.angle, PHYSICS_STEP, speed))
 
     def move_by(
@@ -157,7 +159,7 @@ class Arm:
         if self._stop is None:
             return
         for _ in range(_RELAXING_TICKS):
-            self._setpoint = self._simulation.data.qpos[: kinova.JOINT_COUNT].copy()
+            self._setpoint = self._simulation.encoders()
             self._simulation.tick()
         self._stop = None
         self._pressed_ticks = 0
@@ -185,19 +187,21 @@ class Arm:
             self._simulation.tick()
 
     def _drive(self) -> None:
-        setpoints = self._simulation.setpoints
+        setpoints = self._simulation.setpoints[:, : kinova.JOINT_COUNT]
+        # a servo brings its encoder to the setpoint, so the joint to where the encoder reads that
+        error = self._simulation.encoder_error
         if self._stream is None:
-            setpoints[:, : kinova.JOINT_COUNT] = self._setpoint
+            setpoints[:] = self._setpoint - error
             return
         end = self._streamed + STEPS_PER_TICK
-        setpoints[:, : kinova.JOINT_COUNT] = self._stream[self._streamed : end]
+        np.subtract(self._stream[self._streamed : end], error, out=setpoints)
         self._setpoint = self._motion_joints[end - 1]
         self._streamed = end
         if end >= len(self._stream):
             self._stream = None
 
     def _following_error(self) -> Array:
-        error: Array = self._setpoint - self._joints
+        error: Array = self._setpoint - self._simulation.encoders()
         return error
 
     def _guard(self) -> None:
@@ -231,7 +235,7 @@ class Arm:
             following_error=float(error[joint]),
         )
         self._stream = None
-        self._setpoint = self._simulation.data.qpos[: kinova.JOINT_COUNT].copy()
+        self._setpoint = self._simulation.encoders()
         raise self._stop
 
 

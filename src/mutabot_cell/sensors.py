@@ -9,6 +9,7 @@ import numpy as np
 
 from mutabot_cell.models import kinova
 from mutabot_cell.models.noise import SeededNoise
+from mutabot_cell.motion.kinematics import Kinematics
 
 from .errors import SensorError
 from .geometry import Pose, Position, pose_of
@@ -26,28 +27,32 @@ class Sensors:
     """Readings of the cell. World frame unless said otherwise."""
 
     def __init__(
-        self, simulation: Simulation, noise: SeededNoise, boxes: tuple[Box, ...], numbers: dict[str, int]
+        self,
+        simulation: Simulation,
+        kinematics: Kinematics,
+        noise: SeededNoise,
+        boxes: tuple[Box, ...],
+        numbers: dict[str, int],
     ) -> None:
         self._simulation = simulation
+        self._kinematics = kinematics
         self._noise = noise
         self._boxes = {box.name: box for box in boxes}
         self._numbers = numbers
         self._tool = simulation.model.site("tool").id
         self._geom = np.zeros(1, dtype=np.int32)
+        self._read: tuple[int, tuple[float, ...]] = (-1, ())
 
     def tool_pose(self) -> Pose:
-        """Measured tool pose in the base frame, from the joint encoders."""
-        exact = true_tool_pose(self._simulation)
-        add = self._noise.add
-        return Pose(
-            *(add("tool position", value) for value in (exact.x, exact.y, exact.z)),
-            *(add("tool orientation", value) for value in (exact.theta_x, exact.theta_y, exact.theta_z)),
-        )
+        """Tool pose in the base frame, computed from the joint encoders.
+
+        Like a real controller's, it knows nothing of a wrong calibration, a bent link or a moved base.
+        """
+        return pose_of(*self._kinematics.tool(np.radians(self._encoders())))
 
     def joint_angles(self) -> tuple[float, ...]:
         """Measured joint angles, degrees, each in (-180, 180]."""
-        angles = np.degrees(self._simulation.data.qpos[: kinova.JOINT_COUNT]).tolist()
-        return tuple(180.0 - (180.0 - self._noise.add("joint angle", angle)) % 360.0 for angle in angles)
+        return tuple(180.0 - (180.0 - angle) % 360.0 for angle in self._encoders())
 
     def box_position(self, name: str | None = None) -> Position:
         """Measured middle of the bottom face of a box; without a name, of the first box.
@@ -85,6 +90,15 @@ class Sensors:
         low, high = DISTANCE_RANGE
         exact = high if found < 0 else float(found)
         return min(max(self._noise.add("distance", exact), low), high)
+
+    def _encoders(self) -> tuple[float, ...]:
+        """One reading of all encoders per tick, with noise, degrees, not wrapped."""
+        ticks, read = self._read
+        if ticks != self._simulation.ticks:
+            angles = np.degrees(self._simulation.encoders()).tolist()
+            read = tuple(self._noise.add("joint angle", angle) for angle in angles)
+            self._read = self._simulation.ticks, read
+        return read
 
     def _box(self, name: str | None) -> Box:
         if name is None and self._boxes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import mujoco
@@ -34,6 +34,8 @@ class Simulation:
             rad, then the fingers' closed path in m. Drivers fill it before each tick.
         before_tick: called before each tick, in order; they write `setpoints`.
         after_tick: called after each tick, in order; they may raise.
+        encoder_error: what each joint's encoder reads too much, rad; zero for a well calibrated arm. Servos,
+            protective stop, planner and sensors know the encoders alone. Set it by `set_encoder_error`.
     """
 
     def __init__(self, scene: Scene, grip_force: float) -> None:
@@ -46,6 +48,7 @@ class Simulation:
         self.setpoints: Array = np.tile(self.data.ctrl, (STEPS_PER_TICK, 1))
         self.before_tick: list[Callable[[], None]] = []
         self.after_tick: list[Callable[[], None]] = []
+        self.encoder_error: Array = np.zeros(kinova.JOINT_COUNT)
         self._ticks = 0
         self._ids: dict[tuple[str, str], int] = {}
         self._speeds, self._places = self.data.qvel, self.data.qpos  # views of the physics' own memory
@@ -54,6 +57,27 @@ class Simulation:
     def time(self) -> float:
         """Simulated time since the cell was made, s."""
         return self._ticks * TICK
+
+    @property
+    def ticks(self) -> int:
+        """Control ticks since the cell was made."""
+        return self._ticks
+
+    def encoders(self) -> Array:
+        """Joint angles as the encoders tell them to the controller, shape (7,), rad, without noise."""
+        read: Array = self._places[: kinova.JOINT_COUNT] + self.encoder_error
+        return read
+
+    def set_encoder_error(self, error: Sequence[float]) -> None:
+        """Calibrate the encoders wrongly: the joints move to where the encoders read what they read now.
+
+        Args:
+            error: encoder minus joint, rad, one per joint.
+        """
+        read = self.encoders()
+        self.encoder_error[:] = error
+        self._places[: kinova.JOINT_COUNT] = read - self.encoder_error
+        mujoco.mj_forward(self.model, self.data)
 
     def id_of(self, kind: Literal["body", "site"], name: str) -> int:
         """Number of a body or site of the model; looked up once, since checks ask for it at every tick."""
