@@ -3,17 +3,45 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from mutabot_cell import Cell
+from mutabot_cell import Box, Cell, Scene
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
 from mutabot_cell.motion.kinematics import Kinematics
 
 SHOULDER_HEIGHT = kinova.JOINTS[0].origin[2] - kinova.JOINTS[1].origin[2]
 """Of joint 2's axis above the base, m; the axis lies across, and at home the arm reaches straight forward."""
+GRAVITY = 9.81
+DOWN = (0.0, 26.0, 180.0, -78.0, 0.0, -76.0, 90.0)
+BEHIND = (-145.0, *DOWN[1:])
+"""Joint angles, degrees: the gripper looks down, over the conveyor and over the table."""
+
+
+def with_box(mass: float, friction: float = 1.0) -> Cell:
+    return Cell(1, scene=Scene(boxes=(Box(mass=mass, friction=friction, jitter=0.0),)))
+
+
+def grip_from_above(cell: Cell, force: float = 60.0) -> None:
+    """Close the fingers on the middle of the box on the conveyor."""
+    box = cell.truth.box_position()
+    cell.arm.move_joints(DOWN)
+    pose = cell.arm.commanded_pose()
+    cell.arm.move_by(x=box.x - pose.x, y=box.y - pose.y)
+    cell.arm.move_by(z=box.z + 0.03 - 0.9 - pose.z)
+    cell.gripper.set_force(force)
+    cell.gripper.command(1, wait=True)
+
+
+def place_in_tool(cell: Cell) -> tuple[float, ...]:
+    """Where the box is in the tool's frame, m."""
+    data, simulation = cell.simulation.data, cell.simulation
+    site = simulation.id_of("site", "tool")
+    away = data.xpos[simulation.id_of("body", "box")] - data.site_xpos[site]
+    return tuple((data.site_xmat[site].reshape(3, 3).T @ away).tolist())
 
 
 def test_tool_pose_is_that_of_the_joint_angles_the_encoders_read(cell: Cell) -> None:
@@ -44,3 +72,34 @@ def test_joints_stand_still_when_only_the_calibration_changes(exact_cell: Cell) 
     exact_cell.simulation.set_encoder_error((0.01, -0.01, 0.02, 0.0, 0.0, 0.0, 0.03))
     exact_cell.wait(1.0)
     assert exact_cell.sensors.joint_angles() == pytest.approx(read, abs=0.01)
+
+
+@pytest.mark.parametrize("mass", [0.1, 0.5, 1.0])
+def test_a_box_that_hangs_still_in_the_fingers_is_reported_as_held_at_every_tick(
+    mass: float, grip: Callable[[Cell], None]
+) -> None:
+    cell = with_box(mass)
+    grip(cell)
+    cell.arm.move_by(z=0.1)
+    cell.arm.move_joints(BEHIND)
+    cell.wait(0.3)
+    place = place_in_tool(cell)
+    reports = []
+    for _ in range(300):
+        cell.simulation.tick()
+        reports.append(cell.gripper.holding())
+    assert math.dist(place, place_in_tool(cell)) < 0.001
+    assert all(reports)
+
+
+def test_fingers_that_open_report_once_that_they_hold_nothing(
+    cell: Cell, grip: Callable[[Cell], None]
+) -> None:
+    grip(cell)
+    cell.gripper.command(0)
+    reports = [cell.gripper.holding()]
+    for _ in range(100):
+        cell.simulation.tick()
+        reports.append(cell.gripper.holding())
+    assert reports.index(False) <= 5
+    assert not any(reports[reports.index(False) :])
