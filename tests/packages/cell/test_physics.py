@@ -103,3 +103,31 @@ def test_fingers_that_open_report_once_that_they_hold_nothing(
         reports.append(cell.gripper.holding())
     assert reports.index(False) <= 5
     assert not any(reports[reports.index(False) :])
+
+
+@pytest.mark.parametrize("mass", [0.1, 1.0])
+def test_static_friction_keeps_a_box_in_its_place_between_the_pads_while_the_arm_moves(mass: float) -> None:
+    cell = with_box(mass)
+    grip_from_above(cell, force=60.0)
+    assert mass * (GRAVITY + kinova.TOOL_ACCELERATION) < 2 * 60.0, "Coulomb: far from slipping"
+    for move in ({"z": 0.2}, {"y": -0.4}, {"theta_z": 60.0}, {"x": -0.1, "y": 0.2}):
+        before = place_in_tool(cell)
+        cell.arm.move_by(**move)
+        assert math.dist(before, place_in_tool(cell)) < 0.0005
+    before = place_in_tool(cell)
+    cell.arm.move_joints(BEHIND)
+    assert math.dist(before, place_in_tool(cell)) < 0.0005
+
+
+@pytest.mark.parametrize("mass", [0.1, 0.5])
+def test_a_box_slips_exactly_where_coulomb_says(mass: float) -> None:
+    force, acceleration = 60.0, 0.2
+    needed = mass * (GRAVITY + acceleration) / (2 * force)
+    heights = []
+    for friction in (0.9 * needed, 1.15 * needed):
+        cell = with_box(mass, friction)
+        grip_from_above(cell, force)
+        cell.arm.move_by(z=0.1, speed=0.05)
+        heights.append(cell.truth.box_position().z)
+    assert heights[0] < 1.02
+    assert heights[1] > 1.08
