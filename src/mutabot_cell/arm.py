@@ -16,13 +16,17 @@ from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
 from .errors import BadArgument, MotionRefused, ProtectiveStop
 from .geometry import Array, Pose, pose_of, rotation_from_euler
-from .simulation import STEPS_PER_TICK, Simulation
+from .simulation import STEPS_PER_TICK, TICK, Simulation
 
 EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
 """External torque on a joint that stops the arm when it lasts two ticks, Nm."""
 FOLLOWING_ERROR_LIMIT = 0.03
 """Distance between setpoint and joint that stops the arm, rad."""
 
+WARMING_TIME = 30.0
+"""In this time a joint warms up by two thirds of what its torque makes of it in the end, s (our choice)."""
+
+_WARMING_TICKS = 10
 _LOWEST_TORQUE_LIMIT = min(EXTERNAL_TORQUE_LIMIT)
 _RELAXING_TICKS = 20
 _SETTLED = 0.001
@@ -51,8 +55,14 @@ class Arm:
         self._stop: ProtectiveStop | None = None
         self._lag = np.array(kinova.SERVO_LAG)
         self._torque_limit = np.array(EXTERNAL_TORQUE_LIMIT)
-        # a view of the physics' own memory
-        self._external = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
+        self._payload = 0.0
+        self._payload_body = simulation.id_of("body", "payload")
+        self._heat = np.zeros(kinova.JOINT_COUNT)
+        self._continuous = np.array([joint.torque for joint in kinova.JOINTS])
+        # views of the physics' own memory
+        self._constraints: Array = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
+        self._motors = simulation.data.qfrc_actuator[: kinova.JOINT_COUNT]
+        self.set_payload(0.0)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
 
@@ -154,6 +164,25 @@ class Arm:
             speed=speed,
         )
 
+    def set_payload(self, mass: float, centre: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        """Tell the controller what the gripper holds, so that it carries the weight and expects the forces.
+
+        Without it a part is carried by the servos' stiffness alone, and a heavy one looks like a collision.
+
+        Args:
+            mass: of the part, kg.
+            centre: of mass, in the tool frame, m.
+
+        Raises:
+            BadArgument: not numbers, or more than the arm is rated for (`kinova.PAYLOAD`).
+        """
+        _check_numbers("payload", (mass, *centre), 4)
+        if not 0.0 <= mass <= kinova.PAYLOAD:
+            raise BadArgument(f"Expected 0 <= payload <= {kinova.PAYLOAD} kg but got mass={mass!r}")
+        self._payload = float(mass)
+        self._simulation.model.body_gravcomp[self._payload_body] = kinova.compensation_of(self._payload)
+        self._simulation.model.body_ipos[self._payload_body] = centre
+
     def acknowledge_stop(self) -> None:
         """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
         if self._stop is None:
@@ -206,9 +235,11 @@ class Arm:
 
     def _guard(self) -> None:
         """Protective stop: the check that the arm's controller makes at every tick."""
+        if self._simulation.ticks % _WARMING_TICKS == 0:
+            self._warm()
         if self._stop is not None:
             return
-        external, error = self._external, self._following_error()
+        external, error = self._external(), self._following_error()
         # this runs at every tick, and nearly always the lengths are below the lowest limits of their parts
         if external.dot(external) <= _LOWEST_TORQUE_LIMIT**2 and error.dot(error) <= FOLLOWING_ERROR_LIMIT**2:
             self._pressed_ticks = 0
@@ -225,18 +256,62 @@ class Arm:
         if pressed:
             contacts.append(self._first_contact)
         first, second, force = max(contacts, key=lambda contact: contact[2])
-        self._stop = ProtectiveStop(
-            time=self._simulation.time,
-            first=first,
-            second=second,
-            force=force,
-            joint=joint + 1,
-            torque=float(external[joint]),
-            following_error=float(error[joint]),
+        raise self._stopped(
+            ProtectiveStop(
+                time=self._simulation.time,
+                first=first,
+                second=second,
+                force=force,
+                joint=joint + 1,
+                torque=float(external[joint]),
+                following_error=float(error[joint]),
+            )
         )
+
+    def _stopped(self, stop: ProtectiveStop) -> ProtectiveStop:
+        self._stop = stop
         self._stream = None
         self._setpoint = self._simulation.encoders()
-        raise self._stop
+        return stop
+
+    def _external(self) -> Array:
+        """Torque on each joint that neither motors nor the arm and its declared payload explain, Nm."""
+        torque = self._constraints
+        if self._payload:
+            torque = torque - self._payload_torque()
+        return torque
+
+    def _payload_torque(self) -> Array:
+        """Torque on each joint from the payload's weight and inertia, Nm."""
+        cell_model, data = self._simulation.model, self._simulation.data
+        mujoco.mj_rnePostConstraint(cell_model, data)
+        # acceleration minus gravity of the payload's centre of mass, as an accelerometer there would read it
+        felt = np.zeros(6)
+        mujoco.mj_objectAcceleration(cell_model, data, mujoco.mjtObj.mjOBJ_BODY, self._payload_body, felt, 0)
+        moves = np.zeros((3, cell_model.nv))
+        mujoco.mj_jacBodyCom(cell_model, data, moves, None, self._payload_body)
+        torque: Array = np.dot(-self._payload * felt[3:], moves[:, : kinova.JOINT_COUNT])
+        return torque
+
+    def _warm(self) -> None:
+        """Let the motors warm up with the square of their torque; stop when one is too warm."""
+        share = _WARMING_TICKS * TICK / WARMING_TIME
+        self._heat += share * ((self._motors / self._continuous) ** 2 - self._heat)
+        if self._stop is not None or float(self._heat.max()) <= 1.0:
+            return
+        joint = int(np.argmax(self._heat))
+        raise self._stopped(
+            ProtectiveStop(
+                time=self._simulation.time,
+                first="",
+                second="",
+                force=0.0,
+                joint=joint + 1,
+                torque=float(self._motors[joint]),
+                following_error=float(self._following_error()[joint]),
+                overload=kinova.JOINTS[joint].torque,
+            )
+        )
 
 
 def strongest_contact(simulation: Simulation) -> tuple[str, str, float]:

@@ -1,7 +1,8 @@
 """The Kinova Gen3 arm with 7 joints: published kinematics, masses and limits, and its shape.
 
 Source: the maker's public robot description (joint origins, masses, joint, torque and speed limits) and user
-guide (acceleration limits). Link shapes are our own capsules; each mass is spread over its capsule.
+guide (acceleration limits, peak torque, payload). Link shapes are our own capsules; each mass is spread over
+its capsule.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ class Joint:
         turn: rotation of the frame about the parent's x axis, rad.
         limit: allowed angle on both sides of zero, rad; infinite for a continuous joint.
         mass: of the link that the joint carries, kg.
-        torque: limit, Nm.
+        torque: what the joint can give without end, Nm.
+        peak_torque: what it can give for a short time, Nm.
         speed: limit, rad/s.
         acceleration: limit, rad/s².
     """
@@ -31,24 +33,29 @@ class Joint:
     limit: float
     mass: float
     torque: float
+    peak_torque: float
     speed: float
     acceleration: float
 
 
 _QUARTER = math.pi / 2
 JOINTS: tuple[Joint, ...] = (
-    Joint((0.0, 0.0, 0.15643), math.pi, CONTINUOUS, 1.3773, 39.0, 1.39, 5.2),
-    Joint((0.0, 0.005375, -0.12838), _QUARTER, 2.41, 1.1636, 39.0, 1.39, 5.2),
-    Joint((0.0, -0.21038, -0.006375), -_QUARTER, CONTINUOUS, 1.1636, 39.0, 1.39, 5.2),
-    Joint((0.0, 0.006375, -0.21038), _QUARTER, 2.66, 0.9302, 39.0, 1.39, 5.2),
-    Joint((0.0, -0.20843, -0.006375), -_QUARTER, CONTINUOUS, 0.6781, 9.0, 1.22, 10.0),
-    Joint((0.0, 0.00017505, -0.10593), _QUARTER, 2.23, 0.6781, 9.0, 1.22, 10.0),
-    Joint((0.0, -0.10593, -0.00017505), -_QUARTER, CONTINUOUS, 0.5006, 9.0, 1.22, 10.0),
+    Joint((0.0, 0.0, 0.15643), math.pi, CONTINUOUS, 1.3773, 39.0, 105.0, 1.39, 5.2),
+    Joint((0.0, 0.005375, -0.12838), _QUARTER, 2.41, 1.1636, 39.0, 105.0, 1.39, 5.2),
+    Joint((0.0, -0.21038, -0.006375), -_QUARTER, CONTINUOUS, 1.1636, 39.0, 105.0, 1.39, 5.2),
+    Joint((0.0, 0.006375, -0.21038), _QUARTER, 2.66, 0.9302, 39.0, 105.0, 1.39, 5.2),
+    Joint((0.0, -0.20843, -0.006375), -_QUARTER, CONTINUOUS, 0.6781, 9.0, 52.0, 1.22, 10.0),
+    Joint((0.0, 0.00017505, -0.10593), _QUARTER, 2.23, 0.6781, 9.0, 52.0, 1.22, 10.0),
+    Joint((0.0, -0.10593, -0.00017505), -_QUARTER, CONTINUOUS, 0.5006, 9.0, 52.0, 1.22, 10.0),
 )
 JOINT_COUNT = len(JOINTS)
 INTERFACE_OFFSET = (0.0, 0.0, -0.0615250)
 TOOL_LENGTH = 0.12
 BASE_MASS = 1.697
+PAYLOAD = 4.0
+"""What the maker rates the arm for at mid-range, without end and without a gripper, kg."""
+_PAYLOAD_MARKER = 1e-6
+"""Mass of the empty body at which the controller compensates the declared payload's weight, kg."""
 JERK_RATIO = 10.0
 """Jerk limit of a joint divided by its acceleration limit, 1/s (our choice: reached within 0.1 s)."""
 
@@ -111,8 +118,8 @@ def arm_xml(tool: str = "") -> str:
             f'<body name="link {number}" pos="{_numbers(joint.origin)}" quat="{_turn(joint.turn)}" '
             'gravcomp="1">'
             f'<joint name="joint {number}" armature="{_ROTOR_INERTIA[index]}" actuatorgravcomp="true" '
-            f'actuatorfrclimited="true" actuatorfrcrange="{-joint.torque} {joint.torque}"{limited}/>'
-            + _link_shape(number, end, joint.mass)
+            f'actuatorfrclimited="true" actuatorfrcrange="{-joint.peak_torque} {joint.peak_torque}"'
+            f"{limited}/>" + _link_shape(number, end, joint.mass)
         )
     camera = (
         '<geom class="looks" type="box" size="0.035 0.012 0.03" pos="0 -0.042 -0.03" '
@@ -120,9 +127,16 @@ def arm_xml(tool: str = "") -> str:
     )
     interface = (
         f'<body name="interface" pos="{_numbers(INTERFACE_OFFSET)}" quat="{_turn(math.pi)}" gravcomp="1">'
-        f'<site name="tool" pos="0 0 {TOOL_LENGTH}" size="0.002" rgba="0 0 0 0"/>{tool}</body>'
+        f'<site name="tool" pos="0 0 {TOOL_LENGTH}" size="0.002" rgba="0 0 0 0"/>{tool}'
+        f'<body name="payload" pos="0 0 {TOOL_LENGTH}" gravcomp="1"><inertial pos="0 0 0" '
+        f'mass="{_PAYLOAD_MARKER}" diaginertia="1e-9 1e-9 1e-9"/></body></body>'
     )
     return "".join(opening) + camera + interface + "</body>" * (JOINT_COUNT + 1)
+
+
+def compensation_of(payload: float) -> float:
+    """The `gravcomp` of body "payload" that carries `payload` kg."""
+    return payload / _PAYLOAD_MARKER
 
 
 def actuators_xml() -> str:

@@ -35,7 +35,7 @@ _OPTIONS = f"""
         solver="Newton" iterations="20" tolerance="1e-8">
   <flag autoreset="disable" island="disable"/>
 </option>
-<compiler angle="radian" autolimits="false" inertiafromgeom="true"/>
+<compiler angle="radian" autolimits="false"/>
 """
 
 _LOOKS = """
@@ -110,9 +110,9 @@ def _box_xml(box: Box) -> str:
 def _grip_xml(box: Box) -> str:
     # Stiffer than other contacts: what is gripped must turn with the fingers. As stiff as this, a falling box
     # would bounce, for numerical reasons.
-    # Friction brakes slip by `_GRIP_BRAKE` of itself per step. MuJoCo's constraint leaves out the acceleration of
-    # the contact's own frame (J' v, of the order of v²/r while the arm moves), so a part of it stays as slip:
-    # per step (1 / brake - 1/2) J' v dt², which vanishes at 2, where slip would swing for ever.
+    # Friction brakes slip by `_GRIP_BRAKE` of itself per step. MuJoCo's constraint leaves out how the contact
+    # itself accelerates (J' v, about v²/r while the arm moves), so a part of it stays as slip: per step
+    # (1 / brake - 1/2) J' v dt², which vanishes at 2, where slip would swing for ever.
     return "".join(
         f'<pair geom1="{pad}" geom2="{box.name}" condim="3" solref="0.004 1" solimp="0.95 0.99 0.001" '
         f'solreffriction="0 {-_GRIP_BRAKE / PHYSICS_STEP}" '
