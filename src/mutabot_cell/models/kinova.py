@@ -1,8 +1,7 @@
 """The Kinova Gen3 arm with 7 joints: published kinematics, masses and limits, and its shape.
 
-Source: the maker's public robot description (joint origins, masses, joint, torque and speed limits) and user
-guide (acceleration limits, peak torque, payload). Link shapes are our own capsules; each mass is spread over
-its capsule.
+Source: the maker's public robot description (joint origins, masses, torque and speed limits) and user guide
+(joint and acceleration limits, peak torque, payload). Link shapes are our own capsules.
 """
 
 from __future__ import annotations
@@ -41,11 +40,11 @@ class Joint:
 _QUARTER = math.pi / 2
 JOINTS: tuple[Joint, ...] = (
     Joint((0.0, 0.0, 0.15643), math.pi, CONTINUOUS, 1.3773, 39.0, 105.0, 1.39, 5.2),
-    Joint((0.0, 0.005375, -0.12838), _QUARTER, 2.41, 1.1636, 39.0, 105.0, 1.39, 5.2),
+    Joint((0.0, 0.005375, -0.12838), _QUARTER, math.radians(128.9), 1.1636, 39.0, 105.0, 1.39, 5.2),
     Joint((0.0, -0.21038, -0.006375), -_QUARTER, CONTINUOUS, 1.1636, 39.0, 105.0, 1.39, 5.2),
-    Joint((0.0, 0.006375, -0.21038), _QUARTER, 2.66, 0.9302, 39.0, 105.0, 1.39, 5.2),
+    Joint((0.0, 0.006375, -0.21038), _QUARTER, math.radians(147.8), 0.9302, 39.0, 105.0, 1.39, 5.2),
     Joint((0.0, -0.20843, -0.006375), -_QUARTER, CONTINUOUS, 0.6781, 9.0, 52.0, 1.22, 10.0),
-    Joint((0.0, 0.00017505, -0.10593), _QUARTER, 2.23, 0.6781, 9.0, 52.0, 1.22, 10.0),
+    Joint((0.0, 0.00017505, -0.10593), _QUARTER, math.radians(120.3), 0.6781, 9.0, 52.0, 1.22, 10.0),
     Joint((0.0, -0.10593, -0.00017505), -_QUARTER, CONTINUOUS, 0.5006, 9.0, 52.0, 1.22, 10.0),
 )
 JOINT_COUNT = len(JOINTS)

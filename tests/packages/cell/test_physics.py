@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from mutabot_cell import BadArgument, Box, Cell, ProtectiveStop, Scene
+from mutabot_cell import BadArgument, Box, Cell, MotionRefused, ProtectiveStop, Scene
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
 from mutabot_cell.motion.kinematics import Kinematics
@@ -190,3 +190,15 @@ def test_the_motors_carry_the_makers_loads_at_full_reach_for_as_long_as_it_says(
 def test_a_payload_that_the_arm_is_not_rated_for_is_refused(cell: Cell, mass: object) -> None:
     with pytest.raises(BadArgument, match="payload"):
         cell.arm.set_payload(mass)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("joint", "limit"), [(2, 128.9), (4, 147.8), (6, 120.3)])
+def test_joints_turn_as_far_as_the_makers_guide_says_and_no_further(
+    cell: Cell, joint: int, limit: float
+) -> None:
+    angles = list(kinova.HOME_DEGREES)
+    angles[joint - 1] = -limit - 0.2
+    with pytest.raises(MotionRefused, match=rf"0\.2 deg beyond its limit of {limit} deg"):
+        cell.arm.move_joints(angles)
+    low, high = cell.simulation.model.joint(f"joint {joint}").range
+    assert (math.degrees(low), math.degrees(high)) == pytest.approx((-limit, limit))
