@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import mujoco
 import numpy as np
 import pytest
 
 from mutabot_cell import BadArgument, Box, Cell, MotionRefused, ProtectiveStop, Scene
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
+from mutabot_cell.models.model import build_arm
 from mutabot_cell.motion.kinematics import Kinematics
 
 SHOULDER_HEIGHT = kinova.JOINTS[0].origin[2] - kinova.JOINTS[1].origin[2]
@@ -202,3 +204,32 @@ def test_joints_turn_as_far_as_the_makers_guide_says_and_no_further(
         cell.arm.move_joints(angles)
     low, high = cell.simulation.model.joint(f"joint {joint}").range
     assert (math.degrees(low), math.degrees(high)) == pytest.approx((-limit, limit))
+
+
+def test_links_weigh_on_the_joints_as_the_makers_description_says(cell: Cell) -> None:
+    """The torque of joint 2 that gravity asks for, from the table of link masses and centres."""
+    empty = build_arm()
+    data = mujoco.MjData(empty)
+    empty.body_gravcomp[:] = 0
+    generator = np.random.default_rng(3)
+    for _ in range(10):
+        data.qpos[:] = generator.uniform(-2, 2, 7)
+        mujoco.mj_forward(empty, data)
+        axis, anchor = data.xaxis[1], data.xanchor[1]
+        torque = 0.0
+        for number, joint in enumerate(kinova.JOINTS, 1):
+            frame = data.xmat[empty.body(f"link {number}").id].reshape(3, 3)
+            place = data.xpos[empty.body(f"link {number}").id] + frame @ np.array(joint.centre)
+            if number > 1:
+                torque += float(np.cross(place - anchor, (0, 0, -joint.mass * GRAVITY)) @ axis)
+        assert -data.qfrc_bias[1] == pytest.approx(torque, abs=1e-3)
+
+
+def test_inertias_are_those_of_bodies_that_exist() -> None:
+    """Positive, and no principal moment exceeds the sum of the other two."""
+    for joint in kinova.JOINTS:
+        xx, yy, zz, xy, xz, yz = joint.inertia
+        smallest, middle, largest = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        assert smallest > 0
+        assert largest <= (smallest + middle) * 1.01
+        assert largest < joint.mass * 0.12**2, "within a link's length"
