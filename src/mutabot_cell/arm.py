@@ -275,10 +275,22 @@ class Arm:
         return stop
 
     def _external(self) -> Array:
-        """Torque on each joint that neither motors nor the arm and its declared payload explain, Nm."""
+        """Torque on each joint that motors, friction, the arm and its declared payload do not explain, Nm."""
         torque = self._constraints
+        if self._simulation.data.nf:
+            torque = torque - self._friction()
         if self._payload:
             torque = torque - self._payload_torque()
+        return torque
+
+    def _friction(self) -> Array:
+        """Torque on each joint from dry friction in it, which MuJoCo counts among the constraints, Nm."""
+        data = self._simulation.data
+        torque = np.zeros(kinova.JOINT_COUNT)
+        for row in range(data.ne, data.ne + data.nf):  # rows of friction follow those of equalities
+            joint = int(data.efc_id[row])
+            if data.efc_type[row] == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF and joint < kinova.JOINT_COUNT:
+                torque[joint] = data.efc_force[row]
         return torque
 
     def _payload_torque(self) -> Array:

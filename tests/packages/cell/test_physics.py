@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mutabot_cell import BadArgument, Box, Cell, MotionRefused, ProtectiveStop, Scene
+from mutabot_cell.arm import EXTERNAL_TORQUE_LIMIT
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
 from mutabot_cell.models.model import build_arm
@@ -233,3 +234,26 @@ def test_inertias_are_those_of_bodies_that_exist() -> None:
         assert smallest > 0
         assert largest <= (smallest + middle) * 1.01
         assert largest < joint.mass * 0.12**2, "within a link's length"
+
+
+def test_dry_friction_in_the_joints_is_not_taken_for_a_collision(cell: Cell) -> None:
+    friction = 25.0
+    cell.simulation.model.dof_frictionloss[:2] = friction
+    assert friction > EXTERNAL_TORQUE_LIMIT[0]
+    most = 0.0
+
+    def note() -> None:
+        nonlocal most
+        most = max(most, abs(float(cell.simulation.data.qfrc_constraint[0])))
+
+    cell.simulation.after_tick.append(note)
+    cell.arm.move_joints((30, 0, 180, -120, 0, 60, 90))
+    assert most == pytest.approx(friction, rel=0.05), "Coulomb: while it turns, friction is all there"
+
+
+def test_a_collision_still_stops_an_arm_whose_joints_rub(cell: Cell) -> None:
+    cell.simulation.model.dof_frictionloss[:4] = 5.0
+    cell.arm.move_by(y=-0.2)
+    cell.arm.move_by(theta_x=80)
+    with pytest.raises(ProtectiveStop, match="touched conveyor"):
+        cell.arm.move_by(z=-0.4)
