@@ -13,7 +13,7 @@ from mutabot_cell import BadArgument, Box, Cell, MotionRefused, ProtectiveStop, 
 from mutabot_cell.arm import EXTERNAL_TORQUE_LIMIT
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
-from mutabot_cell.models.model import build_arm
+from mutabot_cell.models.model import PHYSICS_STEP, build_arm
 from mutabot_cell.motion.kinematics import Kinematics
 
 SHOULDER_HEIGHT = kinova.JOINTS[0].origin[2] - kinova.JOINTS[1].origin[2]
@@ -257,3 +257,38 @@ def test_a_collision_still_stops_an_arm_whose_joints_rub(cell: Cell) -> None:
     cell.arm.move_by(theta_x=80)
     with pytest.raises(ProtectiveStop, match="touched conveyor"):
         cell.arm.move_by(z=-0.4)
+
+
+@pytest.mark.parametrize("height", [0.1, 0.2, 0.3])
+def test_a_dropped_box_rebounds_a_little_and_comes_to_rest_on_the_surface(height: float) -> None:
+    """Cardboard on rubber gives back a tenth or two of the speed. Steps let it in by what it falls in two."""
+    cell = Cell(1, scene=Scene(boxes=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
+    data, body = cell.simulation.data, cell.simulation.id_of("body", "box")
+    heights = []
+    for _ in range(1000):
+        mujoco.mj_step(cell.simulation.model, data)
+        heights.append(float(data.xpos[body][2]) - 0.025 - 1.0)
+    landed = next(index for index, low in enumerate(heights) if low < 0.0)
+    assert landed * PHYSICS_STEP == pytest.approx(math.sqrt(2 * height / GRAVITY), abs=0.01)
+    lowest = landed + int(np.argmin(heights[landed : landed + 25]))
+    speed = math.sqrt(2 * GRAVITY * height)
+    assert -heights[lowest] < 2 * speed * PHYSICS_STEP
+    restitution = math.sqrt(max(0.0, *heights[lowest:]) / height)
+    assert restitution < 0.3
+    assert max(heights[lowest:]) < height, "it gains no energy"
+    assert heights[-1] == pytest.approx(0.0, abs=1e-4)
+    assert abs(float(data.qvel[-4])) < 1e-3
+
+
+def test_some_drops_rebound() -> None:
+    tops = []
+    for height in (0.15, 0.2, 0.25, 0.3, 0.35):
+        cell = Cell(1, scene=Scene(boxes=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
+        data, body = cell.simulation.data, cell.simulation.id_of("body", "box")
+        cell.wait(math.sqrt(2 * height / GRAVITY) + 0.03)
+        most = 0.0
+        for _ in range(100):
+            cell.simulation.tick()
+            most = max(most, float(data.xpos[body][2]) - 1.025)
+        tops.append(math.sqrt(most / height))
+    assert 0.05 < sum(tops) / len(tops) < 0.3
