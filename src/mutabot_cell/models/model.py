@@ -6,7 +6,17 @@ import math
 
 import mujoco
 
-from mutabot_cell.scene import BASE_POSITION, BLUE_RGBA, RED_RGBA, Box, Fixture, Mark, Scene
+from mutabot_cell.scene import (
+    BASE_POSITION,
+    BLUE_RGBA,
+    FRICTION_ON_SILICONE,
+    FRICTION_ON_STEEL,
+    RED_RGBA,
+    Box,
+    Fixture,
+    Mark,
+    Scene,
+)
 
 from . import kinova, robotiq
 
@@ -106,8 +116,27 @@ def _box_xml(box: Box) -> str:
         f'<freejoint name="{box.name}"/>'
         f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" '
         f'priority="1" solref="{_LANDING}" solimp="0.95 0.99 0.001" '
-        f'friction="{box.friction} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
+        f'friction="{_friction(box, FRICTION_ON_STEEL)} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
     )
+
+
+def _friction(box: Box, material: float) -> float:
+    return material if box.friction is None else box.friction
+
+
+def _surface_xml(box: Box, fixtures: tuple[Fixture, ...]) -> str:
+    """Contacts of a box with each fixture: friction belongs to the pair of materials."""
+    surfaces = [(fixture.name, fixture.friction) for fixture in fixtures]
+    surfaces += [("floor", FRICTION_ON_STEEL), ("pedestal", FRICTION_ON_STEEL)]
+    return "".join(
+        f'<pair geom1="{name}" geom2="{box.name}" condim="3" solref="{_LANDING}" solimp="0.95 0.99 0.001" '
+        f'friction="{_pair_friction(_friction(box, friction))}"/>'
+        for name, friction in surfaces
+    )
+
+
+def _pair_friction(friction: float) -> str:
+    return f"{friction} {friction} 0.005 0.0001 0.0001"
 
 
 def _grip_xml(box: Box) -> str:
@@ -119,7 +148,7 @@ def _grip_xml(box: Box) -> str:
     return "".join(
         f'<pair geom1="{pad}" geom2="{box.name}" condim="3" solref="0.004 1" solimp="0.95 0.99 0.001" '
         f'solreffriction="0 {-_GRIP_BRAKE / PHYSICS_STEP}" '
-        f'friction="{box.friction} {box.friction} 0.005 0.0001 0.0001"/>'
+        f'friction="{_pair_friction(_friction(box, FRICTION_ON_SILICONE))}"/>'
         for pad in ("left pad", "right pad")
     )
 
@@ -129,6 +158,7 @@ def cell_xml(scene: Scene, grip_force: float) -> str:
     things = "".join(_fixture_xml(fixture) + _legs_xml(fixture) for fixture in scene.fixtures)
     things += "".join(_mark_xml(mark) for mark in scene.marks)
     things += "".join(_box_xml(box) for box in scene.boxes)
+    contacts = "".join(_grip_xml(box) + _surface_xml(box, scene.fixtures) for box in scene.boxes)
     height = BASE_POSITION[2]
     return f"""<mujoco model="cell">{_OPTIONS}{_DEFAULTS}{_LOOKS}
 <worldbody>
@@ -140,7 +170,7 @@ def cell_xml(scene: Scene, grip_force: float) -> str:
   {things}
 </worldbody>
 <tendon>{robotiq.tendon_xml()}</tendon>
-<contact>{"".join(_grip_xml(box) for box in scene.boxes)}</contact>
+<contact>{contacts}</contact>
 <equality>{robotiq.coupling_xml()}</equality>
 <actuator>{kinova.actuators_xml()}{robotiq.actuator_xml(grip_force)}</actuator>
 </mujoco>"""

@@ -9,12 +9,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from mutabot_cell import BadArgument, Box, Cell, MotionRefused, ProtectiveStop, Scene
+from mutabot_cell import BadArgument, Box, Cell, Fixture, MotionRefused, ProtectiveStop, Scene
 from mutabot_cell.arm import EXTERNAL_TORQUE_LIMIT
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
 from mutabot_cell.models.model import PHYSICS_STEP, build_arm
 from mutabot_cell.motion.kinematics import Kinematics
+from mutabot_cell.scene import CONVEYOR
 
 SHOULDER_HEIGHT = kinova.JOINTS[0].origin[2] - kinova.JOINTS[1].origin[2]
 """Of joint 2's axis above the base, m; the axis lies across, and at home the arm reaches straight forward."""
@@ -27,7 +28,7 @@ STRETCHED = (0.0, 90.0, 180.0, 0.0, 0.0, 0.0, 90.0)
 """Joint angles, degrees: the arm stretched out, level."""
 
 
-def with_box(mass: float, friction: float = 1.0) -> Cell:
+def with_box(mass: float, friction: float | None = None) -> Cell:
     return Cell(1, scene=Scene(boxes=(Box(mass=mass, friction=friction, jitter=0.0),)))
 
 
@@ -116,7 +117,7 @@ def test_fingers_that_open_report_once_that_they_hold_nothing(
 def test_static_friction_keeps_a_box_in_its_place_between_the_pads_while_the_arm_moves(mass: float) -> None:
     cell = with_box(mass)
     grip_from_above(cell, force=60.0)
-    assert mass * (GRAVITY + kinova.TOOL_ACCELERATION) < 2 * 60.0, "Coulomb: far from slipping"
+    assert mass * (GRAVITY + kinova.TOOL_ACCELERATION) < 2 * 60.0 * 0.7, "Coulomb: far from slipping"
     for move in ({"z": 0.2}, {"y": -0.4}, {"theta_z": 60.0}, {"x": -0.1, "y": 0.2}):
         before = place_in_tool(cell)
         cell.arm.move_by(**move)
@@ -292,3 +293,36 @@ def test_some_drops_rebound() -> None:
             most = max(most, float(data.xpos[body][2]) - 1.025)
         tops.append(math.sqrt(most / height))
     assert 0.05 < sum(tops) / len(tops) < 0.3
+
+
+@pytest.mark.parametrize(
+    "fixture", [CONVEYOR, Fixture("plate", CONVEYOR.size, CONVEYOR.centre, friction=0.3)]
+)
+def test_a_box_slides_down_a_slope_whose_tangent_exceeds_its_friction(fixture: Fixture) -> None:
+    """Gravity is tilted instead of the surface; the box travels as Coulomb says once it slides."""
+    box = Box(position=(0.55, 0.6, 1.0), jitter=0.0)
+    steepest = math.atan(fixture.friction)
+    for slope in (steepest - math.radians(2), steepest + math.radians(4)):
+        cell = Cell(1, scene=Scene(fixtures=(fixture,), boxes=(box,)))
+        cell.simulation.model.opt.gravity[:] = (0, -GRAVITY * math.sin(slope), -GRAVITY * math.cos(slope))
+        cell.wait(0.5)
+        drive = max(0.0, math.sin(slope) - fixture.friction * math.cos(slope)) * GRAVITY
+        assert 0.6 - cell.truth.box_position().y == pytest.approx(drive * 0.5**2 / 2, rel=0.1, abs=0.001)
+
+
+def test_an_oily_box_slides_on_everything_alike() -> None:
+    cell = with_box(0.1, friction=0.05)
+    slope = math.atan(0.1)
+    cell.simulation.model.opt.gravity[:] = (0, -GRAVITY * math.sin(slope), -GRAVITY * math.cos(slope))
+    cell.wait(0.5)
+    assert cell.truth.box_position().y < 0.2 - 0.03
+
+
+def test_dry_cardboard_on_silicone_carries_what_coulomb_says() -> None:
+    """20 N carry 2.5 kg, but not with half of the friction."""
+    mass, force = 2.5, 20.0
+    assert 2 * force * 0.7 / 2 < mass * GRAVITY < 2 * force * 0.7
+    cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
+    grip_from_above(cell, force)
+    cell.arm.move_by(z=0.1, speed=0.05)
+    assert cell.truth.box_position().z > 1.09
