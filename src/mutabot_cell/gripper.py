@@ -30,6 +30,7 @@ class Gripper:
         self._setpoint = 0.0
         self._holding = False
         self._other_ticks = 0
+        self._read: tuple[int, float] = (-1, 0.0)
         self.set_force(force)
         self.set_speed(speed)
         simulation.before_tick.append(self._drive)
@@ -87,8 +88,12 @@ class Gripper:
         return self._target / robotiq.STROKE
 
     def opening(self) -> float:
-        """Measured distance between the pads, m, with noise."""
-        return self._noise.add("opening", robotiq.STROKE - self._closed())
+        """Measured distance between the pads, m, with noise; one reading per tick."""
+        ticks, reading = self._read
+        if ticks != self._simulation.ticks:
+            reading = self._noise.add("opening", robotiq.STROKE - self._closed())
+            self._read = self._simulation.ticks, reading
+        return reading
 
     def holding(self) -> bool:
         """Whether the fingers press and are blocked before the commanded opening: something is between them.

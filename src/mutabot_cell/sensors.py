@@ -1,4 +1,4 @@
-"""What the robot program can read, each with its own noise."""
+"""What the robot program can read: each with its own noise, rate and delay."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.motion.kinematics import Kinematics
 
 from .errors import SensorError
-from .geometry import Pose, Position, pose_of
+from .geometry import Array, Pose, Position, pose_of
 from .scene import BASE_POSITION, Box
 from .simulation import Simulation
 
@@ -42,6 +42,9 @@ class Sensors:
         self._tool = simulation.model.site("tool").id
         self._geom = np.zeros(1, dtype=np.int32)
         self._read: tuple[int, tuple[float, ...]] = (-1, ())
+        self._seen_at = -1
+        self._seen: dict[str, Position] = {}
+        self._ranged: tuple[int, float] = (-1, 0.0)
 
     def tool_pose(self) -> Pose:
         """Tool pose in the base frame, computed from the joint encoders.
@@ -55,13 +58,22 @@ class Sensors:
         return tuple(180.0 - (180.0 - angle) % 360.0 for angle in self._encoders())
 
     def box_position(self, name: str | None = None) -> Position:
-        """Measured middle of the bottom face of a box; without a name, of the first box.
+        """Middle of the bottom face of a box as the camera sees it; without a name, of the first box.
+
+        The camera takes 25 pictures a second. Each can be read 40 ms later, and until the next one can.
 
         Raises:
             SensorError: there is no such box.
         """
-        exact = true_box_position(self._simulation, self._box(name))
-        return Position(*(self._noise.add("box position", value) for value in (exact.x, exact.y, exact.z)))
+        box = self._box(name)
+        tick, places = self._simulation.frame()
+        if tick != self._seen_at:
+            self._seen_at, self._seen = tick, {}
+        if box.name not in self._seen:
+            start = int(self._simulation.model.joint(box.name).qposadr[0])
+            exact = _bottom(places[start : start + 3], places[start + 3 : start + 7], box)
+            self._seen[box.name] = Position(*(self._noise.add("box position", value) for value in exact))
+        return self._seen[box.name]
 
     def colour_number(self, name: str | None = None) -> int:
         """Colour as a whole number 1..10: even is red, odd is blue. Drawn once per round.
@@ -80,16 +92,22 @@ class Sensors:
         return "red" if self.colour_number(name) % 2 == 0 else "blue"
 
     def distance(self) -> float:
-        """Distance from the gripper's palm to the nearest surface along the tool's axis, m."""
+        """Distance from the gripper's palm to the nearest surface along the tool's axis, m, once per tick."""
+        ticks, reading = self._ranged
+        if ticks != self._simulation.ticks:
+            low, high = DISTANCE_RANGE
+            reading = min(max(self._noise.add("distance", self._range()), low), high)
+            self._ranged = self._simulation.ticks, reading
+        return reading
+
+    def _range(self) -> float:
         data = self._simulation.data
         axis = data.site_xmat[self._tool].reshape(3, 3)[:, 2].copy()
         start = data.site_xpos[self._tool] - (kinova.TOOL_LENGTH - _DISTANCE_START) * axis
         group = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
         own_body = self._simulation.model.body("gripper").id
         found = mujoco.mj_ray(self._simulation.model, data, start, axis, group, 1, own_body, self._geom)
-        low, high = DISTANCE_RANGE
-        exact = high if found < 0 else float(found)
-        return min(max(self._noise.add("distance", exact), low), high)
+        return DISTANCE_RANGE[1] if found < 0 else float(found)
 
     def _encoders(self) -> tuple[float, ...]:
         """One reading of all encoders per tick, with noise, degrees, not wrapped."""
@@ -128,6 +146,14 @@ def true_box_position(simulation: Simulation, box: Box) -> Position:
     centre = simulation.data.xpos[body]
     up = simulation.data.xmat[body][2::3]
     return Position(*(centre - 0.5 * box.edge * up).tolist())
+
+
+def _bottom(centre: Array, turned: Array, box: Box) -> list[float]:
+    """Middle of the bottom face of a box at a place, turned by a quaternion."""
+    rotation = np.zeros(9)
+    mujoco.mju_quat2Mat(rotation, turned)
+    bottom: list[float] = (centre - 0.5 * box.edge * rotation[2::3]).tolist()
+    return bottom
 
 
 def true_box_tilt(simulation: Simulation, box: Box) -> float:

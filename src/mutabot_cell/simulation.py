@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Literal
 
@@ -19,7 +20,13 @@ STEPS_PER_TICK = 5
 TICK = STEPS_PER_TICK * model.PHYSICS_STEP
 """Length of one control tick, s."""
 
+FRAME_TICKS = 4
+"""Control ticks from one picture of the cell's camera to the next: 25 a second."""
+LATENCY_TICKS = 4
+"""Control ticks that a picture is older than this when it can be read: 40 ms."""
+
 _ABSURD_SPEED = 1e4
+_KEPT_FRAMES = 1 + math.ceil(LATENCY_TICKS / FRAME_TICKS)
 
 
 def _ignore_warning(message: str) -> None:
@@ -50,6 +57,7 @@ class Simulation:
         self.after_tick: list[Callable[[], None]] = []
         self.encoder_error: Array = np.zeros(kinova.JOINT_COUNT)
         self._ticks = 0
+        self._frames: deque[tuple[int, Array]] = deque([(0, self.data.qpos.copy())], maxlen=_KEPT_FRAMES)
         self._ids: dict[tuple[str, str], int] = {}
         self._speeds, self._places = self.data.qvel, self.data.qpos  # views of the physics' own memory
 
@@ -62,6 +70,11 @@ class Simulation:
     def ticks(self) -> int:
         """Control ticks since the cell was made."""
         return self._ticks
+
+    def frame(self) -> tuple[int, Array]:
+        """What the camera's newest readable picture shows: its tick, and `qpos` at that time."""
+        latest = self._ticks - LATENCY_TICKS
+        return next((frame for frame in reversed(self._frames) if frame[0] <= latest), self._frames[0])
 
     def encoders(self) -> Array:
         """Joint angles as the encoders tell them to the controller, shape (7,), rad, without noise."""
@@ -101,6 +114,8 @@ class Simulation:
             ctrl[:] = row
             step(cell_model, data)
         self._ticks += 1
+        if self._ticks % FRAME_TICKS == 0:
+            self._frames.append((self._ticks, self._places.copy()))
         # one number tells of all: not below the limit also if a value is NaN
         speeds, places = self._speeds, self._places
         if not (speeds.dot(speeds) < _ABSURD_SPEED**2 and math.isfinite(places.dot(places))):

@@ -326,3 +326,34 @@ def test_dry_cardboard_on_silicone_carries_what_coulomb_says() -> None:
     grip_from_above(cell, force)
     cell.arm.move_by(z=0.1, speed=0.05)
     assert cell.truth.box_position().z > 1.09
+
+
+def test_readings_at_one_instant_are_one_reading(cell: Cell) -> None:
+    """Asking more often than a device measures makes nothing more exact."""
+    cell.wait(0.1)
+    for read in (
+        cell.sensors.box_position,
+        cell.sensors.tool_pose,
+        cell.sensors.joint_angles,
+        cell.sensors.distance,
+        cell.gripper.opening,
+    ):
+        assert len({read() for _ in range(100)}) == 1
+
+
+def test_the_camera_sees_25_pictures_a_second_of_what_was_40_ms_ago(exact_cell: Cell) -> None:
+    speed = 0.5
+    box = exact_cell.simulation.data.joint("box")
+    exact_cell.simulation.model.pair_friction[:] = 0
+    exact_cell.simulation.model.geom_friction[:] = 0
+    exact_cell.wait(0.2)
+    box.qvel[1] = -speed
+    exact_cell.wait(0.2)
+    ages, seen = [], set()
+    for _ in range(100):
+        exact_cell.simulation.tick()
+        reading = exact_cell.sensors.box_position().y
+        ages.append((reading - exact_cell.truth.box_position().y) / speed)
+        seen.add(reading)
+    assert len(seen) in (25, 26)
+    assert (min(ages), max(ages)) == pytest.approx((0.04, 0.07), abs=0.005)

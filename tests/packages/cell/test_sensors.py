@@ -8,7 +8,10 @@ from mutabot_cell import BadArgument, Box, Cell, Scene, SensorError
 
 
 def test_noise_has_the_stated_size(cell: Cell) -> None:
-    readings = [cell.sensors.box_position().x for _ in range(400)]
+    readings = []
+    for _ in range(400):
+        cell.simulation.advance(0.04)
+        readings.append(cell.sensors.box_position().x)
     exact = cell.truth.box_position().x
     assert statistics.mean(readings) == pytest.approx(exact, abs=0.0001)
     assert statistics.stdev(readings) == pytest.approx(0.0005, rel=0.15)
