@@ -10,6 +10,9 @@ from dataclasses import dataclass, field
 BASE_POSITION = (0.0, 0.0, 0.9)
 """Where the robot's base stands in the world, m."""
 
+CAMERA = (2.2, 0.3, 2.4)
+"""Where the camera stands, m: in front of the robot and above, so that the arm seldom hides what it holds."""
+
 BOX_EDGE = 0.05
 FRICTION_ON_SILICONE, FRICTION_ON_STEEL, FRICTION_ON_BELT, FRICTION_ON_RUBBER = 0.7, 0.4, 0.6, 1.0
 """Of dry cardboard or wood on the gripper's pads, a painted floor or frame, a conveyor's belt, a rubber mat:
@@ -75,8 +78,13 @@ RED_TARGET = Mark("red target", (0.10, 0.10), (-0.4, 0.15, 0.76))
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """All that stands around the robot. The default is the published experiment's cell."""
+    """All that stands around the robot. The default is the published experiment's cell.
+
+    Attributes:
+        camera: where the camera stands that sees boxes, world frame, m.
+    """
 
     fixtures: tuple[Fixture, ...] = (CONVEYOR, TARGET_TABLE)
     marks: tuple[Mark, ...] = (RED_TARGET,)
     boxes: tuple[Box, ...] = field(default_factory=lambda: (Box(),))
+    camera: tuple[float, float, float] = CAMERA

@@ -12,13 +12,17 @@ from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.motion.kinematics import Kinematics
 
 from .errors import SensorError
-from .geometry import Array, Pose, Position, pose_of
+from .geometry import Pose, Position, pose_of
 from .scene import BASE_POSITION, Box
 from .simulation import Simulation
 
 DISTANCE_RANGE = (0.02, 2.0)
 """Range of the distance sensor, m; further away it reads its upper end."""
 _DISTANCE_START = 0.085
+_SOLID = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
+"""Groups of shapes that hide what is behind them: all but those that are only there to look at."""
+_LOOKED_AT = 0.9 * np.array([(0, 0, 0), *((x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1))])
+"""Points of a box of edge 2: its middle, and near its corners."""
 _BASE = np.array(BASE_POSITION)
 """The distance sensor sits in the gripper's palm, this far beyond the interface, m."""
 
@@ -33,6 +37,7 @@ class Sensors:
         noise: SeededNoise,
         boxes: tuple[Box, ...],
         numbers: dict[str, int],
+        camera: tuple[float, float, float],
     ) -> None:
         self._simulation = simulation
         self._kinematics = kinematics
@@ -43,7 +48,9 @@ class Sensors:
         self._geom = np.zeros(1, dtype=np.int32)
         self._read: tuple[int, tuple[float, ...]] = (-1, ())
         self._seen_at = -1
-        self._seen: dict[str, Position] = {}
+        self._seen: dict[str, Position | None] = {}
+        self._picture = mujoco.MjData(simulation.model)
+        self._camera = np.array(camera)
         self._ranged: tuple[int, float] = (-1, 0.0)
 
     def tool_pose(self) -> Pose:
@@ -63,17 +70,42 @@ class Sensors:
         The camera takes 25 pictures a second. Each can be read 40 ms later, and until the next one can.
 
         Raises:
-            SensorError: there is no such box.
+            SensorError: there is no such box, or something hides it from the camera.
         """
         box = self._box(name)
         tick, places = self._simulation.frame()
         if tick != self._seen_at:
             self._seen_at, self._seen = tick, {}
+            self._picture.qpos[:] = places
+            mujoco.mj_kinematics(self._simulation.model, self._picture)
         if box.name not in self._seen:
-            start = int(self._simulation.model.joint(box.name).qposadr[0])
-            exact = _bottom(places[start : start + 3], places[start + 3 : start + 7], box)
-            self._seen[box.name] = Position(*(self._noise.add("box position", value) for value in exact))
-        return self._seen[box.name]
+            self._seen[box.name] = self._look_for(box)
+        found = self._seen[box.name]
+        if found is None:
+            raise SensorError(f"the camera does not see {box.name!r}: something is in the way")
+        return found
+
+    def _look_for(self, box: Box) -> Position | None:
+        """Where the picture shows the box; None if less than a third of it can be seen."""
+        body, geom = self._simulation.id_of("body", box.name), self._simulation.model.geom(box.name).id
+        centre, rotation = self._picture.xpos[body], self._picture.xmat[body].reshape(3, 3)
+        rays = centre + _LOOKED_AT * box.edge / 2 @ rotation.T - self._camera
+        hits = np.zeros(len(rays), dtype=np.int32)
+        for index, ray in enumerate(rays):
+            mujoco.mj_ray(
+                self._simulation.model,
+                self._picture,
+                self._camera,
+                ray,
+                _SOLID,
+                1,
+                -1,
+                hits[index : index + 1],
+            )
+        if 3 * int((hits == geom).sum()) < len(rays):
+            return None
+        bottom = (centre - box.edge / 2 * rotation[:, 2]).tolist()
+        return Position(*(self._noise.add("box position", value) for value in bottom))
 
     def colour_number(self, name: str | None = None) -> int:
         """Colour as a whole number 1..10: even is red, odd is blue. Drawn once per round.
@@ -104,9 +136,8 @@ class Sensors:
         data = self._simulation.data
         axis = data.site_xmat[self._tool].reshape(3, 3)[:, 2].copy()
         start = data.site_xpos[self._tool] - (kinova.TOOL_LENGTH - _DISTANCE_START) * axis
-        group = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
         own_body = self._simulation.model.body("gripper").id
-        found = mujoco.mj_ray(self._simulation.model, data, start, axis, group, 1, own_body, self._geom)
+        found = mujoco.mj_ray(self._simulation.model, data, start, axis, _SOLID, 1, own_body, self._geom)
         return DISTANCE_RANGE[1] if found < 0 else float(found)
 
     def _encoders(self) -> tuple[float, ...]:
@@ -146,14 +177,6 @@ def true_box_position(simulation: Simulation, box: Box) -> Position:
     centre = simulation.data.xpos[body]
     up = simulation.data.xmat[body][2::3]
     return Position(*(centre - 0.5 * box.edge * up).tolist())
-
-
-def _bottom(centre: Array, turned: Array, box: Box) -> list[float]:
-    """Middle of the bottom face of a box at a place, turned by a quaternion."""
-    rotation = np.zeros(9)
-    mujoco.mju_quat2Mat(rotation, turned)
-    bottom: list[float] = (centre - 0.5 * box.edge * rotation[2::3]).tolist()
-    return bottom
 
 
 def true_box_tilt(simulation: Simulation, box: Box) -> float:

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mutabot_cell import BadArgument, Box, Cell, Fixture, MotionRefused, ProtectiveStop, Scene
+from mutabot_cell import BadArgument, Box, Cell, Fixture, MotionRefused, ProtectiveStop, Scene, SensorError
 from mutabot_cell.arm import EXTERNAL_TORQUE_LIMIT
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
@@ -357,3 +357,36 @@ def test_the_camera_sees_25_pictures_a_second_of_what_was_40_ms_ago(exact_cell: 
         seen.add(reading)
     assert len(seen) in (25, 26)
     assert (min(ages), max(ages)) == pytest.approx((0.04, 0.07), abs=0.005)
+
+
+def walls(*sides: str) -> tuple[Fixture, ...]:
+    """Walls around the box on the conveyor, and a lid above it."""
+    places = {
+        "+y": (0.55, 0.3, 1.15),
+        "-y": (0.55, 0.1, 1.15),
+        "+x": (0.65, 0.2, 1.15),
+        "-x": (0.45, 0.2, 1.15),
+    }
+    sizes = {"y": (0.3, 0.01, 0.3), "x": (0.01, 0.3, 0.3)}
+    around = [Fixture(f"wall {side}", sizes[side[1]], places[side]) for side in sides if side != "lid"]
+    return (*around, *([Fixture("lid", (0.4, 0.4, 0.01), (0.55, 0.2, 1.31))] if "lid" in sides else []))
+
+
+def test_the_camera_does_not_see_through_things() -> None:
+    hood = walls("+y", "-y", "+x", "-x", "lid")
+    cell = Cell(1, scene=Scene(fixtures=(CONVEYOR, *hood)))
+    with pytest.raises(SensorError, match="something is in the way"):
+        cell.sensors.box_position()
+
+
+def test_what_stands_behind_a_box_does_not_hide_it() -> None:
+    """The camera stands in front of the robot, a little to the left."""
+    cell = Cell(1, scene=Scene(fixtures=(CONVEYOR, *walls("-y", "-x"))))
+    assert cell.sensors.box_position().y == pytest.approx(0.2, abs=0.005)
+
+
+def test_the_camera_sees_a_box_in_the_fingers(cell: Cell) -> None:
+    grip_from_above(cell)
+    cell.arm.move_by(z=0.2)
+    cell.wait(0.2)
+    assert cell.sensors.box_position().z == pytest.approx(1.2, abs=0.004)
