@@ -39,7 +39,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 
-ENGINES = ("branch", "replay")
+ENGINES = ("fork", "replay")
 PEACE, INTERRUPTED, SIGINT, SIGKILL = "left in peace", "interrupted here", "SIGINT", "SIGKILL"
 #: how campaigns end, in this order again and again; the first of each kind is left in peace, to be timed
 ENDINGS = (PEACE, INTERRUPTED, SIGKILL, PEACE, SIGINT)
@@ -165,7 +165,7 @@ class Series:
     def finish(self) -> None:
         """One more campaign on each project removes what killed ones left; then nothing may be there."""
         for project in PROGRAMS:
-            self._here(project, "branch", None, f"last campaign ({project})")
+            self._here(project, "fork", None, f"last campaign ({project})")
             folder = self.home / project / ".mutabot"
             left = sorted({path.name for path in folder.iterdir()} - KEPT)
             self._expect(not left, f"files are left in {project}: {left}")
@@ -328,7 +328,7 @@ def run(home: Path, count: int, seed: int, tell: Callable[[str], None]) -> dict[
     series = Series(home, random.Random(seed), tell)
     series.write()
     files, shared = series.files(), own_entries("/dev/shm")
-    series._here("plain", "branch", None, "the first campaign")  # what is opened only once is open now
+    series._here("plain", "fork", None, "the first campaign")  # what is opened only once is open now
     threads = threading.active_count()
     before = descriptors()
     for number in range(count):

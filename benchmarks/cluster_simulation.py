@@ -1,13 +1,13 @@
 """A campaign of 10⁵ mutants × 10 rounds on 1 to 1,000 workers, simulated with costs that were measured.
 
-    python benchmarks/cluster_simulation.py measure REPLAY.sqlite BRANCH.sqlite CONTROLLER.json …
+    python benchmarks/cluster_simulation.py measure REPLAY.sqlite FORK.sqlite CONTROLLER.json …
                                                       store the costs of real campaigns in docs/data
     python benchmarks/cluster_simulation.py           simulate, and store what came of it there
     python tools/make_scaling_page.py                 make docs/scaling.md and its picture of that
 
 The program is many copies of the measured one: each copy has its tests, and its mutants are judged by these
 alone. Units, their order and their parts are those of the executor on a cluster: replay has a unit for each
-mutant and round; of a branch trunk, each worker gets ``PARTS`` parts, none with fewer than ``LEAST`` mutants,
+mutant and round; of a fork parent, each worker gets ``PARTS`` parts, none with fewer than ``LEAST`` mutants,
 mutants of the same tests together; the longest unit, by the baseline's times, goes first. A worker has one
 unit at a time; answers are judged by one controller, one after the other, and a worker waits for its next
 unit until the controller has come to its answer.
@@ -38,7 +38,7 @@ from mutabot.journal.records import DRAWING
 DATA = Path(__file__).with_name("scaling.json")
 MUTANTS, ROUNDS = 100_000, 10
 WORKERS = (1, 10, 100, 300, 1000)
-#: as the engines cut a trunk: parts for each worker, and mutants of a part at least
+#: as the engines cut a fork parent: parts for each worker, and mutants of a part at least
 PARTS, LEAST = 16, 10
 #: measured with distributed 2026.8.0 on two cores, s: what a unit costs beside its session on the worker, in
 #: the library, and of the scheduler and its client; what a worker takes to begin; what a bundle of 5 MB takes
@@ -58,7 +58,7 @@ class Costs:
         mutants: of the measured program.
         suite: s of one run of its tests.
         replay: s of each session of replay.
-        branch: s of each branch, and of what belongs to it alone.
+        fork: s of each fork, and of what belongs to it alone.
         spread: how much longer or shorter equal runs of a test took than their mean, as factors.
         controller: s of the controller for an outcome, by engine.
     """
@@ -66,7 +66,7 @@ class Costs:
     mutants: int
     suite: float
     replay: tuple[float, ...]
-    branch: tuple[float, ...]
+    fork: tuple[float, ...]
     spread: tuple[float, ...]
     controller: dict[str, float]
 
@@ -75,7 +75,7 @@ class Costs:
         """Those that are stored."""
         data = json.loads(path.read_text(encoding="utf-8"))["costs"]
         return cls(
-            data["mutants"], data["suite"], tuple(data["replay"]), tuple(data["branch"]),
+            data["mutants"], data["suite"], tuple(data["replay"]), tuple(data["fork"]),
             tuple(data["spread"]), data["controller"],
         )  # fmt: skip
 
@@ -85,19 +85,19 @@ class Unit:
     """What a worker gets.
 
     Attributes:
-        trunk: s of the original's own run in it.
+        fork_parent: s of the original's own run in it.
         mutants: s of its mutants.
         outcomes: how many these are.
     """
 
-    trunk: float
+    fork_parent: float
     mutants: float
     outcomes: int
 
     @property
     def seconds(self) -> float:
         """What it is expected to take."""
-        return self.trunk + self.mutants
+        return self.fork_parent + self.mutants
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +105,8 @@ class Way:
     """How a campaign is run.
 
     Attributes:
-        engine: ``replay`` or ``branch``.
-        parts: of a trunk, for each worker; 0 for trunks that are not cut.
+        engine: ``replay`` or ``fork``.
+        parts: of a fork parent, for each worker; 0 for fork parents that are not cut.
         longest_first: whether units are sorted.
         spread: whether equal units take different times.
         failures: whether workers die.
@@ -127,7 +127,7 @@ class Run:
         workers: how many.
         units: how many.
         ended: s from the start to the last outcome.
-        begun, useful, trunks, shipped, waited, lost, idle: beginning, mutants, the original's own runs, units
+        begun, useful, originals, shipped, waited, lost, idle: beginning, mutants, original's own runs, units
             on their way, waiting for the controller, work of workers that died, and nothing to do any more.
         controller: s that the controller was at work.
     """
@@ -137,7 +137,7 @@ class Run:
     ended: float = 0.0
     begun: float = 0.0
     useful: float = 0.0
-    trunks: float = 0.0
+    originals: float = 0.0
     shipped: float = 0.0
     waited: float = 0.0
     lost: float = 0.0
@@ -148,7 +148,7 @@ class Run:
     def shares(self) -> dict[str, float]:
         """Parts of the time of all workers."""
         whole = self.workers * self.ended
-        names = ("begun", "useful", "trunks", "shipped", "waited", "lost", "idle")
+        names = ("begun", "useful", "originals", "shipped", "waited", "lost", "idle")
         return {name: round(getattr(self, name) / whole, 5) for name in names}
 
 
@@ -158,13 +158,13 @@ def units_of(costs: Costs, way: Way, workers: int, mutants: int = MUTANTS) -> li
     if way.engine == "replay":
         units = [Unit(0.0, one, 1) for one in chance.choices(costs.replay, k=mutants * ROUNDS)]
     else:
-        drawn = chance.choices(costs.branch, k=mutants)
+        drawn = chance.choices(costs.fork, k=mutants)
         units = [one for _ in range(ROUNDS) for one in _cut(costs, drawn, way, workers)]
     return sorted(units, key=lambda one: -one.seconds) if way.longest_first else units
 
 
 def _cut(costs: Costs, drawn: Sequence[float], way: Way, workers: int) -> Iterator[Unit]:
-    """The trunk of a round in parts: as ``campaign.engines.fork_parent`` cuts it."""
+    """The fork parent of a round in parts: as ``campaign.engines.fork_parent`` cuts it."""
     count = math.ceil(way.parts * workers / ROUNDS) if workers > 1 and way.parts else 1
     count = max(1, min(count, len(drawn) // LEAST))
     bounds = [round(len(drawn) * number / count) for number in range(count + 1)]
@@ -209,7 +209,7 @@ def simulate(costs: Costs, way: Way, workers: int, mutants: int = MUTANTS) -> Ru
             yield world.timeout(SHELL + LIBRARY + takes)
             run.shipped += SHELL + LIBRARY
             run.useful += unit.mutants * factor
-            run.trunks += unit.trunk * factor
+            run.originals += unit.fork_parent * factor
             wait = judged(unit.outcomes)
             run.waited += wait
             yield world.timeout(wait)
@@ -246,7 +246,7 @@ def baseline_seconds(costs: Costs, places: int, runs: int, mutants: int = MUTANT
 def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS) -> dict[str, Any]:
     """All numbers of the page."""
     found: dict[str, Any] = {"mutants": mutants, "rounds": ROUNDS}
-    for engine in ("replay", "branch"):
+    for engine in ("replay", "fork"):
         one = alone(costs, engine, mutants)
         rows = []
         for number in workers:
@@ -267,15 +267,15 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
             })  # fmt: skip
         found[engine] = rows
     ways = {
-        "not cut: one for each round": Way("branch", parts=0),
-        "1 part for each worker": Way("branch", parts=1),
-        "2 parts": Way("branch", parts=2),
-        "4 parts": Way("branch", parts=4),
-        "16 parts": Way("branch", parts=16),
-        "16 parts, in any order": Way("branch", parts=16, longest_first=False),
-        "64 parts": Way("branch", parts=64),
+        "not cut: one for each round": Way("fork", parts=0),
+        "1 part for each worker": Way("fork", parts=1),
+        "2 parts": Way("fork", parts=2),
+        "4 parts": Way("fork", parts=4),
+        "16 parts": Way("fork", parts=16),
+        "16 parts, in any order": Way("fork", parts=16, longest_first=False),
+        "64 parts": Way("fork", parts=64),
     }
-    one = alone(costs, "branch", mutants)
+    one = alone(costs, "fork", mutants)
     found["sizes"] = []
     for name, way in ways.items():
         run = simulate(costs, way, 100, mutants)
@@ -295,14 +295,14 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
     return found
 
 
-def measure(replay: Path, branch: Path, controllers: Sequence[Path], how: str) -> dict[str, Any]:
+def measure(replay: Path, fork: Path, controllers: Sequence[Path], how: str) -> dict[str, Any]:
     """The costs in the journals of real campaigns, and in what ``benchmarks/controller.py --json`` prints."""
     with JournalReader.open(replay) as journal:
         sessions = [one.wall for one in journal.outcomes() if one.tests]
         tests = journal.tests()
         meta = journal.meta()
-    with JournalReader.open(branch) as journal:
-        branches = [one.wall for one in journal.outcomes() if one.tests and one.engine == "branch"]
+    with JournalReader.open(fork) as journal:
+        forks = [one.wall for one in journal.outcomes() if one.tests and one.engine == "fork"]
     walls: dict[tuple[int, str], list[float]] = {}
     for one in tests:
         walls.setdefault((one.round, one.test.test), []).append(one.test.wall)
@@ -319,7 +319,7 @@ def measure(replay: Path, branch: Path, controllers: Sequence[Path], how: str) -
             "mutants": meta[DRAWING]["selected"] if DRAWING in meta else len(Counter(sessions)),
             "suite": round(sum(sum(each) / len(each) for each in walls.values()) / rounds, 3),
             "replay": [round(one, 3) for one in sorted(sessions)],
-            "branch": [round(one, 4) for one in sorted(branches)],
+            "fork": [round(one, 4) for one in sorted(forks)],
             "spread": [round(one, 4) for one in sorted(spread)],
             "controller": controller,
         },
@@ -336,8 +336,8 @@ def main() -> int:
     parser.add_argument("--how", default="", help="with measure: the commands that made the files")
     given = parser.parse_args()
     if given.what[:1] == ["measure"]:
-        replay, branch, *controllers = map(Path, given.what[1:])
-        found = measure(replay, branch, controllers, given.how)
+        replay, fork, *controllers = map(Path, given.what[1:])
+        found = measure(replay, fork, controllers, given.how)
         DATA.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         return 0
     found = study(Costs.load(), given.mutants)

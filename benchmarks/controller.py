@@ -11,7 +11,7 @@ sessions took, divided among 100 workers. Promises:
 - the controller takes less than a tenth of one core for 100 workers;
 - from a tenth of the outcomes to the end of the last mutant, its memory grows by less than 5 %.
 
-Use: ``python benchmarks/controller.py [--mutants 100000] [--engine replay|branch] [--example paper]
+Use: ``python benchmarks/controller.py [--mutants 100000] [--engine replay|fork] [--example paper]
 [--sample 24] [--json]``. The exit code is 1 if a promise is broken.
 """
 
@@ -32,33 +32,33 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
-from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.run import begin, open_executor, selected
 from mutabot.cli.request import request_of
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.journal.journal import Journal
-from mutabot.model import Mutant, Outcome
+from mutabot.model import Mutant
 from mutabot.model.codec import to_data
 from mutabot.model.events import (
-    BranchDied,
-    BranchEnd,
     Event,
+    ForkDied,
+    ForkTestEnd,
     TokensHeld,
     Undiverged,
     event_from_data,
     event_to_data,
 )
-from mutabot.model.job import Branching
+from mutabot.model.job import Forking
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 WORKERS = 100
-#: mutants of a trunk: a part, as executors on several machines have them
+#: mutants of a fork parent: a part, as executors on several machines have them
 PART = 500
 LOOKS = 20
 SHARE, LARGER = 0.1, 1.05
@@ -120,13 +120,13 @@ class Player:
             self.sent += len(json.dumps(to_data(task.job)))
             told = self.told[_key(task)]
             result = Result(task, exit_code=told.exit_code, wall=told.wall)
-            branching = task.job.branching
-            texts = told.lines if branching is None else _branched(told.lines, branching)
+            forking = task.job.forking
+            texts = told.lines if forking is None else _forked(told.lines, forking)
             for text in texts:
                 line = event_from_data(json.loads(text))
                 result.take(line)
                 yield task, line
-            if branching is None:
+            if forking is None:
                 self.work += told.wall
             yield result
 
@@ -151,10 +151,10 @@ def _original(mutant: str) -> str:
     return mutant.partition(MARK)[0].removesuffix("=")
 
 
-def _branched(lines: Iterable[str], branching: Branching) -> Iterator[str]:
-    """What a trunk says of all copies of its mutants."""
+def _forked(lines: Iterable[str], forking: Forking) -> Iterator[str]:
+    """What a fork parent says of all copies of its mutants."""
     copies: dict[str, list[str]] = {}
-    for mutant in branching.mutants:
+    for mutant in forking.mutants:
         copies.setdefault(_original(mutant.id), []).append(mutant.id)
     for text in lines:
         data = json.loads(text)
@@ -165,7 +165,7 @@ def _branched(lines: Iterable[str], branching: Branching) -> Iterator[str]:
             hits = data["hits"]
             data["hits"] = {copy: hits[name] for name in hits for copy in copies.get(name, ())}
             yield json.dumps(data)
-        elif kind in {one.__name__ for one in (BranchDied, BranchEnd)} and mutant:
+        elif kind in {one.__name__ for one in (ForkDied, ForkTestEnd)} and mutant:
             yield from (json.dumps({**data, "mutant": copy}) for copy in copies.get(mutant, ()))
         else:
             yield text
@@ -251,7 +251,6 @@ def _play(
 ) -> dict[str, Any]:  # fmt: skip
     many = copies(mutants, given.mutants)
     journal.set_plan(many, ())
-    by_id = {one.id: one for one in many}
     looks: list[tuple[int, float, float]] = []
     step = max(1, given.mutants // LOOKS)
 
@@ -261,18 +260,12 @@ def _play(
 
     player = Player(told)
     playing = Campaign(request, campaign.baseline, player, Silent(look), evidence, campaign.proven)
-
-    def key_of(outcome: Outcome) -> str:
-        key = dependencies.key_of(outcome, by_id[outcome.mutant], dependencies.stored(outcome.executed))
-        journal.add_parts(dependencies.new_parts())
-        return key
-
-    sink = OutcomeWriter(journal, key_of)
+    sink = OutcomeWriter(journal, dependencies, many)
     profile = cProfile.Profile() if given.profile else None
     if profile is not None:
         profile.enable()
     began = time.process_time()
-    size = PART if given.engine == "branch" else len(many)
+    size = PART if given.engine == "fork" else len(many)
     for start in range(0, len(many), size):
         run_trials(playing, [(one, 0) for one in many[start : start + size]], sink)
     cpu = time.process_time() - began
@@ -297,7 +290,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--mutants", type=int, default=100_000)
-    parser.add_argument("--engine", default="replay", choices=("replay", "branch"))
+    parser.add_argument("--engine", default="replay", choices=("replay", "fork"))
     parser.add_argument("--example", default="paper")
     parser.add_argument("--sample", default="24", help="how many mutants are really run")
     parser.add_argument("--profile", action="store_true", help="show where the time goes")

@@ -1,4 +1,4 @@
-"""Do both engines find the same? Every mutant of every example by ``branch`` and by ``replay``, side by side.
+"""Do both engines find the same? Every mutant of every example by ``fork`` and by ``replay``, side by side.
 
 Compared of each (mutant, round): verdict, what noticed it, the test, the message, and all else that an
 outcome says but what it cost. The tests of a mutant run one after the other until one decides, so two equal
@@ -38,7 +38,7 @@ ROOT = Path(__file__).resolve().parent.parent
 #: example to its rounds; one round of pick_and_place takes replay minutes
 EXAMPLES = {"paper": 5, "pick_and_place": 1, "scales": 1}
 FAMILIES = ("robot", "conventional", "text")
-ENGINES = ("branch", "replay")
+ENGINES = ("fork", "replay")
 #: what two engines may differ in: what an outcome cost, and who found it
 COST = {"wall", "cpu", "shared", "engine", "repeats"}
 
@@ -52,7 +52,7 @@ class Disagreement:
     mutant: str
     round: int
     fact: str
-    branch: Any
+    fork: Any
     replay: Any
 
 
@@ -65,7 +65,7 @@ class Row:
         mutants: number of mutants.
         mutant_rounds: number of outcomes compared.
         outcomes: number of (mutant, test, round) that these stand for.
-        fallen_back: mutant-rounds that did not come from branches, because it was not safe to fork.
+        fallen_back: mutant-rounds that did not come from forks, because it was not safe to fork.
         disagreements: where the engines differ.
         seconds: what each engine took, baseline included.
     """
@@ -108,15 +108,15 @@ def compare(example: str, rounds: int, families: tuple[str, ...] = ("robot",)) -
             ) as journal:
                 found[engine] = {(one.mutant, one.round): one for one in journal.outcomes()}
             seconds[engine] = round(time.monotonic() - began, 1)
-    branched = found["branch"].values()  # some of them may have fallen back to replay
+    forked = found["fork"].values()  # some of them may have fallen back to replay
     return Row(
         example=example,
         rounds=rounds,
-        mutants=len({one.mutant for one in branched}),
-        mutant_rounds=len(found["branch"]),
-        outcomes=sum(one.tests for one in branched),
-        fallen_back=sum(bool(one.tests) and one.engine != "branch" for one in branched),
-        disagreements=tuple(disagreements(found["branch"], found["replay"])),
+        mutants=len({one.mutant for one in forked}),
+        mutant_rounds=len(found["fork"]),
+        outcomes=sum(one.tests for one in forked),
+        fallen_back=sum(bool(one.tests) and one.engine != "fork" for one in forked),
+        disagreements=tuple(disagreements(found["fork"], found["replay"])),
         seconds=seconds,
     )
 
@@ -128,15 +128,15 @@ def request_for(folder: Path, engine: str, rounds: int, families: tuple[str, ...
     jobs = len(os.sched_getaffinity(0))
     return Request(
         configuration, vocabulary, rounds, configuration.seed, jobs,
-        engine="auto" if engine == "branch" else engine, fresh=True, families=families,
+        engine="auto" if engine == "fork" else engine, fresh=True, families=families,
     )  # fmt: skip
 
 
-def disagreements(branch: Mapping[Key, Outcome], replay: Mapping[Key, Outcome]) -> list[Disagreement]:
+def disagreements(fork: Mapping[Key, Outcome], replay: Mapping[Key, Outcome]) -> list[Disagreement]:
     """Every fact in which the outcomes of the engines differ."""
     found = []
-    for mutant, number in sorted({*branch, *replay}):
-        pair = [facts(outcomes.get((mutant, number))) for outcomes in (branch, replay)]
+    for mutant, number in sorted({*fork, *replay}):
+        pair = [facts(outcomes.get((mutant, number))) for outcomes in (fork, replay)]
         for fact in dict.fromkeys([*pair[0], *pair[1]]):
             first, second = (one.get(fact) for one in pair)
             if first != second:
@@ -152,9 +152,9 @@ def facts(outcome: Outcome | None) -> dict[str, Any]:
 
 def show(rows: list[Row]) -> None:
     """Print the table, and each disagreement below it."""
-    table = Table(title="branch and replay on the same mutants")
+    table = Table(title="fork and replay on the same mutants")
     for heading in ("example", "rounds", "mutants", "mutant-rounds", "(mutant, test, round)", "fallen back",
-                    "branch s", "replay s", "disagreements"):  # fmt: skip
+                    "fork s", "replay s", "disagreements"):  # fmt: skip
         table.add_column(heading, justify="left" if heading == "example" else "right")
     for row in rows:
         numbers = (row.rounds, row.mutants, row.mutant_rounds, row.outcomes, row.fallen_back)
@@ -165,7 +165,7 @@ def show(rows: list[Row]) -> None:
     for row in rows:
         for one in row.disagreements:
             place = f"{row.example}: {one.mutant}, round {one.round + 1}, {one.fact}"
-            console.print(f"{place}:\n  branch: {one.branch!r}\n  replay: {one.replay!r}", markup=False)
+            console.print(f"{place}:\n  fork: {one.fork!r}\n  replay: {one.replay!r}", markup=False)
     outcomes = sum(row.outcomes for row in rows)
     wrong = len({(row.example, one.mutant, one.round) for row in rows for one in row.disagreements})
     total = sum(row.mutant_rounds for row in rows)

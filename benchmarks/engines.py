@@ -2,7 +2,7 @@
 
 Three ways to run the same mutants, in one go on the same machine:
 
-  branch   trunk and branches: the prefix is shared up to the site
+  fork     fork parent and forks: the prefix is shared up to the site
   replay   a fresh process per mutant and round, with the tests that reach the site
   fresh    a fresh pytest per mutant and round with the whole suite until a test fails, as general tools do it
 
@@ -12,9 +12,9 @@ imports all of it for a summary at the end. `fresh` does not, for a general tool
 The physics bound of a row is the least time in which its steps can be simulated here: steps, divided by the
 rate at which the bare engine repeats a run of the example's program on one core while all cores do so,
 divided by cores. Efficiency is that bound divided by the wall time. The peak of memory is that of the largest
-process. `branch` is the median of three runs.
+process. `fork` is the median of three runs.
 
-Usage: python benchmarks/engines.py [--examples paper …] [--engines branch …] [--limit N] [--output FILE]
+Usage: python benchmarks/engines.py [--examples paper …] [--engines fork …] [--limit N] [--output FILE]
                                     [--page FILE]
 """
 
@@ -42,8 +42,8 @@ from rich.table import Table
 
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.fork_parent import ForkParents, Unhandled
-from mutabot.campaign.engines.isolated_run import MutantRun, replay
+from mutabot.campaign.engines.engine import ForkParents, Unhandled, replay
+from mutabot.campaign.engines.tasks import MutantRun
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected
@@ -63,7 +63,7 @@ HEADINGS = (
     "efficiency",
 )  # fmt: skip
 MARK = "<!-- Written by `make bench` (benchmarks/engines.py) from here on. -->"
-ENGINES = ("branch", "replay", "fresh")
+ENGINES = ("fork", "replay", "fresh")
 #: physics steps per simulated second of mutabot_cell
 STEPS_PER_SECOND = 500
 
@@ -148,22 +148,22 @@ def bare(rates: dict[str, float]) -> str:
 
 
 def ratios(rows: list[Row]) -> Iterator[str]:
-    """How many times faster branching is than the other ways."""
+    """How many times faster forking is than the other ways."""
     walls = {(row.example, row.engine): row.wall for row in rows}
     for example in dict.fromkeys(row.example for row in rows):
-        if (example, "branch") in walls:
+        if (example, "fork") in walls:
             others = [
-                f"{walls[example, engine] / walls[example, 'branch']:.1f} times as fast as {engine}"
+                f"{walls[example, engine] / walls[example, 'fork']:.1f} times as fast as {engine}"
                 for engine in ENGINES[1:]
                 if (example, engine) in walls
             ]
             if others:
-                yield f"- {example}: branch is {', '.join(others)}."
+                yield f"- {example}: fork is {', '.join(others)}."
 
 
 def typical(example: str, engine: str, limit: int | None, rate: float | None) -> Row:
     """One row; of what takes seconds the median of three, since a busy moment would spoil it."""
-    times = 3 if engine == "branch" else 1
+    times = 3 if engine == "fork" else 1
     rows = [apart(measure, example, engine, limit, rate) for _ in range(times)]
     return sorted(rows, key=lambda row: row.wall)[times // 2]
 
@@ -184,7 +184,7 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
         if engine == "fresh":
             request = as_plain_pytest(request)
         with Workers(request.root, request.arguments, request.jobs) as workers:
-            shared = engine == "branch"
+            shared = engine == "fork"
             baseline, results = take_baseline(
                 request, workers, Silent(), repetitions=1 if shared else 2, may_share=shared
             )
@@ -195,7 +195,7 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
         wall, cpu = time.monotonic() - started, cpu_seconds() - before
     originals = sum(end.simulated or 0.0 for result in results for end in result.ends)
     if shared:
-        originals *= 2  # the trunks run the same again
+        originals *= 2  # the fork parents run the same again
     simulated = originals + sum((one.simulated or 0.0) - (one.shared or 0.0) for one in outcomes)
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     bound = None if rate is None else simulated * STEPS_PER_SECOND / rate / request.jobs
@@ -203,8 +203,8 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
 
 
 def run_pairs(engine: str, campaign: Campaign, trials: list[MutantRun]) -> Iterator[Outcome]:
-    """All outcomes; what a trunk could not do is replayed, as in a campaign."""
-    if engine == "branch":
+    """All outcomes; what a fork parent could not do is replayed, as in a campaign."""
+    if engine == "fork":
         left = Unhandled()
         yield from ForkParents(campaign, left).run(trials)
         yield from replay(campaign, left.runs)

@@ -121,7 +121,7 @@ def build(folder: Path, count: int, rounds: int) -> Path:
         "root": str(folder),
         "seed": 1,
         "rounds": rounds,
-        "engine": "branch",
+        "engine": "fork",
         "families": ["robot", "conventional"],
         "started": time.time(),
         "reaching": {"tests": tests, "sites": sites},

@@ -18,6 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Instrumentation, ProgramText
+from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.instrument import instrumented
 from mutabot.runtime.program_text.loading import compile_tree
 from mutabot.runtime.program_text.session_text import SessionText
@@ -110,7 +111,7 @@ def _evaluations(folder: Path, text: ProgramText, size: int) -> int:
     try:
         _loaded(folder / text.file).run(size)
     finally:
-        hook.remove()
+        loading._steps.remove(hook)
     return counter.count
 
 
@@ -120,7 +121,7 @@ def _hooked(folder: Path, text: ProgramText, *, record: bool = False) -> Callabl
     try:
         run: Callable[[int], Any] = _loaded(folder / text.file).run
     finally:
-        hook.remove()
+        loading._steps.remove(hook)
     (hook.sightings or hook.alternatives).install()
     if hook.sightings is not None:
         hook.sightings.start()

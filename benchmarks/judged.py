@@ -4,7 +4,7 @@ The judge (``tests/suites/judge.py``) edits the source text of a copy and runs p
 all robot mutants of all projects of the corpus (``tests/suites/projects``) with some mutants of their text,
 and mutants of the examples, drawn by a fixed seed, by both engines.
 
-Use: ``python benchmarks/judged.py [NAME …] [--engines branch replay] [--cache FOLDER] [--table]``. Without a
+Use: ``python benchmarks/judged.py [NAME …] [--engines fork replay] [--cache FOLDER] [--table]``. Without a
 name all projects and all examples run. The exit code is 1 if one verdict disagrees, or if there is nothing to
 compare. The examples of ROS are judged by the Pythons that see it.
 """

@@ -246,6 +246,202 @@ ERRANDS = {
 }
 
 
+#: a project most of whose code only mutants reach: recovery, and what the tests do where something is lost
+RESCUE = {
+    "mutabot.toml": ERRANDS["mutabot.toml"],
+    "robot.toml": ERRANDS["robot.toml"],
+    "robot.py": ERRANDS["robot.py"],
+    "mission.py": """
+        from robot import Refused
+        from rescue import back_off, correct, drop, regrip
+
+        def fetch(arm):
+            goal = arm.x + 0.3
+            try:
+                arm.move_by(0.3)
+            except Refused:
+                back_off(arm)
+            if abs(arm.x - goal) > 0.02:
+                correct(arm, goal)
+            arm.grip(1)
+            if not arm.closed:
+                regrip(arm)
+
+        def carry(arm):
+            start = arm.x
+            arm.grip(1)
+            arm.move_by(0.25)
+            arm.move_by(-0.05)
+            correct(arm, start + 0.2)
+            arm.grip(0)
+            if arm.closed:
+                drop(arm)
+
+        def look(arm):
+            seen = arm.position()
+            if abs(seen - arm.x) > 0.05:
+                import last_resort
+
+                last_resort.search(arm, seen)
+            return arm.x
+    """,
+    "rescue.py": """
+        from functools import lru_cache, wraps
+        from parts import halves, limit
+
+        ATTEMPTS = 3
+
+        class Watch:
+            lost = []
+
+            def __init__(self, least):
+                self.least = least
+
+            def note(self, off):
+                if off > self.least:
+                    self.lost.append(off)
+                return len(self.lost) * 0.01
+
+        def counted(function):
+            @wraps(function)
+            def call(arm, *rest):
+                call.calls += 1
+                if call.calls > 40:
+                    return None
+                return function(arm, *rest)
+
+            call.calls = 0
+            return call
+
+        @lru_cache
+        def share():
+            return 0.97
+
+        def back_off(arm):
+            arm.move_by(-0.15)
+            for step in halves(0.2):
+                if arm.x + step < limit():
+                    arm.move_by(step)
+
+        @counted
+        def correct(arm, goal):
+            if abs(goal - arm.x) > 0.001:
+                nudge(arm, goal)
+
+        def nudge(arm, goal):
+            off = goal - arm.x
+            slack = Watch(0.25).note(abs(off))
+            arm.move_by(off * share() - slack)
+            if abs(goal - arm.x) > 0.04:
+                settle(arm, goal)
+
+        def settle(arm, goal):
+            def step():
+                return (goal - arm.x) * 0.8
+
+            for _ in range(ATTEMPTS):
+                if abs(goal - arm.x) < 0.01:
+                    break
+                arm.move_by(step())
+
+        def drop(arm):
+            for _ in range(2):
+                arm.move_by(0.02)
+                arm.grip(0)
+
+        def regrip(arm):
+            arm.move_by(0.01)
+            arm.grip(1)
+            arm.move_by(-0.012)
+    """,
+    "parts.py": """
+        def halves(length):
+            for _ in range(4):
+                length = length / 2
+                yield length
+
+        def limit():
+            try:
+                return float(open("limit.json").read())
+            except OSError:
+                return 0.7
+    """,
+    "limit.json": "0.6\n",
+    "last_resort.py": """
+        STEP = 0.02
+
+        def search(arm, seen):
+            side = 1 if seen > arm.x else -1
+            arm.move_by(side * STEP)
+            if abs(seen - arm.x) > 0.3:
+                arm.move_by(side * far(seen - arm.x))
+
+        def far(off):
+            return min(abs(off) * 0.3, 0.25)
+    """,
+    "tests/conftest.py": """
+        import pytest
+        from robot import Arm
+        from told import home
+
+        @pytest.fixture
+        def arm(mutabot_seed):
+            arm = Arm(mutabot_seed % 7 / 100)
+            yield arm
+            if arm.x < -0.05 or arm.x > 0.75:
+                home(arm)
+                assert abs(arm.x) < 0.35
+    """,
+    "tests/told.py": """
+        def home(arm):
+            arm.move_by(-arm.x * 0.6)
+
+        def wide(one, other):
+            if abs(one - other) < 0.03:
+                return True
+            return nearly(one, other)
+
+        def nearly(one, other):
+            return abs(one - other) < 0.06
+    """,
+    "tests/test_fetch.py": """
+        import mission
+        from told import wide
+
+        def test_fetches(arm):
+            start = arm.x
+            mission.fetch(arm)
+            assert arm.closed == 1
+            assert wide(arm.x - start, 0.3)
+
+        def test_fetches_far(arm):
+            arm.move_by(0.5)
+            mission.fetch(arm)
+            assert arm.x < 0.95
+    """,
+    "tests/test_look.py": """
+        import mission
+        from told import wide
+
+        def test_looks(arm):
+            assert wide(mission.look(arm), arm.x)
+            assert arm.x < 0.2
+
+        def test_fetches_and_looks(arm):
+            start = arm.x
+            mission.fetch(arm)
+            mission.look(arm)
+            assert wide(arm.x, start + 0.3)
+
+        def test_carries(arm):
+            start = arm.x
+            mission.carry(arm)
+            assert arm.closed == 0
+            assert wide(arm.x, start + 0.2)
+    """,
+}
+
+
 @dataclass(frozen=True)
 class Subject:
     """A project to edit.
@@ -291,6 +487,13 @@ SUBJECTS: dict[str, Callable[[], Subject]] = {
         helpers=["routes.py", "tests/helpers.py", "robot.py"],
         hidden=("recovery.py",),
         kept=("plans.py", "distances.py", "tests/test_deliver.py"),
+    ),
+    "rescue": lambda: Subject(
+        {name: dedent(text).lstrip() for name, text in RESCUE.items()},
+        program=["mission.py"],
+        tests=["tests/test_fetch.py", "tests/test_look.py"],
+        helpers=["robot.py", "tests/conftest.py"],
+        hidden=("rescue.py", "parts.py", "last_resort.py", "tests/told.py"),
     ),
     "scales": lambda: of_example(
         "scales",
@@ -374,15 +577,41 @@ def comment(text: str, chance: random.Random) -> str:
 
 def much_other_number(text: str, chance: random.Random) -> str:
     """A number in some function is quite different."""
-    return other_number(text, chance, scale=0.5)
+    return other_number(text, chance, scale=round(chance.uniform(0.1, 0.9), 3))
 
 
-def of_number(kind: Callable[[Subject], Sequence[str]]) -> Callable[[Path, Subject, random.Random], str]:
+def other_sign(text: str, chance: random.Random) -> str:
+    """A comparison or a sum is the other way round."""
+    opposites = {"<": ">", ">": "<", "+": "-", "-": "+"}
+    lines = text.splitlines()
+    found = [
+        match
+        for match in re.finditer(r" ([<>+-]) ", text)
+        if lines[text.count("\n", 0, match.start())].startswith(" ")
+    ]
+    if not found:
+        raise NotPossibleError
+    match = chance.choice(found)
+    return f"{text[: match.start(1)]}{opposites[match[1]]}{text[match.end(1) :]}"
+
+
+def no_statement(text: str, chance: random.Random) -> str:
+    """A statement of a function does nothing any more."""
+    plain = ast.Expr | ast.AugAssign | ast.Break
+    found = [one for function in functions(text) for one in ast.walk(function) if isinstance(one, plain)]
+    if not found:
+        raise NotPossibleError
+    return replaced(text, chance.choice(found), "pass")
+
+
+def of_meaning(kind: Callable[[Subject], Sequence[str]]) -> Callable[[Path, Subject, random.Random], str]:
+    """What a function does is different."""
+
     def edit(folder: Path, subject: Subject, chance: random.Random) -> str:
         if not kind(subject):
             raise NotPossibleError
         path = folder / chance.choice(kind(subject))
-        how = chance.choice((much_other_number, other_number))
+        how = chance.choice((much_other_number, other_number, other_sign, no_statement, more_lines))
         path.write_text(how(path.read_text(), chance))
         return f"{how.__name__} in {path.relative_to(folder)}"
 
@@ -532,7 +761,7 @@ EDITS: dict[str, Callable[[Path, Subject, random.Random], str]] = {
     "test": changed_test,
     "vocabulary": changed_entry,
     "helper": of_text(lambda subject: subject.helpers),
-    "hidden": of_number(lambda subject: subject.hidden),
-    "kept": of_number(lambda subject: subject.kept),
+    "hidden": of_meaning(lambda subject: subject.hidden),
+    "kept": of_meaning(lambda subject: subject.kept),
     "new test": new_test,
 }

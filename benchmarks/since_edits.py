@@ -1,14 +1,18 @@
 """Edit small projects at random, run `--since HEAD`, and hold what it gives against a whole fresh campaign.
 
-Use: ``python benchmarks/since_edits.py [--edits 40] [--seed 1] [--rounds 2] [--projects errands,scales,paper]
-[--kinds program,moved,renamed,test,vocabulary,helper,hidden,kept,new test]``. Prints a line per edit and JSON
-at the end; the exit code is 1 if any outcome differs in anything but cost.
+Use: ``python benchmarks/since_edits.py [--edits 40] [--seed 1] [--start 0] [--together 1] [--rounds 2]
+[--projects errands,scales,paper,rescue] [--kinds program,moved,renamed,test,vocabulary,helper,hidden,kept,new
+test]``. Campaigns are forks of one process that has loaded mutabot, without the plugins of pytest that are
+installed if the paper is not among the projects. Prints a line per edit (or per ``--together`` edits of one
+project) and JSON at the end; the exit
+code is 1 if any outcome differs in anything but cost.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import random
 import re
 import shutil
@@ -20,6 +24,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from mutabot.campaign.reuse import keys
+from mutabot.cli import campaign as _loaded_before_the_forks  # noqa: F401
+from mutabot.cli.app import main as mutabot
 from mutabot.journal.journal import JournalReader
 from mutabot.model.codec import to_data
 from random_edits import EDITS, SUBJECTS, NotPossibleError, Subject
@@ -51,24 +58,28 @@ class Tally:
 
 
 def campaign(folder: Path, rounds: int, *options: str) -> str | None:
-    """Run one; returns what it said, or None where its baseline fails."""
-    command = [
-        sys.executable,
-        "-m",
-        "mutabot",
-        "run",
-        "--rounds",
-        str(rounds),
-        "-o",
-        "repeats=false",
-        *options,
-    ]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode in (2, 3):
+    """Run one in a fork; returns what it said, or None where its baseline fails."""
+    arguments = ["run", "--rounds", str(rounds), "--jobs", "1", "-o", "repeats=false", *options]
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as said:
+        child = os.fork()
+        if not child:
+            code = 1
+            try:
+                os.chdir(folder)
+                os.dup2(said.fileno(), 2)
+                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+                code = mutabot(arguments)
+            finally:
+                sys.stderr.flush()
+                os._exit(code)
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        said.seek(0)
+        told = said.read()
+    if code in (2, 3):
         return None
-    if done.returncode:
-        raise RuntimeError(f"{' '.join(command)} ended with {done.returncode}:\n{done.stderr[-3000:]}")
-    return done.stderr
+    if code:
+        raise RuntimeError(f"mutabot {' '.join(arguments)} ended with {code}:\n{told[-3000:]}")
+    return told
 
 
 def outcomes_of(folder: Path) -> tuple[dict[tuple[str, int], dict[str, Any]], set[tuple[str, int]]]:
@@ -107,7 +118,7 @@ def before(folder: Path, subject: Subject, rounds: int) -> dict[tuple[str, int],
 
 
 def one_edit(
-    work: Path, original: Path, subject: Subject, kind: str, chance: random.Random, rounds: int
+    work: Path, original: Path, subject: Subject, kinds: list[str], chance: random.Random, rounds: int
 ) -> tuple[str, str, Path, Path] | None:
     """Edit a copy and run both campaigns; None if the edit cannot be made, or the tests fail after it."""
     folder, whole = work / "since", work / "whole"
@@ -115,7 +126,7 @@ def one_edit(
         shutil.rmtree(one, ignore_errors=True)
     shutil.copytree(original, folder)
     try:
-        told = EDITS[kind](folder, subject, chance)
+        told = " and ".join(EDITS[kind](folder, subject, chance) for kind in kinds)
     except NotPossibleError:
         return None
     shutil.copytree(folder, whole, ignore=shutil.ignore_patterns(".mutabot"))
@@ -145,7 +156,7 @@ def compare(
             tally.wrong.append(f"{told}: {pair} ({how}): {shown}")
     run = found.keys() - reused
     altered = {pair for pair in run if lasting(old.get(pair)) != lasting(right.get(pair))}
-    tally.edits[kind] += 1
+    tally.edits[kind] += told.count(" and ") + 1
     tally.outcomes += len(found)
     tally.of_kind[kind] += len(found)
     tally.run[kind] += len(run)
@@ -162,16 +173,24 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--edits", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--start", type=int, default=0, help="number of the first edit: go on where one ended"
+    )
+    parser.add_argument("--together", type=int, default=1, help="edits of one kind for each campaign")
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--projects", default="errands,scales,errands,paper,scales")
     parser.add_argument("--kinds", default=",".join(EDITS))
     given = parser.parse_args()
     names, kinds = given.projects.split(","), given.kinds.split(",")
     tally = Tally()
+    if "paper" not in names:  # whose tests need a plug-in
+        os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    versions = keys.versions()
+    keys.versions = lambda: versions  # no package changes meanwhile
     with tempfile.TemporaryDirectory(prefix="mutabot-edits-") as place:
         work = Path(place)
         known: dict[str, tuple[Path, Subject, dict[Any, Any]]] = {}
-        number = 0
+        number = given.start
         while sum(tally.edits.values()) < given.edits:
             seed = f"{given.seed}:{number}"
             chance = random.Random(seed)
@@ -181,7 +200,8 @@ def main() -> int:
                 subject, folder = SUBJECTS[name](), work / name
                 known[name] = folder, subject, before(folder, subject, given.rounds)
             original, subject, old = known[name]
-            tries = (one_edit(work, original, subject, kind, chance, given.rounds) for _ in range(TRIES))
+            edits = [kind] * given.together
+            tries = (one_edit(work, original, subject, edits, chance, given.rounds) for _ in range(TRIES))
             done = next((one for one in tries if one is not None), None)
             if done is None:
                 continue
@@ -197,7 +217,7 @@ def main() -> int:
                 if "to run: " in line or "not judged" in line:
                     print(f"        {line.strip()}", flush=True)
     print(json.dumps({
-        "seed": given.seed, "edits": dict(tally.edits), "outcomes": tally.outcomes,
+        "seed": given.seed, "next": number, "edits": dict(tally.edits), "outcomes": tally.outcomes,
         "run": dict(tally.run), "altered": dict(tally.altered), "of": dict(tally.of_kind),
         "wrong": [line[:300] for line in tally.wrong[:20]],
     }, indent=1))  # fmt: skip

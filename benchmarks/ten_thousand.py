@@ -139,7 +139,7 @@ class Campaign:
         """Run the whole campaign and watch it; its seconds."""
         began = time.monotonic()
         with self.log.open("w", encoding="utf-8") as log:
-            process = subprocess.Popen(self.command("run", "--engine", "branch"), stdout=log, stderr=log)
+            process = subprocess.Popen(self.command("run", "--engine", "fork"), stdout=log, stderr=log)
             for look in count():
                 if process.poll() is not None:
                     break

@@ -19,16 +19,15 @@ HEAD = """\
 
 <!-- Written by tools/make_docs.py from src/mutabot/config/configuration.py and others. Do not edit. -->
 
-The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml`, there without that
-heading. `mutabot init` proposes one. An unknown key or a wrong value is an error that names the line and the
-nearest key. Paths are relative to the project's folder, in which the file lies, and must not lead out of it.
-`-o KEY=VALUE` sets a key for one command: `mutabot run -o rounds=5 -o when=once`.
+The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml` without that
+heading. `mutabot init` proposes one. Paths are relative to the project's folder and must not lead out of
+it. A wrong key or value is an error with its line and the nearest key. For one command: `mutabot run -o
+rounds=5 -o when=once`.
 
 ```toml
 [tool.mutabot]
 program = ["mission.py"]
 vocabulary = ["robot.toml"]
-rounds = 5
 ```
 """
 
@@ -36,12 +35,19 @@ rounds = 5
 def page() -> str:
     """The text of the page."""
     tables = tables_of_ours()
-    lines = [HEAD, "| key | value | default |", "|---|---|---|", *_rows(Settings)]
+    keys = [
+        *Settings.model_fields,
+        *(f"{name}.{key}" for name, one in tables.items() for key in one.model_fields),
+    ]
+    lines = [HEAD + "\n" + ", ".join(f"[`{key}`](#{_anchor(key)})" for key in keys), *_texts_of(Settings)]
     for name, table in tables.items():
-        lines += [f"| [`{name}`](#{name}) | table | none |", *_rows(table, f"{name}.")]
-    lines += _texts_of(Settings)
-    for name, table in tables.items():
-        lines += ["", f"## {name}", "", inspect.cleandoc(table.__doc__ or ""), *_texts_of(table, name)]
+        lines += [
+            "",
+            f"## {name}",
+            "",
+            f"{inspect.cleandoc(table.__doc__ or '')} Below `[tool.mutabot.{name}]`:",
+            *_texts_of(table, name),
+        ]
     return "\n".join([*lines, ""])
 
 
@@ -51,18 +57,16 @@ def tables_of_ours() -> dict[str, type[Table]]:
     return {name: part.load_class(Table) for name, part in parts if part.owner == GROUP}
 
 
-def _rows(model: type[Table], prefix: str = "") -> Iterator[str]:
-    schema = model.model_json_schema()
-    for key in model.model_fields:
-        values, default = values_of(schema["properties"][key], schema), _default(model, key)
-        yield f"| [`{prefix}{key}`](#{_anchor(prefix + key)}) | {values} | {default} |"
-
-
 def _texts_of(model: type[Table], table: str = "") -> Iterator[str]:
+    schema = model.model_json_schema()
     for key, (text, example) in documented(model).items():
         name = f"{table}.{key}" if table else key
-        shown = [f"[tool.mutabot.{table}]", example] if table else [example]
-        yield from ("", f"{'###' if table else '##'} {name}", "", text, "", "```toml", *shown, "```")
+        yield from ("", f"{'###' if table else '##'} {name}", "", text, "")
+        told = f"{values_of(schema['properties'][key], schema)}; default: {_default(model, key)}"
+        if "\n" in example:
+            yield from (f"({told})", "", "```toml", example, "```")
+        else:
+            yield f"`{example}` ({told})"
 
 
 def _anchor(heading: str) -> str:
@@ -133,7 +137,7 @@ def _bounds(schema: Mapping[str, Any]) -> str:
 def _default(model: type[Table], key: str) -> str:
     field = model.model_fields[key]
     if field.is_required():
-        return "must be given"
+        return "none, required"
     if field.default is None:
         return "none"
     if key == "memory":

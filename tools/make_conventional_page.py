@@ -6,6 +6,7 @@ if the page is out of date.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,73 +21,83 @@ HEAD = """\
 
 <!-- Written by tools/make_conventional_page.py from the operators' own examples. Do not edit. -->
 
-The operators of textbooks change the text of a program and know nothing of robots. They are here to be
-compared with those that do ([operators](operators.md)).
-
-`mutabot run --family conventional` (or `text`, or `robot,conventional,text`; also for `list` and `check`)
-plants them, as does `families = ["robot", "conventional"]` in the configuration. They run in the same
-engines, are judged and reported in the same way, and have scores of their own. Mutants of calls come first
+The operators of textbooks change program text and know nothing of robots. Use them to compare with the
+[robot operators](operators.md): `mutabot run --family conventional` (or `text`, or
+`robot,conventional,text`; also for `list` and `check`), or `families = ["robot", "conventional"]` in the
+configuration. Engines, verdicts and reports are the same; scores are separate. Mutants of calls come first
 and keep their numbers.
 
-No file is changed for it. While the program is imported, each place with alternatives is compiled as *the
-original, unless an alternative is chosen*, with the lines and columns of your text: tracebacks and
-`inspect.getsource` show what you wrote. There is no function around anything, so short circuits, chained
-comparisons, `await`, `yield`, `:=`, `super()`, `locals()` and class bodies mean what they meant.
+No file is changed. While the program is imported, each place is compiled as *the original, unless an
+alternative is chosen*, with your lines and columns: tracebacks and `inspect.getsource` show your text. No
+function is wrapped around anything, so short circuits, chained comparisons, `await`, `yield`, `:=`,
+`super()`, `locals()` and class bodies keep their meaning.
+
+Values computed during import (constants, taught points, defaults of functions) have mutants too; all tests
+judge them.
+
+An alternative with the original's value has not acted. mutabot knows this where the original is a part of the
+alternative, or consists of names, constants, operators, plain attributes and items, or mathematical
+functions; any other alternative counts as having acted when it is reached.
 
 ## What is left out
 
-- Annotations, patterns of `match`, docstrings, imports and definitions: nothing is computed there.
-- Blocks under `if TYPE_CHECKING` and `if __name__ == "__main__"`: tests do not run them.
-- Alternatives of a type that the value never had in the baseline, such as a minus before a text; they are
-  listed with the reason. Which variables may stand for one another is seen in the baseline as well.
-- Expressions of more than 1000 characters, and expressions that stand twice in one f-string (before Python
-  3.12, which reports one place for both).
-- Programs that are not imported: those started with `runpy.run_path` or as a process of their own.
-- The plus of UOI, which changes no number; ABS of literals, whose sign is UOI's; plain assignments for ASR,
-  since a name may have no value before.
+- Annotations, patterns of `match`, docstrings, imports, definitions: nothing is computed there.
+- Blocks under `if TYPE_CHECKING` and `if __name__ == "__main__"`: no test runs them.
+- Alternatives of a type that the value never had in the baseline; they are listed with the reason. The
+  baseline also tells which variables may replace each other.
+- Expressions of more than 1000 characters, and, before Python 3.12, expressions that stand twice in one
+  f-string.
+- Programs that are not imported (`runpy.run_path`, own processes).
+- The plus of UOI (changes no number), ABS of literals (UOI does it), plain assignments for ASR (the name may
+  have no value yet).
 
-An alternative that has the original's value has not acted. That is known where the original is a part of the
-alternative, or is made of names, constants, operators, plain attributes and items, or functions of
-mathematics; any other alternative counts as having acted when it is reached.
-
-Values that are computed while the program is imported (constants, taught points, default arguments of
-functions at the top level) have mutants too; all tests judge them.
-
-"""
-
-COST = """\
 ## What it costs
 
-`python benchmarks/instrumentation.py` measures it, `python benchmarks/stdlib_corpus.py` runs modules of the
-standard library with all alternatives of all operators in them through their own tests.
+`python benchmarks/instrumentation.py` measures it. `python benchmarks/stdlib_corpus.py` runs modules of the
+standard library, with all alternatives of all operators in them, through their own tests.
+
+## The operators
+
 """
+#: so many mutants of an example after the first stand on the page
+_SHOWN = 4
 
 
 def page() -> str:
     """The text of the page."""
-    lines = [HEAD + "| operator | the fault |", "|---|---|"]
-    lines += [f"| [{name}](#{name.lower()}) | {operator(name).summary} |" for name in names()]
+    lines = [HEAD + ", ".join(f"[{name}](#{name.lower()})" for name in names())]
     for name in names():
         lines += _section(operator(name))
-    return "\n".join([*lines, "", COST])
+    return "\n".join([*lines, ""])
 
 
 def _section(each: ConventionalOperator) -> Iterator[str]:
     yield from ("", f"## {each.name}", "", each.summary, "")
-    yield from ("| original | mutants | note |", "|---|---|---|")
-    for example in each.examples:
-        if example.after:
-            after = " · ".join(_code(text) for text in example.after)
-            yield f"| {_code(example.before)} | {after} | {_note(example)} |"
-    yield from ("", "It stays away from:", "")
-    for example in each.examples:
-        if not example.after:
-            note = _note(example)
-            yield f"- {_code(example.before)}{f': {note}' if note else ''}"
+    acting = [example for example in each.examples if example.after]
+    for place, example in enumerate(acting):
+        note = _note(example)
+        if place and not note:
+            continue
+        before, *mutants = _without_target([example.before, *example.after])
+        after = [_code(text) for text in mutants]
+        if place and len(after) > _SHOWN + 1:
+            after[_SHOWN:] = ["…"]
+        yield f"- {_code(before)} → {', '.join(after)}{f' ({note})' if note else ''}"
+    reasons = {_note(example): None for example in each.examples if not example.after and _note(example)}
+    if reasons:
+        yield f"- Left alone: {'; '.join(reasons)}"
+
+
+def _without_target(texts: list[str]) -> list[str]:
+    """The values alone, where all texts assign to one variable."""
+    target = re.match(r"\w+ = ", texts[0])
+    if target and all(text.startswith(target[0]) for text in texts):
+        return [text.removeprefix(target[0]) for text in texts]
+    return texts
 
 
 def _code(text: str) -> str:
-    shown = text.strip().replace("\n", " ⏎ ").replace("|", "\\|")
+    shown = text.strip().replace("\n", " ⏎ ")
     return f"`{' '.join(shown.split())}`"
 
 

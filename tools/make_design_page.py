@@ -1,7 +1,7 @@
 """Write the picture of the rooms into docs/design.md, from the real imports.
 
 Use: ``python tools/make_design_page.py``; with ``--check`` nothing is written, and the exit code is 1 if the
-picture is out of date.
+picture is out of date. With ``--modules PACKAGE`` it prints what each module of a package is.
 """
 
 from __future__ import annotations
@@ -27,8 +27,18 @@ def picture() -> str:
     whole = gathered(graph)
     lines = ["", "```text", *_drawn(among(whole, (room for room in whole if room not in _DOORS))), "```", ""]
     for package in _OPENED:
-        lines += [f"Inside `{package}/`:", "", "```text", *_listed(SOURCE / package), "```", ""]
+        lines += [f"Inside `{package}/`:", "", "```text", *_folders(SOURCE / package), "```", ""]
     return "\n".join(lines)
+
+
+def _folders(folder: Path) -> Iterator[str]:
+    """One line for each folder of a package: the modules in it."""
+    found: dict[str, list[str]] = {}
+    for file in sorted(folder.rglob("*.py")):
+        if file.stem not in _DOORS:
+            found.setdefault(str(file.parent.relative_to(folder)).strip("."), []).append(file.stem)
+    width = max(map(len, found))
+    yield from (f"{name:<{width}}  {', '.join(modules)}" for name, modules in found.items())
 
 
 def _listed(folder: Path) -> Iterator[str]:
@@ -74,6 +84,9 @@ def with_picture(text: str) -> str:
 
 def main() -> int:
     """Write the picture, or check it."""
+    if "--modules" in sys.argv:
+        print("\n".join(_listed(SOURCE / sys.argv[-1])))
+        return 0
     old = PAGE.read_text(encoding="utf-8")
     new = with_picture(old)
     if "--check" in sys.argv:

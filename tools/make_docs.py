@@ -23,34 +23,41 @@ from mutabot.operators.registry import built_in
 DOCS = Path(__file__).parents[1] / "docs"
 
 HEAD = """\
-# Which faults does mutabot plant?
+# Operators: the faults
 
 <!-- Written by tools/make_docs.py from the operators' own examples, which are tests as well. Do not edit. -->
 
-An *operator* is a rule that plants one small fault in what the program tells the robot or hears from it.
-It sees what the [vocabulary](vocabulary.md) describes: operations and quantities, never program text.
-A changed value stays one that the robot takes: where it would leave the range or the values that the
-vocabulary gives, the operator stays away. What befalls messages on their way has a page of its own:
-[middleware](middleware.md). `mutabot operators` lists all of them.
+An *operator* makes one kind of small fault in what the program tells the robot or hears from it. It acts on
+the operations and quantities that the [vocabulary](vocabulary.md) describes, never on program text. A call
+is left alone if the fault would change nothing, or would leave the range or the values that the vocabulary
+allows. Faults of messages on their way: [middleware](middleware.md). `mutabot operators --family NAME`
+prints where each operator of a family acts, and which bugs it stands for.
+
+In the examples, `original` → `mutant`. Operators marked *idle* answer the program in the place of the
+robot: see [answers to doing nothing](vocabulary.md#answers-to-doing-nothing).
+
+## Published operators
+
+These reproduce the published operators for robot programs (family `robot`, the default).
 """
 
 CATALOGUE_HEAD = """\
 ## The catalogue
 
-`--family catalogue` plants what robot programs get wrong beside the published faults: units and frames, order
-and time, readings, actuation. Each operator names the class of bugs that it stands for.
-`mutabot check --family catalogue` names those that your vocabulary and program give nothing to act on, with
-the reason.
+`--family catalogue` adds faults that are common in robot programs: units and frames, order and time,
+readings, actuation. Number of bugs on commands and readings of each class in studies of ROS and
+PX4/ArduPilot software: {studies}. `mutabot check --family catalogue` names the operators that find nothing
+to act on in your vocabulary and program, and why.
 
-A waypoint that is skipped is [skip](#skip), a wrong sign of one number is [reverse](#reverse) or
-[negate](#negate), and a header's wrong stamp is [shift-stamp](middleware.md#shift-stamp). A blend radius that
-is lost has no operator: no kind of quantity says that a number is one.
+Covered elsewhere: a skipped waypoint by [skip](#skip), a wrong sign of one number by [reverse](#reverse) or
+[negate](#negate), a wrong stamp by [shift-stamp](middleware.md#shift-stamp). Not covered: a lost blend
+radius, since no kind of quantity marks one.
 """
 GRADED_HEAD = """\
 ## Graded faults
 
-`--family graded` plants the same fault at rising magnitudes, to find from which on the tests notice it: see
-[thresholds](thresholds.md), which also says where their ladders come from.
+`--family graded` makes the same fault at rising magnitudes, to find the smallest that the tests notice:
+[thresholds](thresholds.md).
 """
 #: what the groups of the catalogue are called, by the first operator of each
 GROUPS = {
@@ -65,49 +72,32 @@ GROUPS = {
 TAIL = """\
 ## Your own operators
 
-An operator is a class with a name, a summary, examples and three methods. The contract is
-`src/mutabot/operators/operator.py`, the shortest ones stand in `src/mutabot/operators/kinds/commands.py`.
-In mutabot itself it is in any file of `src/mutabot/operators/kinds`, an old file or a new one; it is found
-there, and nothing else has to be edited. Its docstring is its documentation: what it does, and in a paragraph
-that begins with `Where:`, what it acts on. What it needs is a set, such as
-`needs = frozenset({Need.IDLE})`; where a need is not met, its mutants are left out, with the reason:
+An operator is a class with a name, a docstring (summary, `Where:`), examples and three methods. Contract:
+`src/mutabot/operators/operator.py`; short ones to copy: `src/mutabot/operators/kinds/commands.py`. Inside
+mutabot, put it into any file of `src/mutabot/operators/kinds`. Most operators are a
+`ValueOperator` (`operators/value.py`: `change(value, context)` changes one value, `magnitudes(quantity)`
+gives the sizes, one mutant each) or a `CommandOperator` (`operators/command.py`: acts on the whole call).
 
-| need | what it gets |
+`needs` is a set, such as `frozenset({Need.IDLE})`. Where a need is not met, the mutants are skipped with the
+reason:
+
+| need | what the operator gets |
 |---|---|
-| `Need.PLACE` | `call.current` tells where the robot is; used only where the vocabulary says |
-| `Need.SIGN` | a value below zero among those that were recorded, so that there is another direction |
-| `Need.IDLE` | `call.idle` is what to answer while the robot does nothing; used only where known |
-| `Need.CLOCK` | `call.time()` tells the time; used only where the vocabulary has a clock |
-| `Need.WAIT` | `await call.wait(seconds)` lets time pass; used only where the vocabulary says how |
-| `Need.ERROR` | calls that raise: left out where none did in the baseline |
-| `Need.PROGRAM` | calls of the program: readings by the tests' own checks are no place for it |
+| `Need.PLACE` | `call.current`: where the robot is |
+| `Need.SIGN` | a recorded value below zero, so that there is another direction |
+| `Need.IDLE` | `call.idle`: what to answer while the robot does nothing |
+| `Need.CLOCK` | `call.time()`; needs a clock in the vocabulary |
+| `Need.WAIT` | `await call.wait(seconds)`; needs a wait in the vocabulary |
+| `Need.ERROR` | calls that raised in the baseline |
+| `Need.PROGRAM` | calls of the program only, not readings by the tests' checks |
 | `Need.MEMORY` | one middleware for all calls of a test |
-| `Need.COPIES` | beside it, copies of what they write and read, which the program cannot change |
+| `Need.COPIES` | also copies of what they write and read, which the program cannot change |
 
-| attribute or method | what it says |
-|---|---|
-| `needs_of(subject)` | what it needs at one subject, where that differs |
-| `does_nothing = True` | no call reaches the robot: one that would is an error, never a verdict |
-| `family = "…"` | a family of its own: its mutants are planted where `--family` or `families` names it |
+`needs_of(subject)` gives needs that differ by subject. `does_nothing = True`: no call reaches the robot, and
+one that does is an error, never a verdict. `family = "…"`: a family of its own, run where `--family` or
+`families` names it.
 
-Most operators have one of two shapes. A `ValueOperator` (`operators/value.py`) changes one value,
-`change(value, context)`; its `magnitudes(quantity)` say how big the fault is to be, a mutant each. A
-`CommandOperator` (`operators/command.py`) does something with the call as a whole.
-
-Say in any installed package that it brings the class, and every campaign of its family uses it:
-
-```python
-from mutabot.extensions import Extension
-
-EXTENSION = Extension(interface=1, operators={"creep": "mutabot_creep.creep:Creep"})
-```
-
-```toml
-[project.entry-points.mutabot]
-creep = "mutabot_creep:EXTENSION"
-```
-
-The whole package stands in `tests/plugins/package`.
+From an installed package: see [packages](packages.md).
 """
 
 
@@ -121,15 +111,16 @@ def page() -> str:
     for each in (each for each in operators if each.family == CATALOGUE):
         title = GROUPS.get(each.name, title)
         groups.setdefault(title, []).append(each)
-    lines = [HEAD, *_overview(first), *_published(operators)]
+    lines = [HEAD, *_overview(first), ""]
     for each in first:
         lines += _section(each)
-    lines += [GRADED_HEAD, *_overview(graded)]
+    lines += [GRADED_HEAD, *_overview(graded), ""]
     for each in graded:
         lines += _section(each)
-    lines.append(CATALOGUE_HEAD)
+    lines.append(CATALOGUE_HEAD.replace("{studies}", _studies(operators)))
     for title, members in groups.items():
-        lines += [f"**{title}**\n", *_overview(members)]
+        lines.append(f"- {title}: {' '.join(_overview(members))}")
+    lines.append("")
     for each in (each for members in groups.values() for each in members):
         lines += _section(each)
     return "\n".join([*lines, TAIL])
@@ -139,7 +130,7 @@ def page_of_middleware() -> str:
     """The text of the page on the family ``middleware``."""
     operators = _operators(of_middleware=True)
     text = (Path(__file__).parent / "middleware_page.md").read_text(encoding="utf-8")
-    lines = [text.replace("{overview}\n", "\n".join(_overview(operators)))]
+    lines = [text]
     for each in operators:
         lines += _section(each)
     return "\n".join(lines).rstrip() + "\n"
@@ -151,49 +142,41 @@ def _operators(*, of_middleware: bool) -> list[Operator]:
 
 
 def _overview(operators: list[Operator]) -> Iterator[str]:
-    yield from _table("operator", "the fault")
-    yield from (_row(f"[{each.name}](#{each.name})", each.summary) for each in operators)
-    yield ""
+    yield ", ".join(f"[{each.name}](#{each.name})" for each in operators)
 
 
-def _published(operators: list[Operator]) -> Iterator[str]:
-    yield "The published operators, and what makes them here:\n"
-    yield from _table("original", "mutant", "operator")
-    rows = {}
-    for each in operators:
-        for number, original, mutant in re.findall(r"(\d+)\. (.*?) → (.*?)(?:; |$)", each.published):
-            rows[int(number)] = (original, mutant, f"[{each.name}](#{each.name})")
-    yield from (_row(*rows[number]) for number in sorted(rows))
-    yield ""
+#: what the sentence on a class of bugs ends with: how many of them studies found
+_STUDIED = re.compile(r": ([^:]+?) are (\d+) of the bugs .*$")
+#: what the page says once of all operators
+_OF_ALL = re.compile(
+    r"\b(?:outside|out of|below|above) (?:the|its) .*\brange|\bis out of range|stay the same"
+)
+
+
+def _studies(operators: list[Operator]) -> str:
+    found = (_STUDIED.search(each.stands_for) for each in operators)
+    numbers = {one[1]: int(one[2]) for one in found if one}
+    return ", ".join(f"{name} {number}" for name, number in sorted(numbers.items(), key=lambda one: -one[1]))
 
 
 def _section(each: Operator) -> Iterator[str]:
     yield f"## {each.name}\n"
-    yield f"{each.summary}\n"
-    if each.stands_for:
-        yield f"It stands for: {each.stands_for}\n"
+    yield f"{each.summary}{' *(idle)*' if Need.IDLE in each.needs else ''}\n"
+    if each.stands_for and "vocabulary" in each.where and "vocabulary" not in each.summary:
         yield f"Where: {each.where}.\n"
+    if each.published:
+        yield f"Published as: {re.sub(r'[0-9]+[.] ', '', each.published).rstrip('.')}.\n"
     acting = [example for example in each.examples if not example.away]
-    noted = any(example.note for example in acting)
-    yield from _table("original", "mutant", *(["note"] if noted else []))
-    for example in acting:
-        yield _row(_before(example), _after(example), *([example.note] if noted else []))
+    for place, example in enumerate(acting):
+        published = example.note.replace(": ", " → ") in each.published
+        if (place == 0 and each.family != CATALOGUE) or (example.note and not published):
+            note = f" ({example.note})" if example.note and not published else ""
+            yield f"- {_before(example)} → {_after(example)}{note}"
+    reasons = {example.away: None for example in each.examples if example.away}
+    told = [reason for reason in reasons if not _OF_ALL.search(reason)]
+    if told and not each.stands_for:
+        yield f"- Left alone: {'; '.join(told)}"
     yield ""
-    yield from _promises(each)
-    staying = [example for example in each.examples if example.away]
-    if staying:
-        yield "It stays away where it would change nothing, or nothing the robot takes:\n"
-        yield from (f"- {_before(example)}: {example.away}" for example in staying)
-        yield ""
-
-
-def _promises(each: Operator) -> Iterator[str]:
-    if Need.IDLE in each.needs:
-        yield (
-            "The program gets what the command answered in the unmutated run of the same test; where\n"
-            "answers changed from call to call, the robot's last one, since the world stands still: see\n"
-            "[answers to doing nothing](vocabulary.md#answers-to-doing-nothing).\n"
-        )
 
 
 def _before(example: Example) -> str:
@@ -203,7 +186,7 @@ def _before(example: Example) -> str:
         text = f"{text} reads {_reading(subject, example.replied)}"
     if example.current:
         others = example.current.keys() - {one.name for one in subject.written}
-        told = [f"{name} = {value:g}" for name, value in example.current.items() if name in others]
+        told = [f"{name}={value:g}" for name, value in example.current.items() if name in others]
         text = (
             f"{text}, from {', '.join([*filter(None, [_values(subject.written, example.current)]), *told])}"
         )
@@ -280,7 +263,7 @@ def _values(quantities: tuple[Quantity, ...], values: Mapping[str, Any]) -> str:
     for quantity in quantities:
         if quantity.name in values:
             text = _value(quantity, values[quantity.name])
-            texts.append(text if quantity.name == "result" else f"{quantity.name.lstrip('.')} = {text}")
+            texts.append(text if quantity.name == "result" else f"{quantity.name.lstrip('.')}={text}")
     return ", ".join(texts)
 
 
@@ -293,15 +276,6 @@ def _value(quantity: Quantity, value: Any) -> str:
         return f'"{value}"'
     rounded = round(value, 3) if isinstance(value, float) else value
     return quantity.text(rounded).replace("-", "−")
-
-
-def _table(*heads: str) -> Iterator[str]:
-    yield _row(*heads)
-    yield f"|{'---|' * len(heads)}"
-
-
-def _row(*cells: str) -> str:
-    return f"| {' | '.join(cells)} |"
 
 
 def main(arguments: list[str]) -> int:

@@ -24,10 +24,10 @@ DATA, PAGE, PICTURE = (
 )
 WIDTH, HEIGHT = 860, 400
 INK, FAINT, GRID, PAPER = "#222222", "#6b6b6b", "#e6e8eb", "#ffffff"
-ENGINES = {"replay": "#2f6fb0", "branch": "#1b7837"}
+ENGINES = {"replay": "#2f6fb0", "fork": "#1b7837"}
 #: what time is lost to, in the order of the bars, with its colour
 LOST = {
-    "trunks": ("the original's own runs", "#8d8d8d"),
+    "originals": ("the original's own runs", "#8d8d8d"),
     "shipped": ("shipping", "#d9c84a"),
     "waited": ("the controller", "#c51b29"),
     "begun": ("beginning", "#9ecae1"),
@@ -43,65 +43,61 @@ TEXT = """\
 
 <!-- Written by tools/make_scaling_page.py from benchmarks/scaling.json. Do not edit. -->
 
-A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with costs
-that were measured: nobody has run one yet. At 100 workers the efficiency is {replay} with replay and
-{branch} with branch; efficiency is the time on one worker, divided by that on so many and by their number.
+A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with
+measured costs (nobody has run one yet). At 100 workers the efficiency, the time on one worker divided by
+that on so many and by their number, is {replay} with replay and {fork} with fork.
 
 ![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
 
 {curve}
 
-*Shipping* is what a unit costs beside its session: a folder, a job, an answer. *The controller* judges
-answers one after the other; while one waits, its worker has nothing to do. *The original's own runs* are
-what a trunk runs of each test before and beside its branches: each part of a trunk runs its tests again,
-and a worker alone does so once. *Stragglers* is how much longer workers are idle at the end than if equal
-units took equal times and no worker died; *the last unit* is the rest of that. One worker that dies in the
-middle of a trunk that is not cut loses half a round, hence the first row of branch.
+| column | meaning |
+|---|---|
+| original's runs | a fork parent's own runs of tests; each part runs its tests again |
+| shipping | a unit's folder, job and answer |
+| controller | it judges one answer after the other; a worker whose answer waits is idle |
+| stragglers | idle time at the end that equal units, equal times and no deaths would avoid |
+| last unit | the rest of the idle time at the end |
 
-The controller is the next limit: it is one process, and what it takes for an outcome, {replay_ms} ms or
-{branch_ms} ms, decides how many workers it keeps busy. Of mutants that take longer than these, a few seconds
-with replay and a quarter of a second with branch, it keeps busy as many more.
+The first row of fork: one worker that dies in an uncut fork parent loses half a round. The controller is
+the limit: one process that takes {replay_ms} ms or {fork_ms} ms per outcome. Mutants that take longer than
+here (a few seconds with replay, a quarter of a second with fork) keep as many more workers busy.
 
 ## How large should a unit be?
 
-Replay's are as small as can be: a mutant in a round. A trunk is cut. With 100 workers:
+Replay: a mutant in a round. A fork parent is cut; with 100 workers:
 
 {sizes}
 
-The executor cuts 16 parts for each worker, none with fewer than ten mutants, mutants of the same tests
-together, and gives the longest away first, by the times of the baseline. Smaller parts end more evenly,
-lose less with a worker that dies, and keep the controller busy more evenly; they run tests of the original
-more often.
+The executor cuts 16 parts per worker, at least ten mutants each, mutants of the same tests together,
+longest first by baseline times. Smaller parts end more evenly, lose less with a dead worker and spread the
+controller's work, but run tests of the original more often.
 
 ## The baseline
 
-It runs on the controller's machine before anything is given away, as many tests side by side as that has
-`jobs`, and is not in the numbers above. Of a program of this size it takes, two runs in each of ten rounds,
-{baselines}. Beside a hundred workers, whose hours stand above, that counts: take it where there are many
-cores, or run fewer rounds.
+It runs first on the controller's machine, with `jobs` tests side by side, and is not in these numbers: two
+runs in each of ten rounds take {baselines}. Use many cores there, or fewer rounds.
 
 ## What was measured, and what is assumed
 
-- The program is {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), whose
-  {own} mutants of family `robot` its suite of {suite} s judges: each copy has its own tests.
-- {sessions} sessions of replay took {session_range} s, {branches} branches {branch_range} s; a mutant's
-  cost is drawn from these.
-- Equal runs of a test took {quickest} to {slowest} times their mean, on a machine with other work; each
-  unit is as much longer or shorter than expected, one of n mutants by 1/√n of that.
-- The controller took {replay_ms} ms for an outcome of replay and {branch_ms} ms for one of branch,
-  recordings included (`python benchmarks/controller.py`), and 3 ms for a unit; a unit cost 28 ms on a
-  worker beside its session, a worker 4 s to begin and 0.2 s for the project.
-- Assumed: a worker dies once in 24 hours of work, is missed after 5 s, and its unit runs again as a whole;
-  all workers are equally fast.
-
-Measured by
+- Program: {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), each with its
+  own tests: {own} mutants of family `robot`, a suite of {suite} s.
+- {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; costs are drawn from
+  these.
+- Equal runs of a test took {quickest} to {slowest} times their mean on a machine with other work; units
+  vary as much, one of n mutants by 1/√n of that.
+- Controller: {replay_ms} ms per outcome of replay, {fork_ms} ms of fork, with recordings (`python
+  benchmarks/controller.py`), and 3 ms per unit. Worker: 28 ms per unit, 4 s to start, 0.2 s for the
+  project.
+- Assumed: a worker dies once in 24 hours, is missed after 5 s, and its unit runs again; all workers are
+  equally fast.
 
 ```text
 {made_by}
 ```
 
-and simulated by `python benchmarks/cluster_simulation.py`, which stores what came of it in
-`benchmarks/scaling.json`; the page is made of that by `python tools/make_scaling_page.py`.
+`python benchmarks/cluster_simulation.py` then simulates and stores `benchmarks/scaling.json`; `python
+tools/make_scaling_page.py` writes this page.
 """
 
 
@@ -203,7 +199,7 @@ def page(data: Mapping[str, Any]) -> str:
         mutants=f"{found['mutants']:,}",
         rounds=found["rounds"],
         replay=f"{row_of(found, 'replay', 100)['efficiency']:.2f}",
-        branch=f"{row_of(found, 'branch', 100)['efficiency']:.2f}",
+        fork=f"{row_of(found, 'fork', 100)['efficiency']:.2f}",
         curve=_curve_table(found),
         sizes=_size_table(found),
         baselines=_baselines(found),
@@ -212,12 +208,12 @@ def page(data: Mapping[str, Any]) -> str:
         suite=f"{costs['suite']:.1f}",
         sessions=len(costs["replay"]),
         session_range=_range(costs["replay"]),
-        branches=len(costs["branch"]),
-        branch_range=_range(costs["branch"]),
+        forks=len(costs["fork"]),
+        fork_range=_range(costs["fork"]),
         quickest=f"{min(costs['spread']):.2f}",
         slowest=f"{max(costs['spread']):.2f}",
         replay_ms=f"{1e3 * costs['controller']['replay']:.1f}",
-        branch_ms=f"{1e3 * costs['controller']['branch']:.1f}",
+        fork_ms=f"{1e3 * costs['controller']['fork']:.1f}",
         made_by=data["made_by"],
     )
 
@@ -237,7 +233,8 @@ def _curve_table(found: Mapping[str, Any]) -> str:
         (
             engine, f"{row['workers']:,}", f"{row['units']:,}", f"{row['hours']:,.1f}",
             f"{row['speed_up']:,.0f}", f"{row['efficiency']:.2f}",
-            *(percent(row["shares"][name]) for name in ("trunks", "shipped", "waited", "stragglers", "last")),
+            *(percent(row["shares"][one]) for one in ("originals", "shipped", "waited", "stragglers")),
+            percent(row["shares"]["last"]),
             f"{row['controller']:.0%}",
         )
         for engine in ENGINES
@@ -249,13 +246,13 @@ def _curve_table(found: Mapping[str, Any]) -> str:
 def _size_table(found: Mapping[str, Any]) -> str:
     rows = [
         (
-            one["name"], f"{one['units']:,}", f"{one['efficiency']:.2f}", percent(one["shares"]["trunks"]),
+            one["name"], f"{one['units']:,}", f"{one['efficiency']:.2f}", percent(one["shares"]["originals"]),
             percent(one["shares"]["waited"]), percent(one["shares"]["idle"]), percent(one["shares"]["lost"]),
         )
         for one in found["sizes"]
     ]  # fmt: skip
     heads = (
-        "trunk of a round",
+        "fork parent of a round",
         "units",
         "efficiency",
         "original's runs",

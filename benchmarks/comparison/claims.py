@@ -101,24 +101,24 @@ def decide(one: Mapping[str, Any], other: Mapping[str, Any]) -> Stance:
 
 
 def difference_text(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
-    """``17 percentage points more (3 to 25)``."""
+    """``17 points more (3 to 25)``."""
     found = difference(one, other)
     if found is None:
         return "nothing tells how sure the difference is"
     middle, low, high = (100 * number for number in found)
     word, ends = ("less", (-high, -low)) if middle < 0 else ("more", (low, high))
     between = " to ".join(f"{end:.1f}".replace("-", "−") for end in ends)
-    return f"{abs(middle):.1f} percentage points {word} ({between})"
+    return f"{abs(middle):.1f} points {word} ({between})"
 
 
 def share_text(share: Mapping[str, Any]) -> str:
-    """``42 of 120 (35 %, 28–44 %)``."""
-    counts = f"{share['count']} of {share['of']}"
+    """``42/120, 35 % (28–44)``."""
+    counts = f"{share['count']}/{share['of']}"
     if share["share"] is None:
         return f"at least {counts}" if share.get("unknown") else counts
     interval = share["interval"]
-    between = f", {100 * interval['low']:.0f}–{100 * interval['high']:.0f} %" if interval else ""
-    return f"{counts} ({percent(share['share'])}{between})"
+    between = f" ({100 * interval['low']:.0f}–{100 * interval['high']:.0f})" if interval else ""
+    return f"{counts}, {percent(share['share'])}{between}"
 
 
 def percent(share: float | None) -> str:
@@ -131,34 +131,30 @@ def percent(share: float | None) -> str:
 def _places(data: Data, robot: Family, other: Family) -> Finding:
     if data["sample"] is not None:
         return Finding(Stance.UNKNOWN, "a sample of the mutants does not tell how many places there are")
-    sentence = (
-        f"{other['mutants']} {other['family']} mutants at {other['places']} places, "
-        f"{robot['mutants']} robot mutants at {robot['places']}"
-    )
+    ours = f"robot {robot['mutants']} at {robot['places']}"
+    sentence = f"{other['mutants']} mutants at {other['places']} places, {ours}"
     if other["places"] == robot["places"]:
         return Finding(Stance.UNDECIDED, sentence)
     return Finding(Stance.FOR if other["places"] < robot["places"] else Stance.AGAINST, sentence)
 
 
-def _weakness(key: str, words: str) -> Callable[[Data, Family, Family], Finding]:
+def _weakness(key: str) -> Callable[[Data, Family, Family], Finding]:
     def judge(data: Data, robot: Family, other: Family) -> Finding:
         conventional, ours = other["weaknesses"][key], robot["weaknesses"][key]
-        sentence = (
-            f"{share_text(conventional)} outcomes of {other['family']} mutants {words}; "
-            f"of robot mutants {share_text(ours)}: {difference_text(conventional, ours)}"
-        )
-        return Finding(decide(conventional, ours), sentence)
+        return Finding(decide(conventional, ours), _beside(conventional, ours))
 
     return judge
 
 
 def _uninformative(data: Data, robot: Family, other: Family) -> Finding:
     conventional, ours = other["informative"], robot["informative"]
-    sentence = (
-        f"{share_text(conventional)} {other['family']} mutants are informative; "
-        f"of the robot mutants {share_text(ours)}: {difference_text(conventional, ours)}"
-    )
-    return Finding(decide(ours, conventional), sentence)
+    return Finding(decide(ours, conventional), _beside(conventional, ours))
+
+
+def _beside(share: Mapping[str, Any], ours: Mapping[str, Any]) -> str:
+    """Two shares and their difference in words."""
+    told = (f"{one['count']}/{one['of']} ({percent(one['share'])})" for one in (share, ours))
+    return f"{', robot '.join(told)}: {difference_text(share, ours)}"
 
 
 CLAIMS: Sequence[Claim] = (
@@ -170,23 +166,23 @@ CLAIMS: Sequence[Claim] = (
     ),
     Claim(
         "broken commands",
-        "Conventional mutants are broken: invalid, or an exception before any command reaches the robot.",
-        _weakness("broken", "are invalid or raise before any command"),
+        "Conventional mutants are broken: invalid, or they raise before any command reaches the robot.",
+        _weakness("broken"),
     ),
     Claim(
         "impossible motions",
         "Conventional mutants ask for what the robot refuses.",
-        _weakness("impossible", "are refused by the robot"),
+        _weakness("impossible"),
     ),
     Claim(
         "no difference",
-        "Conventional mutants change nothing, or nothing that could be told from the original.",
-        _weakness("no_difference", "have no effect or cannot be told from the original"),
+        "Conventional mutants change nothing that could be told from the original.",
+        _weakness("no_difference"),
     ),
     Claim(
         "any of the three",
         "All in all, more conventional mutants are invalid, infeasible or equivalent.",
-        _weakness("any", "are broken, refused or without a difference"),
+        _weakness("any"),
     ),
     Claim(
         "uninformative",
@@ -194,39 +190,3 @@ CLAIMS: Sequence[Claim] = (
         _uninformative,
     ),
 )
-
-
-def further(data: Data) -> list[str]:
-    """What else the numbers of one program say, about the worth of scores, dominators and cost."""
-    families = [family for family in data["families"] if family["done"]]
-    lines = [line for family in families for line in _oracle(family)]
-    lines += [line for family in families for line in _worth(family, data["together"])]
-    return lines
-
-
-def _oracle(family: Family) -> list[str]:
-    scores, without = family["scores"], family["without_oracle"]
-    if without is None or scores["score"] is None or without["score"] is None:
-        return []
-    name = f"{family['family']} · {family['role']}"
-    kept = (
-        f"{name}: a score of {percent(scores['score'])} becomes {percent(without['score'])} without an oracle"
-    )
-    check = f"killed by a check are {percent(scores['check_score'])}"
-    if without["score"] >= scores["score"]:
-        return [f"{kept}: with every assertion switched off nothing is lost ({check})."]
-    return [f"{kept}; {check}."]
-
-
-def _worth(family: Family, together: Mapping[str, Any]) -> list[str]:
-    name = f"{family['family']} · {family['role']}"
-    lines = []
-    informative, cpu = family["informative"]["count"], family["cost"]["cpu"]
-    if informative:
-        lines.append(f"{name}: {cpu / informative:.2g} s of processor time per informative mutant.")
-    if together["dominators"] and not together["unknown_mutants"]:
-        lines.append(
-            f"{name}: has a mutant in {family['joint']} of {together['dominators']} joint dominators, "
-            f"and is alone in {family['alone']}."
-        )
-    return lines

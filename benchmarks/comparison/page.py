@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from .bars import FamilyBar, picture_of
-from .claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, further, percent, share_text
+from .claims import CLAIMS, CONVENTIONAL, Data, Finding, Stance, finding, percent, share_text
 from .drawing import svg
 from .ends import End
 
@@ -32,27 +32,27 @@ HEAD = """\
 
 <!-- Written by benchmarks/comparison/page.py from docs/data/*.json. Do not edit. -->
 
-The study "Mutation Testing for Industrial Robotic Systems" says that conventional mutation operators suit
-robot programs badly: too few places, commands broken as text, physically impossible motions, no difference in
-effect. It gives no figures. These are ours, from `make comparison` on the examples of this repository;
-[Comparing families](compare.md) explains the terms.
+The study "Mutation Testing for Industrial Robotic Systems" says, without figures, that conventional
+mutation operators suit robot programs badly. These figures come from `make comparison` on the examples of
+this repository. [Comparing families](compare.md) explains the terms.
 
-Every sentence follows from the numbers by a rule: a share speaks *for* the claim if the 95 % interval of
-its difference from the robot family's lies wholly above zero, *against* it if wholly below, and is
-*undecided* otherwise; for places the larger number decides. Intervals speak about other mutants and rounds
-like these; about these very ones the counts are exact.
+A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly
+above zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not
+measured* means that the family has no mutants there, or that a sample does not tell the number of places.
+Shares are count/total, percentage (95 % interval), differences in percentage points; intervals speak about
+other mutants and rounds like these.
 """
 TAIL = """\
-## What it does not say
+## Limits of this comparison
 
-- These are small programs that were written to be examples. How often a conventional operator hits a
-  calculation depends on how much a program calculates.
-- The robot family is made for the vocabulary of each example, and conventional mutants know nothing of it:
-  *refused* and *indistinguishable* are as good as the vocabulary's refusals and probes.
-- The robot family leaves out beforehand what would change nothing in the baseline, and so do the others as
-  far as they can tell. What was left out is in no number here.
-- *Informative* counts mutants that no test reaches. They tell that a test is missing, many times over.
-- A mutant that tells suites apart is not for that reason like a fault that engineers make.
+- The programs are small examples. How often a conventional operator hits a calculation depends on how much a
+  program calculates.
+- The robot family is made for each example's vocabulary: *refused* and *indistinguishable* are as good as its
+  refusals and probes.
+- Mutants that would change nothing in the baseline were left out beforehand, in all families as far as they
+  can tell, and are in no number.
+- *Informative* counts mutants that no test reaches: they tell of one missing test many times.
+- A mutant that tells suites apart need not be like a fault that engineers make.
 """
 
 
@@ -97,9 +97,7 @@ def pages(comparisons: Mapping[str, Data]) -> dict[str, str]:
 
 def page(comparisons: Mapping[str, Data]) -> str:
     """The text of the page."""
-    lines = [HEAD, *_summary(comparisons)]
-    for claim in CLAIMS:
-        lines += _claim(claim, comparisons)
+    lines = [HEAD, *_claims(comparisons)]
     for name, data in comparisons.items():
         lines += _example(name, data)
     return "\n".join([*lines, "", TAIL])
@@ -118,44 +116,28 @@ def picture(data: Data, name: str) -> str:
     return svg(picture_of(bars, f"What became of the mutants: {name}"), by="make comparison")
 
 
-def _summary(comparisons: Mapping[str, Data]) -> Iterator[str]:
+def _claims(comparisons: Mapping[str, Data]) -> Iterator[str]:
     yield from ("## In short", "")
+    yield from (f"- *{claim.name}*: {claim.statement}" for claim in CLAIMS)
+    yield ""
     yield _row("claim", "family", *comparisons)
     yield f"|{'---|' * (2 + len(comparisons))}"
     for claim in CLAIMS:
         for family in CONVENTIONAL:
-            stances = [finding(claim, data, family).stance for data in comparisons.values()]
-            yield _row(claim.name, family, *(_shown(stance) for stance in stances))
-    yield ""
-
-
-def _claim(claim: Claim, comparisons: Mapping[str, Data]) -> Iterator[str]:
-    yield from (f"## {claim.name[0].upper()}{claim.name[1:]}?", "", f"*{claim.statement}*", "")
-    found = {
-        (name, family): finding(claim, data, family)
-        for name, data in comparisons.items()
-        for family in CONVENTIONAL
-    }
-    for stance in Stance:
-        for (name, _), one in found.items():
-            if one.stance is stance:
-                yield f"- {_shown(stance)}, on {name}: {one.sentence}."
+            found = (finding(claim, data, family) for data in comparisons.values())
+            yield _row(claim.name, family, *(_shown(one) for one in found))
     yield ""
 
 
 def _example(name: str, data: Data) -> Iterator[str]:
     yield from (f"## The numbers of {name}", "", _circumstances(data), "")
     yield from (f"![ends of the mutants of {name}](img/comparison-{name}.svg)", "")
-    families = data["families"]
+    families = [family for family in data["families"] if family["mutants"]]
     yield _row("", *(f"{family['family']} · {family['role']}" for family in families))
     yield f"|---|{'---:|' * len(families)}"
-    for label, cells in _rows(families):
+    for label, cells in (*_rows(families), *_worth(families, data["together"])):
         yield _row(label, *cells)
     yield ""
-    lines = further(data)
-    yield from (f"- {line}" for line in lines)
-    if lines:
-        yield ""
 
 
 def _rows(families: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list[str]]]:
@@ -163,10 +145,11 @@ def _rows(families: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list[str
         yield key, [str(family[key]) for family in families]
     for key, label in (("wall", "wall clock"), ("cpu", "processor time"), ("simulated", "simulated time")):
         yield f"{label}, s", [_seconds(family["cost"][key]) for family in families]
+    yield "outcomes", [str(family["done"]) for family in families]
     for end in End:
         shares = [family["ends"][end.value] for family in families]
         if any(share["count"] for share in shares):
-            yield end.value, [share_text(share) for share in shares]
+            yield end.value, [_share(share) for share in shares]
     yield "score", [_score(family["scores"], "score", "killed") for family in families]
     yield "check score", [_score(family["scores"], "check_score", "by_check") for family in families]
     if any(family["without_oracle"] for family in families):
@@ -177,7 +160,20 @@ def _rows(families: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list[str
     for key in ("trivial", "informative"):
         yield key, [share_text(family[key]) for family in families]
     for key in ("redundant", "dominators"):
-        yield key, [f"{family[key]} of {family['killed_mutants']} killed" for family in families]
+        yield f"{key}, of killed", [f"{family[key]}/{family['killed_mutants']}" for family in families]
+
+
+def _worth(
+    families: Sequence[Mapping[str, Any]], together: Mapping[str, Any]
+) -> Iterator[tuple[str, list[str]]]:
+    informative = [(family["cost"]["cpu"], family["informative"]["count"]) for family in families]
+    yield (
+        "processor time per informative mutant, s",
+        [f"{cpu / count:.2g}" if count else "–" for cpu, count in informative],
+    )
+    if together["dominators"] and not together["unknown_mutants"]:
+        cells = [f"{one['joint']}/{together['dominators']}, {one['alone']} alone" for one in families]
+        yield "joint dominators that have its mutants", cells
 
 
 def _circumstances(data: Data) -> str:
@@ -199,16 +195,25 @@ def _score(scores: Mapping[str, Any] | None, key: str, counted: str) -> str:
     if scores is None or scores[key] is None:
         return "–"
     interval = scores[{"score": "interval", "check_score": "check_interval"}[key]]
-    between = f", {100 * interval['low']:.0f}–{100 * interval['high']:.0f} %" if interval else ""
-    return f"{percent(scores[key])} ({scores[counted]} of {scores['valid']}{between})"
+    between = f" ({100 * interval['low']:.0f}–{100 * interval['high']:.0f})" if interval else ""
+    return f"{scores[counted]}/{scores['valid']}, {percent(scores[key])}{between}"
+
+
+def _share(share: Mapping[str, Any]) -> str:
+    interval = share["interval"]
+    between = f" ({100 * interval['low']:.0f}–{100 * interval['high']:.0f})" if interval else ""
+    return f"{percent(share['share'])}{between}"
 
 
 def _seconds(seconds: float | None) -> str:
     return "–" if seconds is None else f"{seconds:.1f}"
 
 
-def _shown(stance: Stance) -> str:
-    return f"**{stance}**" if stance in {Stance.FOR, Stance.AGAINST} else stance.value
+def _shown(one: Finding) -> str:
+    if one.stance is Stance.UNKNOWN:
+        return one.stance.value
+    word = one.stance.value if one.stance is Stance.UNDECIDED else f"**{one.stance}**"
+    return f"{word}: {one.sentence}"
 
 
 def _row(*cells: str) -> str:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.execution.interruption import interruptible
 from mutabot.execution.task import Result, Task
-from mutabot.model.events import BranchDied, Event
+from mutabot.model.events import Event, ForkDied
 
 from . import far
 from .link import News, shown
@@ -172,7 +172,7 @@ class Dispatch:
     def _settle(self, trial: _Trial, answer: UnitAnswer, lines: list[Event]) -> None:
         self._cluster.done += 1
         task = trial.task
-        overdue = {line.mutant for line in lines if isinstance(line, BranchDied) and line.overdue}
+        overdue = {line.mutant for line in lines if isinstance(line, ForkDied) and line.overdue}
         if answer.overdue is not None and not task.is_fork_parent:
             self._at_home.append(task)
             return
@@ -236,26 +236,26 @@ class Dispatch:
 def longest(task: Task) -> float:
     """Seconds after which a worker that has not answered never will: limits inside end a task long before."""
     walls = [task.deadlines.get(test, task.deadline) for test in task.job.tests or ()]
-    branching = task.job.branching
-    if branching is not None:
-        suite = [branching.walls.get(test, branching.wall) for test in task.job.tests or ()]
-        walls += [task.deadline, *suite, len(branching.mutants) * sum(suite)]
+    forking = task.job.forking
+    if forking is not None:
+        suite = [forking.walls.get(test, forking.wall) for test in task.job.tests or ()]
+        walls += [task.deadline, *suite, len(forking.mutants) * sum(suite)]
     return _GRACE + 2 * (task.startup + sum(walls))
 
 
 def is_for_home(task: Task) -> bool:
     """Whether a task is to run on the controller's machine: the original, and whatever shares its files."""
     job = task.job
-    return (job.mutant is None and job.branching is None) or job.pictures is not None or task.alone
+    return (job.mutant is None and job.forking is None) or job.pictures is not None or task.alone
 
 
 def _only(task: Task, mutants: set[str]) -> Task:
     """The same fork parent with some of its mutants."""
-    branching = task.job.branching
-    assert branching is not None
+    forking = task.job.forking
+    assert forking is not None
     own = replace(
-        branching,
-        mutants=tuple(one for one in branching.mutants if one.id in mutants),
-        choices={mutant: found for mutant, found in branching.choices.items() if mutant in mutants},
+        forking,
+        mutants=tuple(one for one in forking.mutants if one.id in mutants),
+        choices={mutant: found for mutant, found in forking.choices.items() if mutant in mutants},
     )
-    return replace(task, job=replace(task.job, branching=own))
+    return replace(task, job=replace(task.job, forking=own))

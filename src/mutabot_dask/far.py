@@ -168,7 +168,7 @@ class WorkerSession:
         tests = task.job.tests or ()
         leading = tests[: tests.index(test) + 1] if test in tests else tests
         job = replace(
-            task.job, tests=leading, mutant=None, branching=None, stop_at_kill=False, instrumentation=None,
+            task.job, tests=leading, mutant=None, forking=None, stop_at_kill=False, instrumentation=None,
             record=False, evidence=False,
         )  # fmt: skip
         plain = replace(task, job=job, is_fork_parent=False, may_share=False)

@@ -24,18 +24,18 @@ from mutabot.model.codec import from_data, to_data
 from mutabot.model.events import (
     EVENTS,
     Acted,
-    BranchDied,
-    BranchEnd,
-    BranchFinished,
     Event,
+    ForkDied,
     ForkEnded,
+    ForkSessionEnd,
+    ForkTestEnd,
     PlacesReached,
     Serving,
     SiteSeen,
     TestEnd,
     TestStart,
-    Unbranched,
     Undiverged,
+    Unforked,
     Watched,
     event_to_data,
 )
@@ -268,18 +268,18 @@ def _in_json(path: str) -> bytes:
 _OUTCOMES = {"passed", "failed", "skipped", "xfailed", "xpassed"}
 #: what only fork servers say
 _NEVER = (Serving, ForkEnded)
-_BRANCHES = (BranchEnd, BranchFinished, BranchDied, Unbranched, Undiverged)
+_FORKS = (ForkTestEnd, ForkSessionEnd, ForkDied, Unforked, Undiverged)
 #: bytes of a recording, which comes packed
 _UNPACKED = 256 << 20
 
 
 def check_fit(lines: Iterable[Event], job: Job) -> None:
     """Raises Misfit for lines that this job cannot have made."""
-    branching = job.branching
-    mutants = {one.id for one in branching.mutants} if branching is not None else set()
+    forking = job.forking
+    mutants = {one.id for one in forking.mutants} if forking is not None else set()
     sites: set[int] = set()
     for line in lines:
-        if isinstance(line, _NEVER) or (branching is None and isinstance(line, _BRANCHES)):
+        if isinstance(line, _NEVER) or (forking is None and isinstance(line, _FORKS)):
             raise Misfit(f"this unit has no {type(line).__name__}")
         for mutant in _mutants(line):
             if mutant not in mutants:
@@ -293,15 +293,15 @@ def check_fit(lines: Iterable[Event], job: Job) -> None:
             sites.add(line.index)
         elif isinstance(line, TestEnd):
             _check_end(line, sites)
-        elif isinstance(line, BranchEnd):
+        elif isinstance(line, ForkTestEnd):
             _check_end(line.end, {seen.index for seen in line.sites})
 
 
 def _mutants(line: Event) -> Iterator[str]:
     match line:
-        case BranchEnd() | BranchDied():
+        case ForkTestEnd() | ForkDied():
             yield line.mutant
-        case Unbranched() | BranchFinished():
+        case Unforked() | ForkSessionEnd():
             yield from line.mutants
         case Undiverged():
             yield from line.hits
@@ -309,9 +309,9 @@ def _mutants(line: Event) -> Iterator[str]:
 
 def _tests(line: Event) -> Iterator[str]:
     match line:
-        case TestEnd() | TestStart() | Watched() | BranchDied() | Unbranched() | Undiverged():
+        case TestEnd() | TestStart() | Watched() | ForkDied() | Unforked() | Undiverged():
             yield line.test
-        case BranchEnd():
+        case ForkTestEnd():
             yield line.end.test
         case Acted() | PlacesReached() if line.test:  # empty before any test
             yield line.test
@@ -321,7 +321,7 @@ def _sites(line: Event) -> Iterator[SiteSeen]:
     match line:
         case SiteSeen():
             yield line
-        case BranchEnd():
+        case ForkTestEnd():
             yield from line.sites
 
 

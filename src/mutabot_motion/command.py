@@ -15,8 +15,8 @@ from typing import Annotated
 
 import typer
 
-from mutabot.campaign.again import anew
 from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.run import anew
 from mutabot.cli import options
 from mutabot.cli.campaign import number_of
 from mutabot.cli.output import progress_shown, tell

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.isolated_run import task
+from mutabot.campaign.engines.tasks import task
 from mutabot.errors import SelectionError
 from mutabot.evidence.recording import Recording, bytes_of, from_bytes
 from mutabot.evidence.tape import Film

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.campaign import again, run
+from mutabot.campaign import run
 from tests.campaign.scripted import Script
 
 
@@ -12,6 +12,5 @@ from tests.campaign.scripted import Script
 def script(monkeypatch: pytest.MonkeyPatch) -> Script:
     """Campaigns start no process; how tests end is what this says."""
     script = Script()
-    for module in (again, run):
-        monkeypatch.setattr(module, "open_executor", script.opened)
+    monkeypatch.setattr(run, "open_executor", script.opened)
     return script

@@ -21,7 +21,7 @@ from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 
-#: the reference, as one of several engines: it takes long, and that it agrees with branches is for the corpus
+#: the reference, as one of several engines: it takes long, and that it agrees with forks is for the corpus
 REPLAY = pytest.param("replay", marks=pytest.mark.whole)
 ROBOT = """
     class Refused(Exception):
@@ -144,7 +144,7 @@ def no_private_files() -> str | None:
 
 def request_for(folder: Path, **changes: Any) -> Request:
     """The request that ``mutabot run -o repeats=false`` would make in this folder: repeats take time."""
-    if changes.get("engine") == "branch" and (why := no_private_files()) is not None:
+    if changes.get("engine") == "fork" and (why := no_private_files()) is not None:
         pytest.skip(why)
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
@@ -164,8 +164,8 @@ def run(folder: Path, **changes: Any) -> dict[str, Outcome]:
     return {outcome.mutant: outcome for outcome in outcomes(path) if outcome.round == 0}
 
 
-def by_branches(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
-    """Outcomes by mutant and round, of branches where these can be; that replay agrees is for the corpus."""
+def by_forks(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
+    """Outcomes by mutant and round, of forks where these can be; that replay agrees is for the corpus."""
     path = run_campaign(request_for(folder, **{"engine": "auto", **changes}), Quiet())
     return {(outcome.mutant, outcome.round): outcome for outcome in outcomes(path)}
 

@@ -22,10 +22,10 @@ from mutabot.families import CONTROL
 from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
 from mutabot.model.events import (
     Acted,
-    BranchDied,
-    BranchEnd,
-    BranchFinished,
     Event,
+    ForkDied,
+    ForkSessionEnd,
+    ForkTestEnd,
     PlacesReached,
     SessionEnd,
     SiteSeen,
@@ -62,7 +62,7 @@ class Run:
         round: the round.
         mutant: the mutant that it is; None for the original.
         before: how often the suite, or this mutant, was run before in this round.
-        is_branch: whether it is a fork of the original.
+        is_fork: whether it is a fork of the original.
         is_short: whether tests are left out.
     """
 
@@ -71,7 +71,7 @@ class Run:
     round: int
     mutant: Mutant | None
     before: int
-    is_branch: bool = False
+    is_fork: bool = False
     is_short: bool = False
 
 
@@ -153,9 +153,7 @@ class Scripted:
     def _lines(self, job: Job, result: Result) -> Iterator[Event]:
         tests = job.tests if job.tests is not None else tuple(self.suite.tests)
         before = self._count(job.mutant, job.round)
-        found = {
-            one.id: self._count(one, job.round) for one in (job.branching.mutants if job.branching else ())
-        }
+        found = {one.id: self._count(one, job.round) for one in (job.forking.mutants if job.forking else ())}
         forked: dict[str, int] = {}
         yield from self.suite.sites
         places = self._places(job)
@@ -175,8 +173,8 @@ class Scripted:
             )
             if reached:
                 yield PlacesReached(test, reached)
-            if job.branching is not None:
-                yield from self._branches(job, run, found, forked)
+            if job.forking is not None:
+                yield from self._forks(job, run, found, forked)
             end = self.script.end(run)
             if isinstance(end, Died):
                 if job.mutant is not None:
@@ -190,32 +188,32 @@ class Scripted:
             result.exit_code = result.exit_code or int(ended.outcome == "failed")
             if job.stop_at_kill and ended.is_decided:
                 break
-        yield from (BranchFinished((mutant,), code) for mutant, code in forked.items())
+        yield from (ForkSessionEnd((mutant,), code) for mutant, code in forked.items())
         yield SessionEnd(0, tuple(self.suite.tests))
 
-    def _branches(
-        self, job: Job, trunk: Run, found: dict[str, int], forked: dict[str, int]
+    def _forks(
+        self, job: Job, fork_parent: Run, found: dict[str, int], forked: dict[str, int]
     ) -> Iterator[Event]:
-        """What branches do in one test: from the first on that reaches them, to one that decides."""
-        assert job.branching is not None
-        for mutant in job.branching.mutants:
-            is_due = mutant.id in forked or self.suite.tests[trunk.test].hits(mutant)
+        """What forks do in one test: from the first on that reaches them, to one that decides."""
+        assert job.forking is not None
+        for mutant in job.forking.mutants:
+            is_due = mutant.id in forked or self.suite.tests[fork_parent.test].hits(mutant)
             left_out = job.left_out(mutant.id)
-            if mutant.id not in found or not is_due or trunk.test in left_out:
+            if mutant.id not in found or not is_due or fork_parent.test in left_out:
                 continue
             forked.setdefault(mutant.id, 0)
             run = replace(
-                trunk, mutant=mutant, before=found[mutant.id], is_branch=True, is_short=bool(left_out)
+                fork_parent, mutant=mutant, before=found[mutant.id], is_fork=True, is_short=bool(left_out)
             )
             end = self.script.end(run)
             if isinstance(end, Died):
-                yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, acted=True)
+                yield ForkDied(mutant.id, run.test, end.exit_code, end.overdue, acted=True)
                 del found[mutant.id], forked[mutant.id]
                 continue
             ended = self.suite.end(run, end)
-            yield BranchEnd(mutant.id, ended, self.suite.sites)
+            yield ForkTestEnd(mutant.id, ended, self.suite.sites)
             forked[mutant.id] = forked[mutant.id] or int(ended.outcome == "failed")
-            if ended.is_decided and not job.branching.every_test:
+            if ended.is_decided and not job.forking.every_test:
                 del found[mutant.id], forked[mutant.id]
 
     @staticmethod

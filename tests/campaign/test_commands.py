@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mutabot.model import Verdict
-from tests.campaign.engines.test_branching import both_engines
+from tests.campaign.engines.test_forking import both_engines
 from tests.campaign.project import write_project
 
 ROBOT = """

@@ -111,7 +111,7 @@ ENGINES = pytest.mark.parametrize("engine", ["auto", REPLAY])
 
 @pytest.fixture(scope="module")
 def ends(project: Path) -> dict[str, Outcome]:
-    """All outcomes by mutant: branches, and processes of their own where these cannot be."""
+    """All outcomes by mutant: forks, and processes of their own where these cannot be."""
     before = fingerprint(project)
     found = run(project, engine="auto", families=("robot", "conventional"), only=SOME, fresh=True)
     assert fingerprint(project) == before
@@ -138,10 +138,10 @@ def _more(one: Outcome) -> tuple[Any, ...]:
     return one.acted, one.commands, one.kills, one.example, one.indistinguishable
 
 
-def test_branches_are_what_runs_mutants_that_act_in_a_test_or_before_any(ends: dict[str, Outcome]) -> None:
+def test_forks_are_what_runs_mutants_that_act_in_a_test_or_before_any(ends: dict[str, Outcome]) -> None:
     assert any(":<module>:" in mutant for mutant in ends)
     # on a busy machine, what ran out of time is run once more by itself
-    others = {mutant: one for mutant, one in ends.items() if one.engine != "branch" and one.tests}
+    others = {mutant: one for mutant, one in ends.items() if one.engine != "fork" and one.tests}
     assert {one.verdict for one in others.values()} <= {Verdict.TIMEOUT}
 
 
@@ -174,7 +174,7 @@ def test_an_alternative_with_the_same_value_has_no_effect(ends: dict[str, Outcom
     assert (found.verdict, found.hits, found.acted) == (Verdict.NO_EFFECT, 1, 0)
 
 
-def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_branches_late(
+def test_a_mutant_without_effect_needs_no_fork_and_one_with_a_late_effect_forks_late(
     tmp_path: Path,
 ) -> None:
     mission = """
@@ -197,11 +197,11 @@ def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_bran
     vocabulary = 'clock = { tick = "robot:Arm.tick", unit = "s" }\n' + dedent(VOCABULARY)
     project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
     only = ("mission.py:way:step*",)
-    ends = run(project, engine="branch", families=("conventional",), only=only)
+    ends = run(project, engine="fork", families=("conventional",), only=only)
     zero, late = (f"mission.py:way:step#2:ABS={variant}" for variant in ("failOnZero", "abs"))
     idle, acting = ends[zero], ends[late]
-    assert (idle.verdict, idle.hits, idle.acted, idle.engine) == (Verdict.NO_EFFECT, 4, 0, "branch")
-    assert idle.shared == idle.simulated == 7.0  # eight ticks; the trunk ran them all
+    assert (idle.verdict, idle.hits, idle.acted, idle.engine) == (Verdict.NO_EFFECT, 4, 0, "fork")
+    assert idle.shared == idle.simulated == 7.0  # eight ticks; the fork parent ran them all
     assert (acting.hits, acting.acted, acting.example) == (4, 1, (-0.1, 0.1))
     early = ends["mission.py:way:step#2:UOI=neg"]
     # the former differs at the first evaluation, before any tick; the latter after five of them

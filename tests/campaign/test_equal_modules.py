@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.campaign.run import plan_only
 from mutabot.model import Mutant, Verdict
-from tests.campaign.project import Quiet, by_branches, request_for, write_project
+from tests.campaign.project import Quiet, by_forks, request_for, write_project
 
 STATIONS = ("left", "right", "top")
 STATION = """
@@ -73,7 +73,7 @@ def test_modules_of_equal_text_have_the_same_mutants_each(tmp_path: Path, famili
 
 
 def test_each_acts_in_its_own_file(tmp_path: Path) -> None:
-    outcomes = by_branches(project(tmp_path), families=("robot",))
+    outcomes = by_forks(project(tmp_path), families=("robot",))
     for name in STATIONS:
         own = {id: one for (id, _), one in outcomes.items() if id.startswith(f"mission/{name}.py")}
         assert {one.test for one in own.values() if one.test} <= {f"tests/test_mission.py::test_{name}"}
@@ -100,7 +100,7 @@ def test_calls_of_equal_text_on_one_line_are_told_apart(tmp_path: Path) -> None:
         def test_second():
             mission.second(Arm())
     """
-    outcomes = by_branches(write_project(tmp_path, mission, tests), families=("robot",))
+    outcomes = by_forks(write_project(tmp_path, mission, tests), families=("robot",))
     verdicts = {
         (id.partition("#")[2][:1], one.verdict) for (id, _), one in outcomes.items() if id.endswith("reverse")
     }

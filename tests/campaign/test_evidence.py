@@ -104,7 +104,7 @@ def evidence(folder: Path) -> closing[StoredEvidence]:
     return closing(StoredEvidence(folder / ".mutabot" / "journal.sqlite"))
 
 
-@pytest.fixture(scope="module", params=["branch", REPLAY])
+@pytest.fixture(scope="module", params=["fork", REPLAY])
 def recorded(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, dict[str, Outcome]]:

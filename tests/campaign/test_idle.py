@@ -16,7 +16,7 @@ from mutabot.model import Outcome, Verdict
 from mutabot.operators import registry
 from tests.campaign.project import REPLAY, Quiet, request_for, run, write_project
 
-#: async programs open a socket pair, which branch leaves to replay
+#: async programs open a socket pair, which fork leaves to replay
 ENGINES = ["auto", REPLAY]
 CONFIGURATION = """
     program = ["mission.py"]
@@ -340,7 +340,7 @@ def plug_in(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callabl
     forget()
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_an_operator_of_another_name_with_the_body_of_skip_ends_as_skip(
     engine: str, plug_in: Callable[[str], None], tmp_path: Path
 ) -> None:
@@ -358,7 +358,7 @@ def test_an_operator_of_another_name_with_the_body_of_skip_ends_as_skip(
     assert len(found) == 2
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_an_operator_that_is_to_do_nothing_and_reaches_the_robot_is_an_error(
     engine: str, plug_in: Callable[[str], None], tmp_path: Path
 ) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import plan_only
 from mutabot.model import Outcome, Verdict
-from tests.campaign.project import Quiet, by_branches, request_for, write_project
+from tests.campaign.project import Quiet, by_forks, request_for, write_project
 
 ROBOT = """
     import numpy as np
@@ -122,7 +122,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def outcomes(project: Path) -> dict[str, Outcome]:
-    found = by_branches(project, families=("robot", "catalogue"))
+    found = by_forks(project, families=("robot", "catalogue"))
     return {id.split(":", 1)[1]: one for (id, _), one in found.items()}
 
 

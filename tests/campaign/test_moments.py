@@ -51,7 +51,7 @@ TESTS = """
 Run = Callable[..., list[Outcome]]
 
 
-@pytest.fixture(params=["branch", REPLAY])
+@pytest.fixture(params=["fork", REPLAY])
 def outcome(request: pytest.FixtureRequest, tmp_path: Path) -> Run:
     """Runs *reverse* at a moment, and returns its outcome."""
 
@@ -94,7 +94,7 @@ def test_a_drawn_call_is_one_in_each_round_and_not_always_the_same(outcome: Run)
 @pytest.mark.whole
 def test_both_engines_draw_alike(tmp_path: Path) -> None:
     ends = []
-    for engine in ("branch", "replay"):
+    for engine in ("fork", "replay"):
         folder = write_project(tmp_path / engine, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
         wanted = request_for(folder, engine=engine, only=("skip",), moments=(Moment.parse("once"),), rounds=2)
         with Journal.open(run_campaign(wanted, Quiet())) as journal:

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.check import check
 from mutabot.model import Verdict
-from tests.campaign.project import Quiet, by_branches, request_for, write_project
+from tests.campaign.project import Quiet, by_forks, request_for, write_project
 
 #: ``hexlify(data, sep, bytes_per_sep)`` is native, tells no signature, and takes keywords
 ROBOT = """
@@ -55,7 +55,7 @@ def test_check_says_before_the_baseline_what_to_write_for_a_native_function(tmp_
 def test_with_a_signature_every_argument_of_a_native_function_is_mutated(tmp_path: Path) -> None:
     vocabulary = VOCABULARY.replace("arguments", 'signature = "(data, sep, bytes_per_sep)"\n    arguments')
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=vocabulary)
-    found = {mutant: outcome for (mutant, _), outcome in by_branches(tmp_path).items()}
+    found = {mutant: outcome for (mutant, _), outcome in by_forks(tmp_path).items()}
     reversed_ = {mutant: outcome for mutant, outcome in found.items() if mutant.endswith(":reverse")}
     assert len(reversed_) == 2
     assert {outcome.verdict for outcome in reversed_.values()} == {Verdict.KILLED}

@@ -1,8 +1,9 @@
-"""From its verdict to the journal an outcome visits few files of the campaign, reuse included."""
+"""How many of our files an outcome goes through: whoever follows one opens these, and no more."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -10,11 +11,14 @@ from typing import Any
 import pytest
 
 import mutabot
-from mutabot.campaign import verdict
+from mutabot.campaign.engines import engine as engines
 from mutabot.campaign.run import run_campaign
+from mutabot.evidence.recording import Recording, to_text
+from mutabot.execution.task import Result
 from mutabot.journal.journal import Journal
+from mutabot.model.events import ForkTestEnd
 from tests.campaign.project import Quiet, request_for, write_project
-from tests.campaign.scripted import Script
+from tests.campaign.scripted import CHECKED, Script, Scripted
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n"
 TESTS = """
@@ -24,35 +28,74 @@ TESTS = """
     def test_run():
         mission.run(Arm())
 """
+#: from the end of a mutant's test, as the executor hands it to the engine, to its row in the file: engine,
+#: baseline, verdict, comparison with the original, key, journal. Plain data do not count
+MOST = 6
+#: what was recorded of the world has a way beside it: kept recordings, what is in them, and how they differ
+RECORDED = {
+    "campaign/evidence.py", "journal/recordings.py", "evidence/recording.py", "evidence/tracks.py",
+    "evidence/story.py",
+}  # fmt: skip
+ROOT = Path(mutabot.__file__).parent
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
-def test_an_outcome_visits_few_files(
-    tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch, engine: str
-) -> None:
-    script.kill("reverse")
-    root = Path(mutabot.__file__).parent
-    files: set[str] = set()
-    judged, add = verdict.judge, Journal.add_outcome
+class Follower:
+    """Notes which files of ours are entered, as long as the executor is not at work."""
 
-    def look(frame: FrameType, event: str, argument: object) -> None:
+    def __init__(self) -> None:
+        self.files: dict[str, None] = {}
+        self.is_under_way = False
+
+    def look(self, frame: FrameType, event: str, argument: object) -> None:
         path = Path(frame.f_code.co_filename)
-        if event == "call" and path.is_relative_to(root):
-            files.add(path.relative_to(root).as_posix())
+        if event == "call" and path.is_relative_to(ROOT):
+            self.files[path.relative_to(ROOT).as_posix()] = None
 
-    def judge(campaign: Any, run: Any) -> Any:
-        if run.mutant.operator == "reverse":
-            files.clear()
-            sys.setprofile(look)
-        return judged(campaign, run)
+    def events(self, told: Iterable[Any]) -> Iterator[Any]:
+        """What the executor tells, from the end of the mutant's test on."""
+        for one in told:
+            is_fork = isinstance(one, tuple) and isinstance(one[1], ForkTestEnd)
+            is_fresh = isinstance(one, Result) and one.task.job.mutant is not None
+            self.is_under_way = self.is_under_way or is_fork or is_fresh
+            sys.setprofile(self.look if self.is_under_way else None)
+            yield one
+            sys.setprofile(None)
+
+
+@pytest.mark.parametrize("is_recorded", [False, True])
+@pytest.mark.parametrize("ends", [CHECKED, {}], ids=["killed", "survived"])
+@pytest.mark.parametrize("engine", ["fork", "replay"])
+def test_an_outcome_goes_through_few_files(
+    tmp_path: Path,
+    script: Script,
+    monkeypatch: pytest.MonkeyPatch,
+    engine: str,
+    ends: Mapping[str, Any],
+    is_recorded: bool,
+) -> None:
+    recorded = {"recording": to_text(Recording())} if is_recorded else {}
+    script.original = lambda run: recorded
+    script.mutated = lambda run: {**ends, **recorded}
+    follower, add, told = Follower(), Journal.add_outcome, Scripted.events
+    visited: list[list[str]] = []
 
     def add_outcome(*arguments: Any, **named: Any) -> None:
-        sys.setprofile(None)
         add(*arguments, **named)
+        sys.setprofile(None)
+        visited.append([name for name in follower.files if not name.startswith(("model/", "frozen"))])
+        follower.files.clear()
+        follower.is_under_way = False
 
-    monkeypatch.setattr(verdict, "judge", judge)
     monkeypatch.setattr(Journal, "add_outcome", add_outcome)
+    monkeypatch.setattr(Scripted, "events", lambda self, tasks: follower.events(told(self, tasks)))
+    # a control is another mutant, with an end of its own
+    monkeypatch.setattr(engines, "controls_of", lambda *_, **__: [])
+    monkeypatch.setattr(engines, "run_controls", lambda *_: iter(()))
     write_project(tmp_path, MISSION, TESTS)
-    run_campaign(request_for(tmp_path, engine=engine, only=("reverse",)), Quiet())
-    campaign = {file for file in files if file.startswith("campaign/")}
-    assert len(campaign) <= 6, sorted(campaign)
+    run_campaign(
+        request_for(tmp_path, engine=engine, only=("reverse",), rounds=2, evidence=is_recorded), Quiet()
+    )
+    _, files = visited  # the first outcome makes what later ones find
+    assert {"campaign/verdict.py", "campaign/reuse/keys.py", "journal/journal.py"} <= {*files}
+    assert len({*files} - RECORDED) <= MOST, files
+    assert (not RECORDED.isdisjoint(files)) is is_recorded

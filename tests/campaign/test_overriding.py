@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.check import check
 from mutabot.model import Verdict
-from tests.campaign.project import Quiet, by_branches, request_for, write_project
+from tests.campaign.project import Quiet, by_forks, request_for, write_project
 
 #: as in Gymnasium: what stands around an environment is an environment, and calls no method of its base
 ROBOT = """
@@ -81,9 +81,7 @@ def test_check_names_the_overriding_method_that_is_called(tmp_path: Path) -> Non
 def test_overrides_make_mutants_of_the_methods_of_subclasses(tmp_path: Path) -> None:
     vocabulary = VOCABULARY.replace("arguments", "overrides = true\n    arguments")
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=vocabulary)
-    found = {
-        mutant: outcome for (mutant, _), outcome in by_branches(tmp_path).items() if "env.step" in mutant
-    }
+    found = {mutant: outcome for (mutant, _), outcome in by_forks(tmp_path).items() if "env.step" in mutant}
     assert {mutant.rpartition(":")[2] for mutant in found} >= {"reverse", "repeat"}
     assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED}
     reverse = next(outcome for mutant, outcome in found.items() if mutant.endswith("action[0]:reverse"))

@@ -71,7 +71,7 @@ def is_killed_by_the_test(outcome: Outcome) -> bool:
 
 
 @WITH_PLUGINS
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 @pytest.mark.parametrize("more", ["", "-p xdist -p pytest_cov.plugin -p no:cacheprovider -d"])
 def test_options_settings_markers_fixtures_and_hooks_of_plugins_are_accepted_and_without_effect(
     tmp_path: Path, engine: str, more: str
@@ -83,7 +83,7 @@ def test_options_settings_markers_fixtures_and_hooks_of_plugins_are_accepted_and
     assert not list(tmp_path.glob(".coverage*"))
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 @pytest.mark.parametrize("place", ["addopts", "pytest_args"])
 def test_a_suite_without_a_cache_may_take_warnings_for_errors(
     tmp_path: Path, engine: str, place: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mutabot.model import Verdict
-from tests.campaign.project import by_branches, write_project
+from tests.campaign.project import by_forks, write_project
 
 ROBOT = """
     from dataclasses import dataclass
@@ -89,7 +89,7 @@ VOCABULARY = """
 def test_a_command_that_is_refused_by_data_is_never_a_kill(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     outcomes = {
-        mutant.split(":", 1)[1].replace("#1", ""): one for (mutant, _), one in by_branches(tmp_path).items()
+        mutant.split(":", 1)[1].replace("#1", ""): one for (mutant, _), one in by_forks(tmp_path).items()
     }
     told = {name: (one.verdict, one.message) for name, one in outcomes.items()}
     refused = Verdict.REFUSED

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import plan_only
 from mutabot.model import By, Outcome, Verdict
-from tests.campaign.project import Quiet, by_branches, request_for, write_project
+from tests.campaign.project import Quiet, by_forks, request_for, write_project
 
 MISSION = """
     from robot import Refused
@@ -70,7 +70,7 @@ def by_name(outcomes: dict[tuple[str, int], Outcome]) -> dict[str, Outcome]:
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Outcome]:
-    return by_name(by_branches(write_project(tmp_path_factory.mktemp("refused"), MISSION, TESTS)))
+    return by_name(by_forks(write_project(tmp_path_factory.mktemp("refused"), MISSION, TESTS)))
 
 
 def test_a_refusal_that_the_tests_expect_is_judged_by_them(found: dict[str, Outcome]) -> None:
@@ -87,7 +87,7 @@ def test_a_refusal_that_the_tests_expect_is_judged_by_them(found: dict[str, Outc
 
 
 def test_only_calls_that_the_original_is_refused_count_at_a_site(tmp_path: Path) -> None:
-    found = by_name(by_branches(write_project(tmp_path, MISSION, BOTH_REFUSED)))
+    found = by_name(by_forks(write_project(tmp_path, MISSION, BOTH_REFUSED)))
     some = found["try_all:arm.move_by:dx:reverse"]
     assert (some.verdict, some.message) == (Verdict.REFUSED, "-1.25 is out of reach")
 
@@ -139,7 +139,7 @@ def test_a_skipped_call_of_which_nobody_knows_the_answer_is_left_out(
 def test_a_mutant_of_the_text_is_judged_by_the_tests_as_well(tmp_path: Path) -> None:
     """One number for another: the robot refuses either, and the test expects which."""
     write_project(tmp_path, MISSION, TESTS)
-    outcomes = by_branches(tmp_path, families=("conventional",))
+    outcomes = by_forks(tmp_path, families=("conventional",))
     told = [one for (id, _), one in outcomes.items() if id.startswith("mission.py:too_far_told:5.0")]
     assert told
     refused_as_well = [one for one in told if "out of reach" in (one.message or "")]
@@ -196,7 +196,7 @@ TESTS_OF_STATUS = """
 @pytest.mark.whole
 def test_a_refusal_by_data_that_the_original_gets_as_well_is_judged_by_the_tests(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION_WITH_STATUS, TESTS_OF_STATUS, robot=ANSWERING, vocabulary=STATUS)
-    found = by_name(by_branches(tmp_path, families=("robot", "graded")))
+    found = by_name(by_forks(tmp_path, families=("robot", "graded")))
     assert found["too_far:arm.move_to:x:reverse"].verdict is Verdict.SURVIVED
     # there the original is not refused
     graded = {one.verdict for name, one in found.items() if name.startswith("there:arm.move_to:x:offset=+")}
@@ -224,6 +224,6 @@ def test_a_refusal_in_a_process_below_the_tests_is_known_as_well(tmp_path: Path)
         def test_it_says_that_it_is_refused():
             assert subprocess.run([sys.executable, "mission.py"], env=os.environ).returncode == 3
     """
-    outcomes = by_branches(write_project(tmp_path, mission, tests))
+    outcomes = by_forks(write_project(tmp_path, mission, tests))
     reverse = next(one for (id, _), one in outcomes.items() if id.endswith(":reverse"))
     assert (reverse.verdict, reverse.acted) == (Verdict.SURVIVED, 1)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from mutabot.campaign.run import plan_only
 from mutabot.model import Verdict
-from tests.campaign.project import Quiet, by_branches, request_for, write_project
+from tests.campaign.project import Quiet, by_forks, request_for, write_project
 
 ROBOT = """
     class Arm:
@@ -104,7 +104,7 @@ def test_what_the_robot_cannot_tell_apart_is_not_planned(tmp_path: Path) -> None
 
 def test_it_has_no_effect_at_these_calls_alone(tmp_path: Path) -> None:
     """The robot is sent what the program says there: 180, and then −90."""
-    outcomes = by_branches(project(tmp_path))
+    outcomes = by_forks(project(tmp_path))
     found = outcomes[BOTH, 0]
     assert found.verdict is Verdict.KILLED
     assert (found.hits, found.acted) == (2, 1)

@@ -49,7 +49,7 @@ def campaign(folder: Path, engine: str) -> tuple[Any, ...]:
         return journal.mutants(), ends, controls
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_a_scripted_campaign_is_a_real_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, engine: str
 ) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mutabot.model import Verdict
-from tests.campaign.project import by_branches, write_project
+from tests.campaign.project import by_forks, write_project
 
 ROBOT = """
     class Left:
@@ -36,7 +36,7 @@ TESTS = """
 
 def test_an_operator_sees_its_own_variant_where_the_id_holds_the_operation_as_well(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS, vocabulary=VOCABULARY, robot=ROBOT)
-    found = by_branches(tmp_path)
+    found = by_forks(tmp_path)
     site = "mission.py:look:camera.see#1:result:misread"
     assert {mutant: outcome.verdict for (mutant, _), outcome in found.items()} == {
         f"{site}={variant}": Verdict.KILLED for variant in ("+1", "+2", "+1+Right.see", "+2+Right.see")

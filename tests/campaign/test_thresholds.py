@@ -114,7 +114,7 @@ def test_what_the_robot_refuses_is_no_detection(found: dict[str, list[Bracket]])
 @pytest.mark.whole
 def test_magnitude_and_verdict_agree_in_both_engines(tmp_path: Path) -> None:
     ends = []
-    for engine in ("branch", "replay"):
+    for engine in ("fork", "replay"):
         folder = write_project(tmp_path / engine, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
         request = request_for(folder, families=("graded",), only=("lag", "drift"), engine=engine)
         with Journal.open(run_campaign(request, Quiet())) as journal:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mutabot.model import Outcome, Verdict
-from tests.campaign.project import by_branches, write_project
+from tests.campaign.project import by_forks, write_project
 
 ROBOT = """
     class Refused(Exception): pass
@@ -81,7 +81,7 @@ VOCABULARY = """
 
 def found(folder: Path) -> dict[str, Outcome]:
     write_project(folder, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
-    outcomes = by_branches(folder).items()
+    outcomes = by_forks(folder).items()
     return {mutant.split(":", 2)[2].replace("#1", ""): one for (mutant, _), one in outcomes}
 
 
@@ -141,5 +141,5 @@ def test_calls_that_are_left_alone_may_raise_anything(tmp_path: Path) -> None:
         arguments.x = { kind = "translation", axis = "x", unit = "m", mode = "by" }
         """,
     )
-    verdicts = {one.verdict for one in by_branches(tmp_path).values()}
+    verdicts = {one.verdict for one in by_forks(tmp_path).values()}
     assert verdicts == {Verdict.SURVIVED}

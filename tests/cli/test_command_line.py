@@ -470,7 +470,7 @@ def test_the_shell_completes_commands_and_names(project: Path) -> None:
 
     assert completed("mutabot re") == ["replay", "results", "report"]
     assert completed("mutabot report --format s") == ["sarif"]
-    assert completed("mutabot run --engine ") == ["auto", "branch", "replay"]
+    assert completed("mutabot run --engine ") == ["auto", "fork", "replay"]
     assert completed("mutabot run --family co") == ["conventional"]
 
 

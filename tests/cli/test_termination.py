@@ -49,7 +49,7 @@ def marked(mark: str) -> list[str]:
 
 
 @pytest.mark.whole
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_a_campaign_that_is_terminated_ends_cleanly_and_goes_on_later(
     tmp_path: Path, engine: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -82,9 +82,9 @@ REPORT, PLAN = "runtime.isolation.forked_run.ForkedRun._report", "journal.journa
 #: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
     "A call through a mutant": ("replay", ["runtime.interception.active_mutant.ActiveMutant.apply"]),
-    "A branch": ("branch", [REPORT, "runtime.isolation.fork_parent.ForkParent._take_token"]),
-    "An outcome on its way to the screen": ("branch", [REPORT, PLAN]),
-    "From a vocabulary's line to a mutant": ("branch", [PLAN]),
+    "A fork": ("fork", [REPORT, "runtime.isolation.fork_parent.ForkParent._take_token"]),
+    "An outcome on its way to the screen": ("fork", [REPORT, PLAN]),
+    "From a vocabulary's line to a mutant": ("fork", [PLAN]),
 }
 #: steps that are on other ways as well: to be called after the step before is all that is asked of them
 ON_MANY_WAYS = {

@@ -11,7 +11,7 @@ import pytest
 
 import make_scaling_page
 import pages
-from mutabot.campaign.engines import fork_parent
+from mutabot.campaign.engines import engine as engines
 
 pytest.importorskip("simpy")
 
@@ -29,7 +29,7 @@ def _simulation() -> Any:
 
 simulation = _simulation()
 COSTS = simulation.Costs(100, 3.0, (1.0, 2.0, 4.0), (0.1, 0.2, 0.6), (0.8, 1.0, 1.2), {
-    "replay": 0.002, "branch": 0.002,
+    "replay": 0.002, "fork": 0.002,
 })  # fmt: skip
 EVEN = {"spread": False, "failures": False}
 
@@ -38,11 +38,11 @@ def test_the_page_is_made_of_its_data() -> None:
     assert make_scaling_page.main(["--check"]) == 0
 
 
-def test_a_trunk_is_cut_as_the_engine_cuts_it() -> None:
-    assert (fork_parent._LEAST, fork_parent._PARTS) == (simulation.LEAST, simulation.PARTS)
+def test_a_fork_parent_is_cut_as_the_engine_cuts_it() -> None:
+    assert (engines._LEAST, engines._PARTS) == (simulation.LEAST, simulation.PARTS)
 
 
-@pytest.mark.parametrize("engine", ["replay", "branch"])
+@pytest.mark.parametrize("engine", ["replay", "fork"])
 @pytest.mark.parametrize("workers", [1, 7])
 def test_no_mutant_is_lost_and_all_time_is_accounted_for(engine: str, workers: int) -> None:
     way = simulation.Way(engine)
@@ -62,14 +62,14 @@ def test_without_chance_and_overhead_nothing_is_lost_on_one_worker() -> None:
 
 
 def test_more_workers_are_quicker_and_cost_more() -> None:
-    runs = [simulation.simulate(COSTS, simulation.Way("branch", **EVEN), n, 5000) for n in (1, 4, 16)]
+    runs = [simulation.simulate(COSTS, simulation.Way("fork", **EVEN), n, 5000) for n in (1, 4, 16)]
     assert [run.ended for run in runs] == sorted((run.ended for run in runs), reverse=True)
     whole = [run.ended * run.workers for run in runs]
     assert whole == sorted(whole)
 
 
 def test_a_slow_controller_holds_workers_up() -> None:
-    slow = replace(COSTS, controller={"replay": 0.5, "branch": 0.5})
+    slow = replace(COSTS, controller={"replay": 0.5, "fork": 0.5})
     run = simulation.simulate(slow, simulation.Way("replay", **EVEN), 50, 200)
     assert run.controller / run.ended > 0.9
     assert run.shares()["waited"] > 0.5

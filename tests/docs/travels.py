@@ -39,11 +39,18 @@ def tell_calls(pipe: str) -> None:
 
 
 def _hook_into(descriptor: int) -> Callable[[FrameType, str, Any], None]:
+    process = [os.getpid()]
+
+    def begin() -> None:  # a fork has the process id of its parent
+        process[0] = int.from_bytes(os.urandom(6))
+
+    os.register_at_fork(after_in_child=begin)
+
     def hook(frame: FrameType, event: str, argument: Any) -> None:
         module = frame.f_globals.get("__name__", "")
         if event == "call" and module.startswith("mutabot."):
             name = f"{module.removeprefix('mutabot.')}.{frame.f_code.co_qualname}"
-            os.write(descriptor, f"{os.getpid()} {name}\n".encode())
+            os.write(descriptor, f"{process[0]} {name}\n".encode())
 
     return hook
 

@@ -56,7 +56,7 @@ def test_each_fact_that_differs_is_a_disagreement(differential: ModuleType, fact
 
 def test_what_an_outcome_cost_is_no_disagreement(differential: ModuleType) -> None:
     key = (KILLED.mutant, KILLED.round)
-    other = replace(KILLED, wall=1.0, cpu=2.0, shared=3.0, engine="branch")
+    other = replace(KILLED, wall=1.0, cpu=2.0, shared=3.0, engine="fork")
     assert differential.disagreements({key: KILLED}, {key: other}) == []
 
 
@@ -64,5 +64,5 @@ def test_an_outcome_that_only_one_engine_has_is_a_disagreement(differential: Mod
     key = (KILLED.mutant, KILLED.round)
     found = differential.disagreements({key: KILLED}, {})
     assert {"verdict": ("killed", "no outcome")}.items() <= {
-        one.fact: (one.branch, one.replay) for one in found
+        one.fact: (one.fork, one.replay) for one in found
     }.items()

@@ -14,7 +14,7 @@ BENCHMARK = Path(__file__).parents[2] / "benchmarks" / "controller.py"
 
 @pytest.mark.whole
 @pytest.mark.usefixtures("plugins")  # the paper's tests need one
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_a_thousand_mutants_are_judged_and_written(engine: str) -> None:
     words = ["--engine", engine, "--mutants", "1000", "--sample", "2", "--json"]
     done = subprocess.run([sys.executable, BENCHMARK, *words], capture_output=True, text=True, check=False)

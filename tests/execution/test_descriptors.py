@@ -64,7 +64,7 @@ def test_fewer_jobs_are_advised_where_they_would_do(tmp_path: Path) -> None:
     assert command(tmp_path, 24, most, "list", "-j", advised[1])[0] == ExitCode.FINE
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_a_low_limit_is_raised_as_far_as_it_may_be_and_that_is_enough(tmp_path: Path, engine: str) -> None:
     code, err = command(tmp_path, 24, needed(2), "run", "-j", "2", "--engine", engine)
     assert code == ExitCode.FINE, err

@@ -57,7 +57,7 @@ def diary(folder: Path) -> list[str]:
     return (folder / DIARY).read_text().splitlines()
 
 
-def campaign(root: Path, engine: str = "branch") -> tuple[Quiet, dict[tuple[str, int], Verdict]]:
+def campaign(root: Path, engine: str = "fork") -> tuple[Quiet, dict[tuple[str, int], Verdict]]:
     progress = Quiet()
     path = run_campaign(request_for(root, engine=engine, only=("*:reverse",), fresh=True), progress)
     return progress, {(outcome.mutant, outcome.round): outcome.verdict for outcome in outcomes(path)}
@@ -128,10 +128,10 @@ def test_what_a_run_makes_goes_with_it(tmp_path: Path) -> None:
     """,
     )
     progress = Quiet()
-    request = request_for(root, engine="branch")
+    request = request_for(root, engine="fork")
     check(request, progress)
     found = diary(tmp_path)
-    # two rounds of the original, the trunk of the controls, and the identity, which goes to the end
+    # two rounds of the original, the fork parent of the controls, and the identity, which goes to the end
     assert found == ["left"] * 4
 
 
@@ -184,7 +184,7 @@ def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path) 
     tests = TESTS.replace("arm = Arm()", "import pytest; pytest.exit('enough')")
     root = project(tmp_path, conftest="", tests=tests)
     texts = []
-    for engine in ("branch", "replay"):
+    for engine in ("fork", "replay"):
         with pytest.raises(MutabotError) as caught:
             campaign(root, engine)
         texts.append(str(caught.value))
@@ -195,7 +195,7 @@ def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path) 
 def test_error_in_a_test_file_is_told_as_without_sharing(tmp_path: Path) -> None:
     root = project(tmp_path, conftest="", tests="import nothing_of_that_name")
     texts = []
-    for engine in ("branch", "replay"):
+    for engine in ("fork", "replay"):
         with pytest.raises(BaselineError, match="cannot be collected") as caught:
             campaign(root, engine)
         texts.append(str(caught.value))

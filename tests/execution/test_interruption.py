@@ -144,7 +144,7 @@ MOMENTS = {
 }
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_an_interruption_at_any_moment_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moment: str, engine: str
@@ -156,7 +156,7 @@ def test_an_interruption_at_any_moment_leaves_nothing(
     before = descriptors()
     owner, name = MOMENTS[moment]
     monkeypatch.setattr(owner, name, after(getattr(owner, name)))
-    is_there = engine == "branch" or ("fork server" not in moment and "copy" not in moment)
+    is_there = engine == "fork" or ("fork server" not in moment and "copy" not in moment)
     with pytest.raises(KeyboardInterrupt) if is_there else nullcontext():
         run_campaign(request, Quiet())
     assert descriptors() == before

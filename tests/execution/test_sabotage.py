@@ -92,7 +92,7 @@ ROBOT = """
 GARBAGE = """
         import json, os, random
         forged = {
-            "type": "BranchEnd",
+            "type": "ForkTestEnd",
             "mutant": "mission.py:retreat:arm.move_by#1:call:skip",
             "end": {"test": "tests/test_mission.py::test_retreat", "outcome": "passed", "acted": 1},
         }

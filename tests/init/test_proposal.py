@@ -7,6 +7,7 @@ import sys
 import textwrap
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,10 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError
 from mutabot.init import propose
-from mutabot.init.guess import NameContext, guess_argument, guess_reading
+from mutabot.init.guess import NameContext, guess_argument, guess_elements, guess_reading
 from mutabot.init.words import words_of
 from mutabot.model import Kind, Mode
+from mutabot.model.watched import WatchedPart
 
 ROBOT = '''
 from dataclasses import dataclass
@@ -613,6 +615,11 @@ MOVED = {"kind": "translation", "unit": "m"}
         ("name", "move", "", {}),
         ("timeout", "wait", "", {}),
         ("code", "set_position", "", {}),
+        ("distance_tolerance", "move_by", "In m.", {}),
+        ("velocity_unit", "move", "", {}),
+        ("beta", "MovePose", "In degrees.", {"kind": "rotation", "unit": "deg", "mode": "to"}),
+        ("z", "look_at", "In m.", {**MOVED, "axis": "z", "mode": "to"}),
+        ("p", "set_joint_vel", "p: Percentage of the top.", {"kind": "ratio", "unit": "percent"}),
     ],
 )
 def test_the_verb_decides_what_an_argument_is(
@@ -757,6 +764,68 @@ def test_a_range_in_a_docstring_makes_a_speed_a_ratio(
     assert table == {"kind": "ratio", "unit": unit, "range": expected}
 
 
+def test_a_range_counts_if_it_is_one_and_holds_all_values() -> None:
+    doc = ":param value: a float from 0 to 1, or degrees\n:param factor: array of [7, 1]\n"
+    setting = NameContext(words_of("write"), doc=doc, values=(0.5, 90))
+    assert guess_argument("value", setting).table == {}
+    assert guess_argument("value", replace(setting, values=(0.5,))).table["range"] == [0.0, 1.0]
+    assert "range" not in guess_argument("factor", NameContext(words_of("set_speed"), doc=doc)).table
+
+
+def test_of_two_ways_to_read_a_number_is_asked() -> None:
+    setting = NameContext(words_of("move"), doc="velocity (int): Percentage or mm/s.")
+    assert guess_argument("velocity", setting).questions == ["the unit: mm/s, or a ratio in percent?"]
+
+
+@pytest.mark.parametrize(
+    ("name", "called", "values", "axis"),
+    [
+        ("target", "goto", [0.0, 10.0, -10.0, -90.0, 0.0, 0.0, 0.0], "j1..j7"),
+        ("target", "goto", [0.5, 0.25, 0.125, 0.0, 0.0, 0.6, 0.8], "xyz"),
+        ("get_joint_pos", "get_joint_pos", [0.0, -20.0, 10.0, 0.0, 30.0, 0.0], "j1..j6"),
+    ],
+)
+def test_seven_numbers_without_a_quaternion_are_joints(
+    name: str, called: str, values: list[float], axis: str
+) -> None:
+    part = WatchedPart("", name=name, values=[values], length=len(values))
+    guesses = guess_elements(part, name, NameContext(words_of(called), values=[values]), written=True)
+    assert next(iter(guesses.values())).table["axis"] == axis
+
+
+def test_an_argument_says_whether_angles_are_degrees(tmp_path: Path) -> None:
+    files = {
+        "robot.py": """
+            class Arm:
+                def rotate_by(self, yaw, degrees=True):
+                    '''In degrees, or in radians.'''
+        """,
+        "mission.py": "def run(arm):\n    arm.rotate_by(1.5)\n",
+        "test_mission.py": "import mission, robot\ndef test_it(): mission.run(robot.Arm())\n",
+    }
+    propose(write(tmp_path, files))
+    assert (
+        'arguments.yaw = { kind = "rotation", axis = "z", unit = "deg"'
+        in (tmp_path / "robot.toml").read_text()
+    )
+
+
+def test_calls_that_a_mock_noted_are_left_alone(tmp_path: Path) -> None:
+    files = {
+        "mission.py": "def run(arm):\n    arm.lift_by(0.5)\n",
+        "test_mission.py": """
+            from unittest import mock
+            import mission
+
+            def test_it():
+                arm = mock.Mock()
+                mission.run(arm)
+                assert arm.lift_by.call_args_list == [mock.call(0.5)]
+        """,
+    }
+    assert any("tests: 1 passed" in line for line in propose(write(tmp_path, files)))
+
+
 def test_the_unit_is_that_of_the_arguments_own_line() -> None:
     doc = ":param x: cartesian position x, (unit: mm)\n:param speed: move speed (mm/s, rad/s)\n"
     setting = NameContext(words_of("set_position"), doc=doc)
@@ -810,3 +879,8 @@ def test_replies_connections_and_what_is_created_are_no_operations(tmp_path: Pat
     found = operations(tmp_path)
     assert set(found) == {"robot:Arm.move_to", "robot:Arm.get_position"}
     assert found["robot:Arm.move_to"].current == "robot:Arm.get_position"
+
+
+def test_a_scale_of_bits_is_no_speed() -> None:
+    setting = NameContext(words_of("open"), doc="speed (int): Gripper speed between 0 and 255.", values=(64,))
+    assert guess_argument("speed", setting).table == {"kind": "output", "range": [0.0, 255.0]}

@@ -18,7 +18,7 @@ from mutabot.cli.app import main
 from mutabot.errors import ExitCode
 from mutabot.journal.database import columns, decode
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import REACHING
+from mutabot.journal.records import REACHING, ControlEnd
 from mutabot.model.events import TestEnd
 from mutabot.report.format import Material, format_of, names
 from mutabot.report.terminal.campaign import print_results
@@ -46,7 +46,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
             journal.add_test(round, 0, TestEnd(samples.TEST, "passed", wall=0.5))
         journal.set_plan(samples.MUTANTS, samples.LEFT_OUT, sources={"mission.py": samples.PROGRAM})
         journal.set_known([(OTHER, True)])
-        journal.add_control("tests/test_mission.py", "identity", True, "as it must")
+        journal.add_control(ControlEnd("tests/test_mission.py", "identity", True, "as it must"))
         journal.add_parts({"digest": {"mission.py": "text"}})
         journal.add_texts({"text": b"import robot"})
         for outcome in samples.OUTCOMES:
@@ -164,8 +164,8 @@ def test_rows_may_hold_anything(whole: Path, tmp_path: Path, capsys: pytest.Capt
                 for pair, outcome in expected.items():
                     assert pair in rows or found.get(pair) == outcome
                 plan = {row[1] for row in touched if row[0] == "mutant"}
-                ids = {one.number for one in journal.mutants()}
-                assert {one.number for one in samples.MUTANTS} - ids <= plan
+                ids = {one.id for one in journal.mutants()}
+                assert {one.id for one in samples.MUTANTS} - ids <= plan
             use(path, number, ways)
         except Exception as error:
             error.add_note(f"{number}: {touched}")
@@ -189,8 +189,8 @@ BAD = {
     "not a number": ("UPDATE outcome SET data = replace(data, '\"wall\": 1.5', '\"wall\": NaN')", 1),
     "round": ("UPDATE outcome SET round = 4000000000 WHERE rowid = 1", 1),
     "rounds": ("UPDATE meta SET value = '1000000000' WHERE key = 'rounds'", 0),
-    "mutant": ("UPDATE mutant SET data = '[]' WHERE number = 1", 2),
-    "test": ('UPDATE test SET data = \'{"test": 1, "outcome": []}\'', 0),
+    "mutant": ("UPDATE mutant SET data = '[]' WHERE rowid = 1", 2),
+    "test": ('UPDATE test SET data = \'{"round": 0, "test": []}\' WHERE rowid = 1', 0),
     "fact": ("UPDATE meta SET value = '[1, 2' WHERE key = 'started'", 0),
     "key": ("UPDATE outcome SET key = x'00ff' WHERE rowid = 1", 0),
 }

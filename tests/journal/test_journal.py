@@ -15,10 +15,10 @@ from pathlib import Path
 import pytest
 
 from mutabot.errors import JournalError
-from mutabot.journal.database import SCHEMA_VERSION, connect, guarded
+from mutabot.journal.database import SCHEMA_VERSION, connect
 from mutabot.journal.files import is_written, previous_of
-from mutabot.journal.journal import Journal
-from mutabot.journal.records import Kept
+from mutabot.journal.journal import Journal, guarded
+from mutabot.journal.records import ControlEnd, Kept
 from mutabot.model import By, Outcome, Verdict
 from mutabot.model.events import TestEnd
 from results import samples
@@ -56,13 +56,6 @@ def test_the_last_outcome_of_a_mutant_in_a_round_wins(path: Path) -> None:
         for outcome in (KILLED, other_round, survived):
             journal.add_outcome(outcome)
         assert journal.outcomes() == [other_round, survived]
-
-
-def test_a_test_of_the_baseline_that_is_added_again_replaces_itself(path: Path) -> None:
-    with Journal.create(path, meta={}) as journal:
-        journal.add_test(0, 0, TestEnd("t", "failed"))
-        journal.add_test(0, 0, TestEnd("t", "passed"))
-        assert [one.test.outcome for one in journal.tests()] == ["passed"]
 
 
 def test_a_new_plan_replaces_the_old_one(path: Path) -> None:
@@ -122,9 +115,9 @@ def test_outcomes_are_kept_aside_with_their_keys_until_a_later_one_takes_their_p
     with Journal.create(path, meta={}) as journal:
         assert journal.outcomes() == []
         assert journal.kept() == {
-            ("m", 0): Kept("a b c", is_sound=True, verdict=Verdict.KILLED),
-            ("m", 1): Kept("d e f", is_sound=True, verdict=Verdict.KILLED),
-            ("n", 0): Kept("a b c", is_sound=False, verdict=Verdict.ERROR),
+            ("m", 0): Kept("m", 0, Verdict.KILLED, "a b c"),
+            ("m", 1): Kept("m", 1, Verdict.KILLED, "d e f"),
+            ("n", 0): Kept("n", 0, Verdict.ERROR, "a b c", is_sound=False),
         }
         journal.take_over([journal.row("m", 0)])
         journal.add_outcome(Outcome("m", 1, Verdict.SURVIVED))
@@ -235,7 +228,7 @@ def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
         journal.add_outcome(
             Outcome("mission\udcff.py", 0, Verdict.KILLED, test="t\udcff", example=(1, "\udcfe"))
         )
-        journal.add_control("tests/t\udcff.py", "identity", ok=True, detail="\udcff")
+        journal.add_control(ControlEnd("tests/t\udcff.py", "identity", ok=True, detail="\udcff"))
         journal.add_test(0, 0, TestEnd("t\udcff", "passed"))
         journal.set_plan([], [], sources={"mission\udcff.py": "x = '\udcff'"})
     with Journal.open(path) as reader:
@@ -309,7 +302,7 @@ def test_a_writer_ended_by_sigkill_loses_nothing(path: Path) -> None:
 def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> None:
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
-        journal._store._file.execute("PRAGMA max_page_count = 1")
+        journal._file.execute("PRAGMA max_page_count = 1")
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
         with pytest.raises(JournalError, match="disk is full") as error:
             journal.add_outcome(big)

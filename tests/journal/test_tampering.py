@@ -75,7 +75,7 @@ def empty(path: Path) -> None:
 CHANGES = {
     "changed": sql(f"UPDATE outcome SET verdict = 'killed', data = '{FORGED}' WHERE round = 1"),
     "removed": sql("DELETE FROM outcome WHERE round = 1"),
-    "added": sql(f"INSERT INTO outcome VALUES ('n', 0, 'killed', 'check', '{FORGED}', 'a', 0)"),
+    "added": sql(f"INSERT INTO outcome VALUES ('n', 0, 'killed', '{FORGED}', 'a', 0)"),
     "plan": sql("DELETE FROM mutant", "DELETE FROM meta"),
     "trigger": sql("CREATE TRIGGER t AFTER INSERT ON outcome BEGIN DELETE FROM outcome; END"),
     "view": sql("DROP TABLE meta", "CREATE VIEW meta AS SELECT 'rounds' AS key, '1000000000' AS value"),
@@ -153,7 +153,7 @@ def test_a_journal_that_another_program_holds_locked_is_written_nevertheless(pat
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
         journal.outcomes()
-        journal._store._file.execute("PRAGMA busy_timeout = 10")
+        journal._file.execute("PRAGMA busy_timeout = 10")
         with closing(sqlite3.connect(path)) as other:
             other.execute("BEGIN IMMEDIATE")
             journal.add_outcome(SURVIVED)

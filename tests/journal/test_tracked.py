@@ -49,7 +49,7 @@ def forged(journal: Path) -> Path:
         (count,) = connection.execute("SELECT count(*) FROM outcome WHERE verdict = 'survived'").fetchone()
         assert count
         connection.execute(
-            "UPDATE outcome SET verdict = 'killed', \"by\" = 'check', data = "
+            "UPDATE outcome SET verdict = 'killed', data = "
             "json_set(data, '$.verdict', 'killed', '$.by', 'check', '$.test', ?)",
             ("tests/test_mission.py::test_fetch",),
         )

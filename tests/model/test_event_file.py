@@ -21,10 +21,10 @@ from mutabot.model import Span, event_file
 from mutabot.model.codec import MOST_CHARACTERS, MOST_DEPTH
 from mutabot.model.event_file import SESSION, SUFFIX, UNWRITTEN, EventReader, seal, sealed, unsealed
 from mutabot.model.events import (
-    BranchDied,
-    BranchEnd,
     Event,
+    ForkDied,
     ForkEnded,
+    ForkTestEnd,
     SessionEnd,
     SiteSeen,
     TestEnd,
@@ -44,7 +44,7 @@ EVENTS: list[Event] = [
     TestStart("tests/t.py::test"),
     SiteSeen(0, Span("mission.py", 3, 4, 3, 20, "approach"), "robot:Arm.move_by", None, oracle=False),
     END,
-    BranchEnd("robot/mission.py:3", END),
+    ForkTestEnd("robot/mission.py:3", END),
     TokensHeld(2),
     SessionEnd(0, ("tests/t.py::test",)),
 ]
@@ -347,8 +347,8 @@ def a_stream(folder: Path) -> Iterator[tuple[EventStream, EventFile]]:
         file.close()
 
 
-def in_fork(file: EventFile, work: Callable[[], object], died: BranchDied | None = None) -> int:
-    """Do this in a fork, as a trunk has it done by a branch; its exit code."""
+def in_fork(file: EventFile, work: Callable[[], object], died: ForkDied | None = None) -> int:
+    """Do this in a fork, as a fork parent has it done for a mutant; its exit code."""
     file.forks += 1
     pid = os.fork()
     if pid == 0:
@@ -412,9 +412,9 @@ def test_a_fork_whose_events_are_damaged_is_as_if_it_had_not_run_and_touches_no_
             file.send(TokensHeld(1))
             os.write(file._file, b"half of an ev")
 
-        in_fork(file, torn, BranchDied("mutant", "test", 1))
-        in_fork(file, lambda: file.send(TokensHeld(2)), BranchDied("another", "test", 1))
-        assert stream.read(is_last=True) == [TokensHeld(2), BranchDied("another", "test", 1)]
+        in_fork(file, torn, ForkDied("mutant", "test", 1))
+        in_fork(file, lambda: file.send(TokensHeld(2)), ForkDied("another", "test", 1))
+        assert stream.read(is_last=True) == [TokensHeld(2), ForkDied("another", "test", 1)]
 
 
 def test_what_is_in_the_pipe_means_nothing(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ OTHERWISE = {
     "opposite": {"init", "config/vocabulary"},
     "noise": {"config/vocabulary", "report/thresholds"},
     "skip": {"cli"},
-    "reverse": {"campaign/baseline/site_names.py"},  # a method of lists
+    "reverse": {"campaign/baseline/writes.py"},  # a method of lists
     "drop": {"init"},
     "delay": {"init"},
     "offset": {"init", "model"},  # what a demand means that names none

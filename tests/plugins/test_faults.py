@@ -159,11 +159,11 @@ def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: 
 
 
 def test_what_only_forks_may_judge_is_handed_on_with_the_reason(site: Path, project: Path) -> None:
-    done = mutabot(site, project, "run", "--json", "--engine", "branch", "--only", "1")
+    done = mutabot(site, project, "run", "--json", "--engine", "fork", "--only", "1")
     (found,) = mutants(done, code=ERRORS).values()
     end = found["rounds"][0]
     assert end["verdict"] == "error"
-    assert end["message"] == "it could not be branched: it is in place from the start of each test"
+    assert end["message"] == "it could not be forked: it is in place from the start of each test"
 
 
 def test_its_operators_are_listed_and_its_family_is_known(site: Path, project: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path as File
 from typing import Any
 
 from mutabot.journal.journal import Journal
+from mutabot.journal.records import ControlEnd
 from mutabot.model import (
     By,
     Check,
@@ -138,7 +139,7 @@ def write_journal(
             journal.add_test(round, 0, TestEnd(TEST, "passed", wall=0.5))
         journal.set_plan(mutants, LEFT_OUT, sources={"mission.py": PROGRAM, "tests/sensors.py": SENSORS})
         for control in ("identity", "fatal"):
-            journal.add_control("tests/test_mission.py", control, True, "as it must")
+            journal.add_control(ControlEnd("tests/test_mission.py", control, True, "as it must"))
         for outcome in outcomes:
             journal.add_outcome(outcome)
         if finish is not None:

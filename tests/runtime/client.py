@@ -25,6 +25,7 @@ from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.messages import Messages, deliver, wait_for
 from mutabot.runtime.targets.target import Means, Where
+from tests.runtime.stage import take_away
 
 from .stage import ListPipe
 
@@ -180,6 +181,7 @@ class ClientStage:
     folder: Path
     operations: tuple[Operation, ...]
     sessions: list[Session] = field(default_factory=list)
+    counted: int = 0
     pipe: ListPipe = field(default_factory=ListPipe)
 
     def program(self, text: str) -> ModuleType:
@@ -214,9 +216,7 @@ class ClientStage:
         session.install()
         self.sessions.append(session)
         session.start_test("test")
-        messages = session.interception.of("messages")
-        assert isinstance(messages, Messages)
-        return session, Client(messages)
+        return session, Client(session.messages or Messages(session.inspection.target_is_wrong))
 
     def mutated(
         self,
@@ -236,7 +236,7 @@ class ClientStage:
         session, client = self.session(program)
         client.coming = list(coming)
         program.run(client)
-        session.remove()
+        take_away(session)
         return self.again(program, operator, variant, quantity, coming=coming, oracle_nodes=oracle_nodes)
 
     def again(
@@ -259,5 +259,7 @@ class ClientStage:
             result: Any = program.run(client)
         except Exception as error:
             result = error
-        session.remove()
+        assert session.meter is not None
+        self.counted = session.meter.operations
+        take_away(session)
         return result, client, session.activations[0]

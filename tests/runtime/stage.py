@@ -8,12 +8,14 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
 from textwrap import dedent
 from types import ModuleType
 from typing import Any
+from unittest import mock
 
 from mutabot.config.vocabulary import load
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
@@ -21,9 +23,12 @@ from mutabot.model.events import Event, SiteSeen
 from mutabot.model.job import Budget, Job
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.program_text import loading
 from mutabot.runtime.session import Session
+from mutabot.runtime.targets.target import NotFoundError, resolve
 
 _numbers = count(1)
+_MOCK_CALL = vars(mock)["CallableMixin"].__call__
 
 
 class ListPipe:
@@ -68,7 +73,7 @@ class Stage:
 
     def close(self) -> None:
         for session in self.sessions:
-            session.remove()
+            take_away(session)
         sys.path.remove(str(self.folder))
         for name in (self.robot_name, self.program_name):
             sys.modules.pop(name, None)
@@ -128,7 +133,7 @@ class Stage:
         """
         recording = self.session()
         self.run(recording)
-        recording.remove()
+        take_away(recording)
         sys.modules.pop(self.program_name)  # its text asks the session that was there when it was loaded
         seen = self.sites()[index]
         mutant = Mutant(
@@ -141,6 +146,50 @@ class Stage:
 
 def _site(span: Span) -> Site:
     return Site(span, "text", 1, Role.PROGRAM)
+
+
+def forget(step: Any) -> None:
+    """Compile files without a step from now on."""
+    if step in loading._steps:
+        loading._steps.remove(step)
+
+
+def take_away(session: Session) -> None:
+    """Let nothing of a session act any more: only tests have several in one process."""
+    session.passing.meter = None
+    sites: Any = session.call_sites
+    sites._stands, sites._hands = (lambda site, found, receiver, frame: found), None
+    for step in (sites, session.text, session.returns):
+        forget(step)
+    for target, original in session.callables.found.items():
+        module, _, qualname = target.partition(":")
+        with suppress(NotFoundError, AttributeError, TypeError, KeyError):
+            owner, name, _ = resolve(sys.modules[module], qualname)
+            _put_back(owner, name, original)
+    if session.messages is not None:
+        session.messages.remove()
+    mocks_as_ever()
+
+
+def mocks_as_ever() -> None:
+    """See no calls of mocks any more."""
+    classes: Any = mock
+    classes.CallableMixin.__call__ = _MOCK_CALL
+
+
+def _put_back(owner: Any, name: str, original: Any) -> None:
+    wrapper = vars(owner).get(name)
+    is_inherited = isinstance(owner, type) and any(
+        vars(one).get(name) is original for one in owner.__mro__[1:]
+    )
+    if is_inherited:
+        delattr(owner, name)
+    else:
+        setattr(owner, name, original)
+    for module in list(sys.modules.values()):
+        for key, value in list(getattr(module, "__dict__", {}).items()):
+            if value is wrapper and isinstance(module, ModuleType):
+                setattr(module, key, original)
 
 
 Make = Callable[..., Stage]

@@ -27,7 +27,7 @@ from .graded_editor import OPERATORS as GRADED_OPERATORS
 from .judge import IGNORED, MORE_DRAWS, Judge, Judgement, is_drawn, is_raced
 from .message_editor import is_named
 
-ENGINES = ("branch", "replay")
+ENGINES = ("fork", "replay")
 PROJECTS = Path(__file__).resolve().parent / "projects"
 #: no verdict: the plan says that the mutant would change nothing
 LEFT_OUT = "left out"
@@ -316,7 +316,7 @@ def request_for(
     configuration = configuration.model_copy(update={"pytest_args": (*configuration.pytest_args, *more)})
     return Request(
         configuration, load(configuration.vocabulary, configuration.root), rounds, configuration.seed, jobs,
-        fresh=True, families=tuple(families), engine="auto" if engine == "branch" else engine, evidence=True,
+        fresh=True, families=tuple(families), engine="auto" if engine == "fork" else engine, evidence=True,
     )  # fmt: skip
 
 

@@ -144,7 +144,7 @@ def campaign(folder: Path, **changes: object) -> tuple[list[Outcome], list[str]]
 
 
 #: that engines agree is for the corpus; here both leave tests out, each in its way
-ENGINE = pytest.mark.parametrize("engine", ["branch", REPLAY])
+ENGINE = pytest.mark.parametrize("engine", ["fork", REPLAY])
 
 
 @pytest.fixture

@@ -307,7 +307,7 @@ def project(folder: Path, files: dict[str, str]) -> Path:
 def test_every_verdict_is_that_of_plain_pytest(tmp_path: Path, suite: str) -> None:
     folder = project(tmp_path / "imports", SUITES[suite])
     found = compare(
-        folder, families=("conventional",), only={"conventional": 8}, engines=("branch",), limit=8.0
+        folder, families=("conventional",), only={"conventional": 8}, engines=("fork",), limit=8.0
     )
     assert found.disagreements == []
     assert len(found.compared) >= 5
@@ -351,7 +351,7 @@ def test_both_engines_say_the_same_of_programs_that_cannot_be_imported(
     only = ("program/table.py:<module>:*AOR*", "program/table.py:<module>:*ABS=abs")
     forked, _ = run(project(tmp_path / "forked", files), "auto", only)
     replayed, _ = run(project(tmp_path / "replayed", files), "replay", only)
-    assert {one.engine for one in forked.values()} == {"branch"}
+    assert {one.engine for one in forked.values()} == {"fork"}
     assert {name: _facts(one) for name, one in forked.items()} == {
         name: _facts(one) for name, one in replayed.items()
     }
@@ -368,5 +368,5 @@ def test_what_cannot_be_forked_while_it_is_imported_runs_in_a_process_of_its_own
 ) -> None:
     found, said = run(project(tmp_path, SUITES[suite]), "auto", ("program/table.py:<module>:* 4#1:A*",))
     assert {one.engine for one in found.values()} == {"replay"}
-    why = f"no branches while the program is imported: {UNSAFE[suite]}; "
+    why = f"no forks while the program is imported: {UNSAFE[suite]}; "
     assert any(line.startswith(why) for line in said)

@@ -1,7 +1,6 @@
 """A campaign under way: what is asked, what is known of the original, who runs tasks, and who is told.
 
-It is made once the baseline is taken, and all that give mutants their outcomes work on it. Outcomes go into
-the journal, each with the key of what it depends on.
+It is made once the baseline is taken, and all that give mutants their outcomes work on it.
 """
 
 from __future__ import annotations
@@ -10,15 +9,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.site_names import Sources
+from mutabot.campaign.baseline.baseline import Baseline, Sources
 from mutabot.campaign.evidence import CampaignEvidence
 from mutabot.campaign.request import Progress, Request
 from mutabot.execution.task import Executor
 from mutabot.execution.workers import Workers
 from mutabot.families import CONTROL
-from mutabot.frozen import frozen
-from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Outcome
 
 
@@ -65,24 +61,6 @@ class Campaign:
             for mutant in (mutants if self.is_short else ())
             if mutant.family != CONTROL
         }
-
-
-@frozen
-class OutcomeWriter:
-    """Writes outcomes into the journal of a campaign.
-
-    Attributes:
-        journal: where they go.
-        key_of: what an outcome depends on. The empty key says that nobody knows, and that it is not to be
-            reused.
-    """
-
-    journal: Journal
-    key_of: Callable[[Outcome], str] = lambda outcome: ""
-
-    def add_outcome(self, outcome: Outcome) -> None:
-        """Add one outcome; a later one of the same mutant and round takes its place."""
-        self.journal.add_outcome(replace(outcome, executed=None), key=self.key_of(outcome))
 
 
 def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.engine import try_controls
-from mutabot.campaign.engines.fork_parent import Unhandled
+from mutabot.campaign.engines.engine import Unhandled, try_controls
 from mutabot.campaign.plan import Plan, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.opened import OpenedFiles

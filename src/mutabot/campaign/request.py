@@ -22,8 +22,8 @@ from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.model.job import Job
 
-AUTO, BRANCH, REPLAY = "auto", "branch", "replay"
-ENGINES = (BRANCH, REPLAY)
+AUTO, FORK, REPLAY = "auto", "fork", "replay"
+ENGINES = (FORK, REPLAY)
 
 
 class Preview(Protocol):
@@ -137,7 +137,7 @@ class Request:
     @property
     def forks(self) -> bool:
         """Whether mutants are forked where they can be."""
-        return BRANCH in self.engines
+        return FORK in self.engines
 
     @property
     def repetitions(self) -> int:

@@ -1,4 +1,7 @@
-"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there at once."""
+"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there at once.
+
+Also one mutant of a finished campaign again, beside what its journal says.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,9 @@ import errno
 import platform
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -17,30 +21,34 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.budget import OUT_OF_TIME, run_planned
-from mutabot.campaign.campaign import Campaign, OutcomeWriter, on_this_machine
+from mutabot.campaign.campaign import Campaign, on_this_machine
 from mutabot.campaign.engines.confirmation import decide, earlier_decision
+from mutabot.campaign.engines.controls import run_controls
+from mutabot.campaign.engines.engine import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import Reused, note_outdated, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.since.since import Revision, altered_since, only_altered, open_others
-from mutabot.errors import JournalError, NothingToDoError, in_short
+from mutabot.errors import JournalError, NothingToDoError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.execution.task import Executor, Result
 from mutabot.journal.files import at_work
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
-from mutabot.model import LeftOut, Mutant, Outcome
+from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS, Replayed
+from mutabot.model import LeftOut, Mutant
 from mutabot.model.codec import to_data
+from mutabot.model.mutant import Place
+from mutabot.model.outcome import in_words
 
 #: remarks that are told where there are no mutants
 _REMARKS = 8
@@ -210,7 +218,7 @@ def _run(
         altered = altered_since(revision, campaign, dependencies, found, part.mutants)
         part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
     try:
-        writer = OutcomeWriter(journal, _key_of(journal, dependencies, plan))
+        writer = OutcomeWriter(journal, dependencies, plan.mutants)
         is_whole = _run_all(campaign, part, writer, found, started)
     finally:
         _forget_if_edited(campaign, journal, dependencies, after)
@@ -261,21 +269,6 @@ def _note_others(journal: Journal, progress: Progress) -> None:
         )
     for line in journal.altered:
         progress.note(f"the journal was changed by something else and was restored: {line}")
-
-
-def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callable[[Outcome], str]:
-    by_id = {mutant.id: mutant for mutant in plan.mutants}
-
-    def key_of(outcome: Outcome) -> str:
-        executed = dependencies.stored(outcome.executed)
-        if outcome.repeats and outcome.executed is None:  # it is in the journal, and was run once more
-            before = journal.row(outcome.mutant, outcome.round)
-            executed = before.key.split()[-1] if before is not None and before.key else executed
-        key = dependencies.key_of(outcome, by_id[outcome.mutant], executed)
-        journal.add_parts(dependencies.new_parts())
-        return key
-
-    return key_of
 
 
 def _forget_if_edited(
@@ -361,3 +354,52 @@ def _meta(request: Request) -> dict[str, Any]:
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
     }
+
+
+# One mutant again
+
+
+def replay_one(
+    request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
+) -> list[Replayed]:
+    """Run one mutant again in these rounds, beside what the journal says of it.
+
+    Raises what ``anew`` raises.
+    """
+    rounds = sorted(set(rounds))
+    first = {(one.mutant, one.round): one for one in journal.outcomes()}
+    with anew(request, mutant, rounds[-1], progress) as (campaign, now):
+        for _ in run_controls(campaign, [now]):
+            pass
+        progress.stage("replay", len(rounds))
+        second = {}
+        for outcome in replay(campaign, [(now, round) for round in rounds]):
+            second[outcome.round] = outcome
+            progress.advance(in_words(outcome))
+    return [Replayed(round, first.get((now.id, round)), second[round]) for round in rounds]
+
+
+@contextmanager
+def anew(
+    request: Request, mutant: Mutant, last: int, progress: Progress
+) -> Iterator[tuple[Campaign, Mutant]]:
+    """The campaign with a baseline taken anew up to a round, and the mutant in the program as it is now.
+
+    Raises SelectionError if the program no longer has the mutant, and what a baseline raises.
+    """
+    request = replace(request, rounds=last + 1)
+    with open_executor(request, progress) as opened:
+        prepared = prepare(request.project)
+        baseline, _ = take_baseline(request, opened, progress, prepared=prepared, repetitions=1)
+        yield Campaign(request, baseline, opened, progress), as_it_is_now(request, baseline, mutant)
+
+
+def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:
+    """The mutant in the program as it is now: edits elsewhere move it."""
+    if Place.of(mutant) in baseline.hits:
+        return mutant
+    planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
+    if mutant.id not in planned:
+        problem = f"the program has changed: no test reaches {mutant.id} any more"
+        raise SelectionError(problem)
+    return replace(planned[mutant.id], number=mutant.number)

@@ -17,9 +17,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
-from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.faults.demanded import FaultLadder
+from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.model import Outcome
 from mutabot.model.graded import MagnitudeResult, bracket_of, seen
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.baseline.baseline import Baseline, Sources, observation, places_of
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparison import Observation, compare, farthest
 from mutabot.errors import MutabotError, in_short
+from mutabot.execution.task import Result, death
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.codec import shallow
 from mutabot.model.event_file import OWN_FAULT
@@ -66,7 +68,7 @@ class Run:
         death: set if a process did not live to the end of its tests.
         wall: seconds spent on it.
         shared: simulated seconds that it did not have to spend, since the original had.
-        engine: ``replay`` or ``branch``.
+        engine: ``replay`` or ``fork``.
         exit_code: how the process ended after the whole session; None if it did not get that far.
         problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
         left_out: tests that it was to leave out, unless the original has run them for it.
@@ -90,6 +92,70 @@ class Run:
         """Why a limit of wall clock that ended it says little of its mutant, in words; None if none did."""
         deaths = [self.death.hindered] if self.death is not None else []
         return next((why for why in (*deaths, *(end.hindered for end in self.ends)) if why is not None), None)
+
+
+def run_of(result: Result, sources: Sources) -> Run:
+    """What a worker saw of its mutant."""
+    job = result.task.job
+    assert job.mutant is not None
+    places = places_of(result, sources)
+    left_out = job.left_out(job.mutant.id)
+    not_there = (f"{file}: {why}" for file, why in result.not_instrumented.items())
+    return Run(
+        mutant=job.mutant,
+        round=job.round,
+        tests=job.tests or (),
+        left_out=left_out,
+        ends=result.ends,
+        observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
+        death=_death_in(result, {*(job.tests or ())} - left_out),
+        exit_code=result.exit_code if result.end is not None else None,
+        problem=result.untrusted if result.untrusted is not None else next(not_there, None),
+        wall=result.wall,
+    )
+
+
+def _death_in(result: Result, tests: Collection[str]) -> Death | None:
+    """Set if the process did not run all its tests to their end; None if it did, or stopped at a verdict."""
+    if result.end is None:
+        text: str | None = death(result)
+    elif result.end.errors:
+        text = "; ".join(result.end.errors)
+    else:
+        text = not_run(tests, result.ends, result.exit_code)
+    if text is None:
+        return None
+    return Death(
+        text=text,
+        test=result.running,
+        signal=-result.exit_code if result.end is None and result.exit_code < 0 else None,
+        overdue=result.overdue is not None and (result.running is not None or "" in result.acted),
+        acted=not {result.running, ""}.isdisjoint(result.acted),
+        in_mutated_call=result.in_mutated_call,
+        hindered=result.hindered,
+        is_starved=result.is_starved,
+    )
+
+
+def not_run(tests: Collection[str], ends: Collection[TestEnd], exit_code: int) -> str | None:
+    """Why nothing is known of tests although the session has come to its end; None if that says enough.
+
+    A suite that ends early, and says so by its exit code, has ended otherwise than on the original.
+    """
+    missing = set(tests) - {end.test for end in ends}
+    if not missing or any(end.is_decided for end in ends) or exit_code not in (0, 1):
+        return None
+    return f"{len(missing)} tests did not run, such as {min(missing)}"
+
+
+def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
+    """The outcome of a mutant that no test can judge in this round."""
+    aside = baseline.missing_judges(round, mutant)
+    if aside:
+        text = f"all tests that reach the site are set aside in this round, such as {aside[0]}"
+        return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
+    text = "no test reaches the site in this round"
+    return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=text, executed={})
 
 
 def judged(campaign: Campaign, run: Run) -> Outcome:

@@ -14,11 +14,10 @@ import typer
 from mutabot import limits
 from mutabot.campaign import check as checking
 from mutabot.campaign import run as running
-from mutabot.campaign.again import replay_one
 from mutabot.campaign.plan import listed_rules
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.selection import select
-from mutabot.campaign.sharding import merge as merging
+from mutabot.campaign.sharding import shards
 from mutabot.cli import options
 from mutabot.cli.output import echo, print_json, progress_shown, show_results, tell
 from mutabot.cli.request import families_of, request_again, request_of
@@ -141,7 +140,7 @@ def merge(
     """
     configuration = load_configuration(context.obj)
     target = output or configuration.root / HOME / JOURNAL
-    missing = merging.merge(journals, target, root=configuration.root, room=configuration.evidence)
+    missing = shards.merge(journals, target, root=configuration.root, room=configuration.evidence)
     results = show_results(target, json=json, summary=True)
     lacking = Decision(ExitCode.UNRELIABLE, tuple(missing)) if missing else None
     _exit_as(lacking or _decided(configuration, results, min_score))
@@ -165,7 +164,7 @@ def replay(
         rounds = range(found.rounds) if round is None else [number_of(round, found.rounds)]
         request = request_again(path.parent.parent, found, jobs)
         with progress_shown() as progress:
-            replayed = replay_one(request, journal, chosen, rounds, progress)
+            replayed = running.replay_one(request, journal, chosen, rounds, progress)
     data = replayed_data(chosen, replayed)
     print_json(data) if json else print_replayed(make_console(), chosen, replayed)
     differs = any(one.agrees is False for one in replayed)

@@ -17,7 +17,7 @@ from mutabot.errors import UsageError
 from mutabot.extensions import ExtensionPart, brought
 
 #: the names of ``campaign.request``, which is not loaded for this, so that `--help` is fast
-ENGINES = ("auto", "branch", "replay")
+ENGINES = ("auto", "fork", "replay")
 
 
 def _print_version(wanted: bool) -> None:

@@ -422,7 +422,7 @@ def _template(job: Job) -> Job:
         budgets={},
         moments={},
         inspect=False,
-        branching=None,
+        forking=None,
     )
 
 

@@ -63,7 +63,7 @@ class Task:
         deadlines: wall-clock seconds each test may take; tests that are missing get ``deadline``.
         deadline: wall-clock seconds for any other test.
         startup: wall-clock seconds until the first test begins.
-        is_fork_parent: whether it branches: it then runs on a token of the pool.
+        is_fork_parent: whether it forks: it then runs on a token of the pool.
         may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
         alone: whether nothing may run beside it.
     """
@@ -93,7 +93,7 @@ class Result:
         not_instrumented: files whose mutants cannot run, with the reason.
         known_later: operations by sites at which only some tests tell that they stand there.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
-        held: tokens that it and its branches held when it was last heard of.
+        held: tokens that it and its forks held when it was last heard of.
         running: test that was under way when it ended, or None.
         watched: limits of the suite's own that would end it during that test.
         end: its orderly end; None if there was none.
@@ -219,7 +219,7 @@ class Executor(Protocol):
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, events.Event]]:
         """The same, with each event as it comes.
 
-        A task whose job branches is a fork parent: the executor gives it and its forks the tokens by which
+        A task whose job forks is a fork parent: the executor gives it and its forks the tokens by which
         they share its places with the other tasks. A task that is ``alone`` has nothing beside it.
         """
 

@@ -118,7 +118,7 @@ class Workers:
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
     Attributes:
-        pool: the tokens of fork parents and branches.
+        pool: the tokens of fork parents and forks.
         look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
         spread, remarks: see ``Executor``.
     """
@@ -205,9 +205,9 @@ class Workers:
         return self.pool.take()
 
     def _start(self, task: Task) -> None:
-        if task.job.branching is not None:
-            branching = replace(task.job.branching, tokens=self.pool.descriptors)
-            task = replace(task, job=replace(task.job, branching=branching))
+        if task.job.forking is not None:
+            forking = replace(task.job.forking, tokens=self.pool.descriptors)
+            task = replace(task, job=replace(task.job, forking=forking))
         home = Home.make(self._folder, task.job)
         events = EventStream(home)
         try:

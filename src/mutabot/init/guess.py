@@ -57,6 +57,8 @@ _RANGES = (
 )
 #: what libraries may scale to a share of its most
 _SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
+#: where a scale without a unit ends: a fraction, or so many bits
+_TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
 #: how the line of another argument begins
 _NEXT = re.compile(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)")
 #: more different numbers than these are no settings, but a scale
@@ -101,6 +103,7 @@ class NameContext:
         values: values that were seen, and what the program compares them with.
         names: the names of all arguments.
         relative: what an argument ``relative`` said; empty if there is none.
+        angle_unit: unit of angles, as an argument such as ``degrees`` said; empty if none did.
     """
 
     words: tuple[str, ...] = ()
@@ -110,6 +113,7 @@ class NameContext:
     values: Sequence[Any] = ()
     names: frozenset[str] = frozenset()
     relative: frozenset[bool] = frozenset()
+    angle_unit: str = ""
 
     @property
     def is_of_gripper(self) -> bool:
@@ -122,7 +126,7 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     words, unit = _without_unit(words_of(name))
     noun = noun_of(words)
     if noun == "none" or any(isinstance(value, str) for value in setting.values):
-        return _chosen(setting)
+        return Guess()  # a text says how to do it, not what
     is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")
     if setting.is_of_gripper and is_open and (len(words) == 1 or not _are_truth(setting)):
         return _opening(unit, name, setting)
@@ -135,12 +139,10 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
         return _output(setting)
     stem = "_".join(words)
     motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
-    limits = _documented_range(_about(name, setting.doc)) if noun == "generic" else None
-    if limits is not None and abs(limits[0]) in (0.0, 1.0) and limits[1] == 1.0:
+    limits = _documented_range(_about(name, setting.doc), setting) if noun == "generic" else None
+    if limits is not None and limits[1] in _TOPS and limits[0] in (0.0, -limits[1]):
         return Guess({"kind": "output", "range": limits})
     along = words[-1] if len(words) > 1 and words[-1] in ("x", "y", "z") else None
-    if along is not None and noun == "place":
-        motion = ("translation", along, None)
     if motion is not None:
         return _moved(motion[0], motion[1] or along, motion[2], unit, name, setting)
     subject, is_only = noun_of(setting.words), len(setting.names - _HOW) <= 1
@@ -221,9 +223,16 @@ def measured(table: Table, dimension: str, unit: str | None, name: str, setting:
     if unit in fitting:
         return Guess({**table, "unit": unit})
     about = _about(name, setting.doc)
+    if dimension == "angle" and setting.angle_unit:
+        return Guess({**table, "unit": setting.angle_unit})
     said = units_in(about, dimension)
-    limits = _documented_range(about) if not said and dimension in _SCALED else None
-    if limits is not None and limits[1] in (1.0, 100.0):
+    if dimension in _SCALED and "percent" in units_in(about, "ratio"):
+        asked = [f"the unit: {', '.join(said)}, or a ratio in percent?"] if said else []
+        return Guess({**table, "unit": said[0]} if said else {"kind": "ratio", "unit": "percent"}, asked)
+    limits = _documented_range(about, setting) if dimension in _SCALED else None
+    if limits is not None and limits[1] in _TOPS[1:]:
+        return Guess({"kind": "output", "range": limits})
+    if limits is not None and limits[1] in (1.0, 100.0) and not said:
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "ratio", "unit": unit, "range": limits})
     said = said or units_in(setting.doc, dimension)
@@ -245,10 +254,13 @@ def _about(name: str, doc: str) -> str:
     return "\n".join(found)
 
 
-def _documented_range(text: str) -> list[float] | None:
-    """The least and greatest value that the docstring of an argument gives, if it gives one range."""
-    found = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
-    return list(found.pop()) if len(found) == 1 else None
+def _documented_range(text: str, setting: NameContext) -> list[float] | None:
+    """The least and greatest value that the docstring of an argument gives, if it gives one that fits."""
+    pairs = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
+    seen = [value for value in setting.values if isinstance(value, int | float)]
+    found = [[least, most] for least, most in pairs if least < most and least <= min(seen, default=least)]
+    found = [pair for pair in found if max(seen, default=pair[0]) <= pair[1]]
+    return found[0] if len(found) == 1 else None
 
 
 def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
@@ -274,7 +286,7 @@ def _opening(unit: str | None, name: str, setting: NameContext) -> Guess:
     if len(values) == 2 and set(values) == {0, 1}:
         return Guess({"kind": "opening", "values": values})
     about = _about(name, setting.doc)
-    said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about)
+    said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about, setting)
     if limits in ([0.0, 1.0], [0.0, 100.0]) and not said:
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "opening", "unit": unit, "range": limits})
@@ -295,11 +307,6 @@ def _output(setting: NameContext) -> Guess:
 def _literals(annotation: str) -> list[str]:
     literal = re.fullmatch(r"Literal\[(.*)\]", annotation)
     return re.findall(r"'([^']*)'", literal[1]) if literal else []
-
-
-def _chosen(setting: NameContext) -> Guess:
-    values = _literals(setting.annotation)
-    return Guess({"kind": "output", "values": values}) if len(values) >= 2 else Guess()
 
 
 def guess_reading(name: str, setting: NameContext) -> Guess:
@@ -360,16 +367,19 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
         return {}
     for about, told in ((words, noun), (setting.words, verb)):
         is_turning = told == "joints" or (told == "angle" and length > 3)
+        is_turning = is_turning or (told == "place" and ("joint" in about or _is_no_pose(setting.values)))
         is_turning = is_turning or bool({"movej", "servoj", "getj", "j"} & set(about))
         if is_turning and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
             axis = "j1" if length == 1 else f"j1..j{length}"
             return {f"{at}[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
-        if told == "turned" and length == 3:
-            table: Table = {"kind": "euler", "order": "…", "unit": "rad"}
-            return {f"{at}[0:3]": Guess(table, ["which order, which unit?"])}
         if told == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
             return _pose(at, name, length, setting, written)
     return {}
+
+
+def _is_no_pose(values: Sequence[Any]) -> bool:
+    """Whether seven numbers do not end with a quaternion: then they are joints."""
+    return any(len(one) == 7 and abs(sum(part * part for part in one[3:]) - 1) > 0.1 for one in values)
 
 
 def _element(kind: str, read: str, axis: str, name: str, setting: NameContext, written: bool) -> Guess:

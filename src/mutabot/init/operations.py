@@ -129,7 +129,8 @@ def _is_housekeeping(call: WatchedCallable) -> bool:
 
 
 def _is_setup(call: WatchedCallable) -> bool:
-    return bool(SETUP & set(words_of(call.name)))
+    words = set(words_of(call.name))
+    return bool(SETUP & words) or {"pin", "mode"} <= words
 
 
 def _is_command(call: WatchedCallable) -> bool:
@@ -248,8 +249,7 @@ def _swapped(text: str) -> Iterator[str]:
 def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameContext:
     module, _, qualname = call.target.partition(":")
     owner = [*words_of(module.rpartition(".")[2]), *words_of(qualname.rpartition(".")[0])]
-    relative = call.arguments.get("relative")
-    said = {bool(value) for part in relative.parts.values() for value in part.values} if relative else set()
+    degrees = _said("degrees", call) | {not one for one in _said("radians", call) | _said("is_radian", call)}
     return NameContext(
         words=words_of(call.name),
         owner=tuple(owner),
@@ -257,8 +257,15 @@ def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameC
         annotation=annotation if "[" in annotation else annotation.rpartition(".")[2],
         values=part.values,
         names=frozenset(call.arguments),
-        relative=frozenset(said),
+        relative=_said("relative", call),
+        angle_unit=("deg" if True in degrees else "rad") if len(degrees) == 1 else "",
     )
+
+
+def _said(name: str, call: WatchedCallable) -> frozenset[bool]:
+    """What an argument with this name said that is true or false."""
+    parts = call.arguments[name].parts.values() if name in call.arguments else ()
+    return frozenset(value for part in parts for value in part.values if isinstance(value, bool))
 
 
 #: names of arguments that hold a text command

@@ -45,8 +45,8 @@ MODES = _by_word(
         "by": "by relative rel offset shift jog translate rotate turn delta increment forward forwards back "
         "backward backwards left right up down lift lower raise drop ascend descend clockwise "
         "counterclockwise anticlockwise cw ccw",
-        "to": "to absolute abs goto target set movel movej movep movec servol servoj ptp lin position pose "
-        "positions joints",
+        "to": "to at absolute abs goto target set movel movej movep movec servol servoj ptp lin position "
+        "positions pose joints",
     }
 )
 #: callables that make the robot do something, and those that only read
@@ -95,7 +95,7 @@ NOUNS = _by_word(
         "ratio": "ratio percent percentage brightness throttle power throttle duty",
         "height": "height altitude depth lift",
         "length": "distance dist length amount travel range gap ultrasonic lidar width",
-        "angle": "angle angles theta degrees deg radians rad heading bearing rotation turn",
+        "angle": "angle angles theta degrees deg radians rad heading bearing rotation turn alpha beta gamma",
         "joints": "joints jnts joint q qpos qs jpos",
         "place": "pose tpose poses tcp xyz pos position positions location point waypoint coord coords "
         "translation target where locate goto goal getl movel",
@@ -108,7 +108,7 @@ NOUNS = _by_word(
         "action": "action actions act ctrl",
         "none": "boot stamp timestamp mask rate axis code status err errno id index idx port channel "
         "timeout name mode number num count blocking radius gain gains limit limits size rgb "
-        "lookahead key flag flags",
+        "lookahead key flag flags tolerance tolerances threshold epsilon unit units",
     }
 )
 #: what a setter may be about, whatever its argument is called
@@ -144,7 +144,7 @@ _SPELT: Mapping[str, str] = {
     "kg": r"kg|(?i:kilograms?)",
     "V": r"V|(?i:volts?)",
     "Hz": r"Hz|(?i:hertz)",
-    "percent": r"%|(?i:percent)",
+    "percent": r"%|(?i:percent(?:ages?)?)",
     "degC": r"°C|(?i:celsius)",
 }
 _UNIT = re.compile(

@@ -4,6 +4,10 @@ One process writes, any number read, also while it writes and after it was kille
 committed at once: a campaign that is killed loses nothing that it had found. All else (reports, resuming,
 comparing) reads from here.
 
+What the writer knows is in a second database without a name, which is gone with its process. It is the one
+that is read. Programs under test can write to any file of the project: the file is looked at in each
+transaction and at the end, and made anew if it is not what was written.
+
 A new campaign begins in the same file: in one transaction the plan, the baseline and the outcomes of the
 one before make way. Its mutants and outcomes are kept aside: outcomes that still hold are taken over, and
 reports show those that a campaign of other mutants leaves alone.
@@ -14,19 +18,21 @@ from __future__ import annotations
 import errno
 import json
 import os
+import sqlite3
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
+from mutabot.errors import JournalError
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
-from mutabot.model.codec import from_data, storable, to_data
+from mutabot.model.codec import from_data, printable, storable, to_data
 from mutabot.model.events import TestEnd
 
-from . import records
-from .database import LAST, Database, guarded, make_way, named_row, write_anew
+from . import database, records
+from .database import LAST, columns
 from .files import WriterLock, previous_of, refuse_tracked
-from .records import UNFIT, BaselineTest, ControlEnd, Kept, MovedOutcome
+from .records import UNFIT, BaselineTest, ControlEnd, Kept
 
 T = TypeVar("T")
 #: a key of meta that is the journal's own: why the campaign ended
@@ -38,9 +44,7 @@ _PLAN = ("test", "mutant", "left_out", "source")
 #: from one campaign to the next
 _ADOPT = f"""
 INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
-INSERT OR REPLACE INTO kept
-    SELECT mutant, round, verdict, "by", data, key FROM outcome
-    WHERE rowid IN ({LAST});
+INSERT OR REPLACE INTO kept SELECT mutant, round, verdict, data, key FROM outcome WHERE rowid IN ({LAST});
 DELETE FROM meta;
 DELETE FROM test;
 DELETE FROM mutant;
@@ -49,19 +53,37 @@ DELETE FROM source;
 DELETE FROM outcome;
 DELETE FROM control
 """
-_OUTCOMES = f'SELECT mutant, round, verdict, "by", data, key, reused FROM outcome WHERE rowid IN ({LAST})'
 #: from one journal to another: what is asked there, and what is done with each row here; the first counts
 _TAKE = {
-    f"{_OUTCOMES} ORDER BY rowid":
-        "INSERT INTO outcome SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7 "
+    f"SELECT * FROM outcome WHERE rowid IN ({LAST}) ORDER BY rowid":
+        "INSERT INTO outcome SELECT ?1, ?2, ?3, ?4, ?5, ?6 "
         "WHERE NOT EXISTS (SELECT 1 FROM outcome WHERE mutant = ?1 AND round = ?2)",
-    "SELECT test_file, control, ok, detail FROM control ORDER BY rowid":
-        "INSERT INTO control SELECT ?1, ?2, ?3, ?4 WHERE NOT EXISTS "
-        "(SELECT 1 FROM control WHERE test_file = ?1 AND control = ?2 AND ok = ?3)",
     "SELECT * FROM parts": "INSERT OR IGNORE INTO parts VALUES (?, ?)",
     "SELECT * FROM text": "INSERT OR IGNORE INTO text VALUES (?, ?)",
-    "SELECT * FROM kept": "INSERT OR IGNORE INTO kept VALUES (?, ?, ?, ?, ?, ?)",
+    "SELECT * FROM kept": "INSERT OR IGNORE INTO kept VALUES (?, ?, ?, ?, ?)",
 }  # fmt: skip
+#: what SQLite says where it is the disk that cannot take what is written, and not the file that is wrong
+_OF_THE_DISK = ("full", "readonly", "disk I/O", "unable to open")
+
+
+@contextmanager
+def guarded(path: Path) -> Iterator[None]:
+    """Turn what goes wrong with the file at ``path`` into a JournalError."""
+    try:
+        yield
+    except sqlite3.DatabaseError as error:
+        text = str(error)
+        if "not a database" in text or "malformed" in text:
+            text = f"{path} is not a journal of mutabot ({text})"
+        elif "readonly" in text or "unable to open" in text:
+            text = f"{path} cannot be written: is the folder read-only? ({text})"
+        elif "full" in text:
+            text = f"{path} cannot be written: the disk is full; what was written before is kept ({text})"
+        else:
+            text = f"{path}: {text}"
+        raise JournalError(text) from error
+    except OSError as error:
+        raise JournalError(f"{path}: {error.strerror or error}") from error
 
 
 class JournalReader:
@@ -73,8 +95,8 @@ class JournalReader:
         path: the file.
     """
 
-    def __init__(self, store: Database) -> None:
-        self.path, self._store = store.path, store
+    def __init__(self, path: Path, copy: sqlite3.Connection) -> None:
+        self.path, self._copy = path, copy
         self._unfit: dict[str, None] = {}
 
     @property
@@ -84,8 +106,17 @@ class JournalReader:
 
     @staticmethod
     def open(path: Path) -> JournalReader:
-        """Open an existing journal. It may be written meanwhile."""
-        return JournalReader(Database.to_read(path))
+        """Open an existing journal, as it is now. It may be written meanwhile."""
+        if not path.is_file():
+            raise database.no_journal(path)
+        refuse_tracked(path)
+        with guarded(path), ExitStack() as opened:
+            with closing(database.connect_to_read(path)) as file:
+                copy = opened.enter_context(closing(database.loaded(file)))
+            database.check_schema(path, copy)
+            copy.execute("PRAGMA query_only = ON")
+            opened.pop_all()
+        return JournalReader(path, copy)
 
     def __enter__(self) -> Self:
         return self
@@ -95,14 +126,14 @@ class JournalReader:
 
     def close(self) -> None:
         """Close the file; the lock of a writer is given back."""
-        self._store.close()
+        self._copy.close()
 
     # What the campaign was and how it ended
 
     def meta(self) -> dict[str, Any]:
         """What the campaign said about itself."""
         found = {}
-        for key, text in self._store.rows("SELECT key, value FROM meta"):
+        for key, text in self._rows("SELECT key, value FROM meta"):
             if isinstance(key, str) and not key.startswith("journal:"):
                 with self._checked("meta", key):
                     found[key] = records.fact(key, records.load(text))
@@ -117,7 +148,7 @@ class JournalReader:
     @property
     def finished(self) -> str | None:
         """Why the campaign ended; None while it runs and after it was killed."""
-        return self._one("meta", "value", "key", _FINISHED_KEY, lambda text: str(records.load(text)))
+        return self._one("meta", _FINISHED_KEY, lambda text: str(records.load(text)))
 
     @property
     def attempt(self) -> str | None:
@@ -125,7 +156,7 @@ class JournalReader:
 
         None if there was no such campaign.
         """
-        rows = self._store.rows("SELECT value FROM meta WHERE key = ?", _ATTEMPT_KEY)
+        rows = self._rows("SELECT value FROM meta WHERE key = ?", _ATTEMPT_KEY)
         with self._checked("meta", _ATTEMPT_KEY):
             return str(records.load(rows[0][0]) or "") if rows else None
         return ""
@@ -134,108 +165,113 @@ class JournalReader:
 
     def tests(self) -> list[BaselineTest]:
         """The tests of the baseline in the order they were added."""
-        return self._all("test", records.baseline_test_in)
+        return self._all("test", BaselineTest)
 
     def controls(self) -> list[ControlEnd]:
         """The controls in the order they were added."""
-        return self._all("control", records.control_in)
+        return self._all("control", ControlEnd)
 
     def mutants(self) -> list[Mutant]:
         """The planned mutants by number."""
-        return self._all("mutant", records.planned_in, "ORDER BY number, rowid")
+        return sorted(self._all("mutant", Mutant), key=lambda one: one.number)
 
     def left_out(self) -> list[LeftOut]:
         """What the plan leaves out, in its order."""
-        return self._all("left_out", records.left_out_in)
+        return self._all("left_out", LeftOut)
 
     def source(self, file: str) -> str | None:
         """The text of a mutated file at the time of the campaign, or None if it was not written down."""
-        return self._one("source", "text", "file", file, records.text_in)
+        return self._one("source", file, records.text_in)
 
     # Outcomes
 
     def outcomes(self) -> list[Outcome]:
         """The last outcome of each (mutant, round), in the order they came."""
-        return self._all("outcome", records.outcome_in, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
+        return self._all("outcome", Outcome, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
 
     def rounds_known(self) -> dict[str, int]:
         """In how many rounds each mutant has an outcome; those without any are missing."""
-        return dict(self._store.rows("SELECT mutant, count(DISTINCT round) FROM outcome GROUP BY mutant"))
+        return dict(self._rows("SELECT mutant, count(DISTINCT round) FROM outcome GROUP BY mutant"))
 
     def reused(self) -> set[tuple[str, int]]:
         """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
-        return set(self._store.rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))
+        return set(self._rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))
 
     # Earlier campaigns
 
     def kept(self) -> dict[tuple[str, int], Kept]:
         """The last outcome of each mutant and round that earlier campaigns found, if it can be reused."""
-        return self._of_rows("kept", "SELECT mutant, round, verdict, data, key FROM kept")
+        return self._kept_in("kept", "1")
 
     def found(self) -> dict[tuple[str, int], Kept]:
         """The same, with those that the last campaign itself found or knew."""
-        return self.kept() | self._of_rows(
-            "outcome",
-            f"SELECT mutant, round, verdict, data, key FROM outcome WHERE rowid IN ({LAST})",
-        )
+        return self.kept() | self._kept_in("outcome", f"rowid IN ({LAST})")
 
-    def row(self, mutant: str, round: int) -> MovedOutcome | None:
-        """One of those that were ``found``; None if it holds what no outcome can."""
-        for table, condition in (("outcome", "ORDER BY rowid DESC"), ("kept", "")):
-            rows = self._store.rows(
-                f'SELECT verdict, "by", data, key FROM {table} '
-                f"WHERE mutant = ? AND round = ? AND key != '' {condition} LIMIT 1",
+    def row(self, mutant: str, round: int) -> Kept | None:
+        """One of those that were ``found``, with its data; None if it holds what no outcome can."""
+        for table in ("outcome", "kept"):
+            rows = self._rows(
+                f"SELECT verdict, data, key FROM {table} WHERE mutant = ? AND round = ? AND key != '' "
+                "ORDER BY rowid DESC LIMIT 1",
                 mutant, round,
             )  # fmt: skip
-            for verdict, by, text, key in rows:
+            for verdict, data, key in rows:
                 with self._checked(table, mutant, round):
-                    records.outcome_in(mutant, round, verdict, by, text)
-                    return MovedOutcome(mutant, round, verdict, by, text, key)
+                    row = {"mutant": mutant, "round": round, "verdict": verdict, "data": data}
+                    return Kept(mutant, round, records.held(Outcome, row).verdict, key, data=data)
                 return None
         raise KeyError((mutant, round))
 
-    def _of_rows(self, table: str, question: str) -> dict[tuple[str, int], Kept]:
-        rows = self._store.rows(
-            "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ?, verdict "
-            f"FROM ({question}) WHERE key != ''",
+    def _kept_in(self, table: str, which: str) -> dict[tuple[str, int], Kept]:
+        rows = self._rows(
+            "SELECT mutant, round, verdict, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ? "
+            f"FROM {table} WHERE key != '' AND {which}",
             f"%{os.strerror(errno.ENOSPC)}%",
         )
         found = {}
-        for mutant, round, key, sound, verdict in rows:
+        for mutant, round, verdict, key, is_sound in rows:
             with self._checked(table, mutant, round):
-                found[records.text_in(mutant), records.round_in(round)] = Kept(
-                    records.text_in(key), bool(sound), Verdict(verdict)
-                )
+                pair = records.text_in(mutant), records.round_in(round)
+                found[pair] = Kept(*pair, Verdict(verdict), records.text_in(key), bool(is_sound))
         return found
 
     def kept_outcomes(self) -> list[Outcome]:
         """All that earlier campaigns found, also what cannot be reused."""
-        return self._all("kept", records.outcome_in)
+        return self._all("kept", Outcome)
 
     def known(self) -> list[tuple[Mutant, bool]]:
         """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
-        return self._all("known", records.known_in)
+        outdated = {name for (name,) in self._rows("SELECT id FROM known WHERE outdated != 0")}
+        return [(one, one.id in outdated) for one in self._all("known", Mutant)]
 
     def parts(self, digest: str) -> dict[str, str] | None:
         """What a digest in a key stands for, or None if that is not known any more."""
-        return self._one("parts", "data", "digest", digest, records.parts_in)
+        return self._one("parts", digest, lambda text: from_data(dict[str, str], records.load(text)))
 
     def text(self, digest: str) -> bytes | None:
         """What stood in a Python file with this digest, or None if that is not known any more."""
-        return self._one("text", "data", "digest", digest, records.bytes_in)
+        return self._one("text", digest, lambda data: bytes(memoryview(data)))
 
-    def _all(self, table: str, read: Callable[..., T], which: str = "ORDER BY rowid") -> list[T]:
-        """What the rows of a table hold, from all their columns."""
+    # Rows
+
+    def _rows(self, statement: str, *values: Any) -> list[Any]:
+        """What a question is answered with."""
+        with guarded(self.path):
+            return self._copy.execute(statement, _stored(values)).fetchall()
+
+    def _all(self, table: str, kind: type[T], which: str = "ORDER BY rowid") -> list[T]:
+        """The objects that the rows of a table hold."""
         found = []
-        for row in self._store.rows(f"SELECT * FROM {table} {which}"):
+        for row in self._rows(f"SELECT * FROM {table} {which}"):
             with self._checked(table, *row):
-                found.append(read(*row))
+                found.append(records.held(kind, dict(zip(columns()[table], row, strict=True))))
         return found
 
-    def _one(self, table: str, column: str, key: str, name: str, read: Callable[[Any], T]) -> T | None:
-        """What a row holds that is known by a name; None if there is none, or it holds what cannot be."""
+    def _one(self, table: str, name: str, read: Callable[[Any], T]) -> T | None:
+        """What a table of names and values has for a name; None if nothing, or what cannot be."""
+        key, value = columns()[table]
         with self._checked(table, name):
-            for (found,) in self._store.rows(f"SELECT {column} FROM {table} WHERE {key} = ?", name):
+            for (found,) in self._rows(f"SELECT {value} FROM {table} WHERE {key} = ?", name):
                 return read(found)
         return None
 
@@ -245,7 +281,7 @@ class JournalReader:
         try:
             yield
         except UNFIT:
-            self._unfit[f"{named_row(table, values)}"] = None
+            self._unfit[f"{database.named_row(table, values)}"] = None
 
 
 class Journal(JournalReader):
@@ -259,18 +295,31 @@ class Journal(JournalReader):
         altered: what somebody else changed in the file meanwhile, in words; it was written again.
     """
 
-    def __init__(self, store: Database, moved: Path | None, *, waits: bool) -> None:
-        super().__init__(store)
-        self.moved = moved
-        self.lost, self.altered = store.lost, store.altered
-        self._waits = waits  # for its campaign to begin: until then it is that of the one before
+    def __init__(
+        self, path: Path, copy: sqlite3.Connection, file: sqlite3.Connection, lock: WriterLock
+    ) -> None:
+        super().__init__(path, copy)
+        self.moved: Path | None = None
+        self.lost: list[str] = []
+        self.altered: list[str] = []
+        self._file, self._lock = file, lock
+        self._done: list[tuple[str, tuple[Any, ...]]] | None = None  # in a transaction
+        # whether there was nothing in the file: then the first transaction brings the tables into it
+        self._is_new = not self._rows("SELECT count(*) FROM sqlite_master")[0][0]
+        self._waits = not self._is_new  # for its campaign to begin: until then it is that of the one before
+        self._identity, self._version = (0, 0), -1
+        if self._is_new:
+            copy.executescript(database.TABLES)
+        else:
+            self._know_file()
 
     @classmethod
     def create(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
         """``prepare`` and ``begin`` a campaign at once."""
-        journal = cls.prepare(path, meta=meta)
-        with journal._store.closed_on_error():
+        with ExitStack() as opened:
+            journal = opened.enter_context(cls.prepare(path, meta=meta))
             journal.begin(meta)
+            opened.pop_all()
         return journal
 
     @classmethod
@@ -284,17 +333,15 @@ class Journal(JournalReader):
         ``to_data`` makes of one).
         """
         refuse_tracked(path)
-        with guarded(path):
+        with guarded(path), ExitStack() as opened:
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
-            try:
-                moved = make_way(path)
-                store = Database.to_write(path, lock)
-            except BaseException:
-                lock.release()
-                raise
-        journal = cls(store, moved, waits=not store.is_new)
-        with store.closed_on_error():
+            opened.callback(lock.release)
+            moved = database.make_way(path)
+            file = opened.enter_context(closing(database.connect(path)))
+            copy = opened.enter_context(closing(database.loaded(file)))
+            journal = opened.enter_context(cls(path, copy, file, lock))
+            journal.moved = moved
             if journal._waits:
                 # the campaign before has ended, whatever became of it; this one may fail to begin
                 if journal.finished is None:
@@ -302,7 +349,14 @@ class Journal(JournalReader):
                 journal.set_meta(_ATTEMPT_KEY, None)
             else:
                 journal._begin(meta)
+            opened.pop_all()
         return journal
+
+    def close(self) -> None:
+        """Close the file, and give the lock back."""
+        super().close()
+        self._file.close()
+        self._lock.release()
 
     def begin(self, meta: Mapping[str, Any]) -> None:
         """Begin the campaign. Mutants and outcomes of those before are kept aside.
@@ -313,15 +367,15 @@ class Journal(JournalReader):
             return  # nothing was there before
         if self.finished == "complete":
             with guarded(self.path):
-                write_anew(self._store.copy, previous_of(self.path))
+                database.write_anew(self._copy, previous_of(self.path))
         self._begin(meta)
         self._waits = False
 
     def _begin(self, meta: Mapping[str, Any]) -> None:
-        with self._store.transaction():
+        with self._transaction():
             if self._waits:
                 for statement in _ADOPT.split(";"):
-                    self._store.write(statement)
+                    self._write(statement)
             for key, value in meta.items():
                 self.set_meta(key, value)
 
@@ -329,14 +383,14 @@ class Journal(JournalReader):
 
     def set_meta(self, key: str, value: Any) -> None:
         """Add or replace one fact about the campaign."""
-        self._store.write("INSERT OR REPLACE INTO meta VALUES (?, ?)", key, _dump(value))
+        self._put("meta", key, _dump(value))
 
     def finish(self, reason: str) -> None:
         """Note that the campaign has ended: ``complete``, ``interrupted`` or why it stopped.
 
         If it has not even begun, the journal stays that of the one before, and tells about the attempt.
         """
-        with self._store.transaction(whole=True):
+        with self._transaction(whole=True):
             pass  # what is not as it was written is written again
         if self.altered:
             self.set_meta(records.ALTERED, [*(self.meta().get(records.ALTERED) or []), *self.altered])
@@ -345,15 +399,12 @@ class Journal(JournalReader):
     # The baseline and the plan
 
     def add_test(self, round: int, repetition: int, test: TestEnd) -> None:
-        """Add one test of the baseline; the same test again replaces it."""
-        self._store.write(
-            "INSERT OR REPLACE INTO test VALUES (?, ?, ?, ?, ?)",
-            round, repetition, test.test, test.outcome, _dump(test),
-        )  # fmt: skip
+        """Add one test of the baseline."""
+        self._put("test", test.test, _dump(BaselineTest(round, repetition, test)))
 
-    def add_control(self, test_file: str, control: str, ok: bool, detail: str = "") -> None:
+    def add_control(self, control: ControlEnd) -> None:
         """Add the end of one control mutant."""
-        self._store.write("INSERT INTO control VALUES (?, ?, ?, ?)", test_file, control, int(ok), detail)
+        self._put("control", control.control, _dump(control))
 
     def set_plan(
         self,
@@ -367,20 +418,19 @@ class Journal(JournalReader):
         ``sources`` holds the text of the files that mutants stand in, by their name in the spans, so that
         reports show what was mutated and not what became of it since.
         """
-        with self._store.transaction():
+        with self._transaction():
             for table in _PLAN[1:]:
-                self._store.write(f"DELETE FROM {table}")
+                self._write(f"DELETE FROM {table}")
             for mutant in mutants:
-                row = mutant.number, mutant.id, _dump(mutant)
-                self._store.write("INSERT INTO mutant VALUES (?, ?, ?)", *row)
+                self._write("INSERT INTO mutant VALUES (?, ?)", mutant.id, _dump(mutant))
             for item in left_out:
-                self._store.write("INSERT INTO left_out VALUES (?, ?, ?)", item.id, item.reason, _dump(item))
+                self._put("left_out", item.id, _dump(item))
             for file, text in (sources or {}).items():
-                self._store.write("INSERT INTO source VALUES (?, ?)", file, text)
+                self._put("source", file, text)
 
     def keep_planned(self, mutants: Collection[str]) -> None:
         """Leave only these mutants in the plan."""
-        with self._store.transaction():
+        with self._transaction():
             self._drop_others("mutant", "id", mutants)
 
     # Outcomes
@@ -390,84 +440,196 @@ class Journal(JournalReader):
 
         ``key`` is what it depends on; the empty key says that nobody knows, and that it is not to be reused.
         """
-        self._store.write(
-            "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, 0)",
-            outcome.mutant, outcome.round, outcome.verdict.value, outcome.by.value if outcome.by else None,
-            _dump(outcome), key,
-        )  # fmt: skip
+        verdict, data = outcome.verdict.value, _dump(outcome)
+        self._put("outcome", outcome.mutant, outcome.round, verdict, data, key, 0)
 
     def add_parts(self, parts: Mapping[str, Mapping[str, str]]) -> None:
         """Write down what digests in keys stand for."""
         for digest, data in parts.items():
-            self._store.write("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
+            self._write("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
 
     def add_texts(self, texts: Mapping[str, bytes]) -> None:
         """Write down what stands in Python files, by the digest."""
-        with self._store.transaction():
+        with self._transaction():
             for digest, text in texts.items():
-                self._store.write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, text)
+                self._write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, text)
 
     def forget_keys(self) -> None:
         """Never reuse what this campaign has found itself."""
-        self._store.write("UPDATE outcome SET key = '' WHERE NOT reused")
+        self._write("UPDATE outcome SET key = '' WHERE NOT reused")
 
     # Earlier campaigns
 
-    def take_over(self, rows: Iterable[MovedOutcome]) -> None:
+    def take_over(self, found: Iterable[Kept]) -> None:
         """Add outcomes of earlier campaigns."""
-        with self._store.transaction():
-            for row in rows:
-                self._store.write(
-                    "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, 1)",
-                    row.mutant, row.round, row.verdict, row.by, row.data, row.key,
-                )  # fmt: skip
+        with self._transaction():
+            for one in found:
+                self._put("outcome", one.mutant, one.round, one.verdict.value, one.data, one.key, 1)
 
     def forget(self, mutants: Iterable[str]) -> None:
         """Never reuse what earlier campaigns found about these mutants."""
-        with self._store.transaction():
+        with self._transaction():
             for mutant in mutants:
-                self._store.write("UPDATE kept SET key = '' WHERE mutant = ?", mutant)
+                self._write("UPDATE kept SET key = '' WHERE mutant = ?", mutant)
 
     def set_known(self, known: Iterable[tuple[Mutant, bool]]) -> None:
         """Write down the mutants of earlier campaigns that the program still has."""
-        with self._store.transaction():
-            self._store.write("DELETE FROM known")
+        with self._transaction():
+            self._write("DELETE FROM known")
             for mutant, outdated in known:
-                self._store.write(
-                    "INSERT INTO known VALUES (?, ?, ?)", mutant.id, _dump(mutant), int(outdated)
-                )
+                self._put("known", mutant.id, _dump(mutant), int(outdated))
 
     def tidy(self, mutants: Collection[str]) -> None:
         """Forget what earlier campaigns found about other mutants, and what nothing refers to."""
-        with self._store.transaction():
+        with self._transaction():
             self._drop_others("kept", "mutant", mutants)
-            keys = self._store.rows("SELECT key FROM kept UNION SELECT key FROM outcome")
+            keys = self._rows("SELECT key FROM kept UNION SELECT key FROM outcome")
             self._drop_others("parts", "digest", {digest for (key,) in keys for digest in key.split()})
             trees = {key.split()[3] for (key,) in keys if len(key.split()) > 3}
             parts = [self.parts(tree) or {} for tree in trees]
             self._drop_others("text", "digest", {digest for one in parts for digest in one.values()})
 
     def _drop_others(self, table: str, column: str, kept: Collection[str]) -> None:
-        for (value,) in self._store.rows(f"SELECT DISTINCT {column} FROM {table}"):
+        for (value,) in self._rows(f"SELECT DISTINCT {column} FROM {table}"):
             if value not in kept:
-                self._store.write(f"DELETE FROM {table} WHERE {column} = ?", value)
+                self._write(f"DELETE FROM {table} WHERE {column} = ?", value)
 
     # Shards
 
     def take_plan(self, other: JournalReader) -> None:
         """Take over the plan of another journal, its baseline and the texts, whole or not at all."""
-        with self._store.transaction():
+        with self._transaction():
             for table in _PLAN:
-                self._store.write(f"DELETE FROM {table}")
-                for row in other._store.rows(f"SELECT * FROM {table} ORDER BY rowid"):
-                    self._store.write(f"INSERT INTO {table} VALUES ({', '.join('?' * len(row))})", *row)
+                self._write(f"DELETE FROM {table}")
+                for row in other._rows(f"SELECT * FROM {table} ORDER BY rowid"):
+                    self._put(table, *row)
 
     def take_outcomes(self, other: JournalReader) -> None:
         """Take over what another journal has found and knows of earlier campaigns; what is there stays."""
-        with self._store.transaction():
+        known = {(one.test_file, one.control, one.ok) for one in self.controls()}
+        with self._transaction():
             for question, statement in _TAKE.items():
-                for row in other._store.rows(question):
-                    self._store.write(statement, *row)
+                for row in other._rows(question):
+                    self._write(statement, *row)
+            for one in other.controls():
+                if (one.test_file, one.control, one.ok) not in known:
+                    self.add_control(one)
+
+    # Writing
+
+    def _put(self, table: str, *values: Any) -> None:
+        """Add a row; one of the same name makes way, where names are unique."""
+        self._write(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(values))})", *values)
+
+    def _write(self, statement: str, *values: Any) -> None:
+        """Carry out one statement; within ``_transaction``, as a part of it."""
+        if self._done is None:
+            with self._transaction():
+                self._write(statement, *values)
+            return
+        given = _stored(values)
+        with guarded(self.path):
+            self._copy.execute(statement, given)
+        self._done.append((statement, given))
+
+    @contextmanager
+    def _transaction(self, *, whole: bool = False) -> Iterator[None]:
+        """What is written meanwhile takes effect together or not at all, in both databases.
+
+        Before, the file is compared with what was written if somebody else wrote, and row by row if it is to
+        be ``whole``; after, it is written again if it is not so.
+        """
+        with guarded(self.path):
+            is_ours = False
+            with self._noted():
+                self._file.execute("BEGIN IMMEDIATE")  # from here on nobody else can write
+                is_ours = not self._is_new and self._is_ours(whole)
+            self._copy.execute("BEGIN")
+            try:
+                self._done = []
+                yield
+                if is_ours:
+                    is_ours = self._repeat_in_file(self._done)
+                self._copy.execute("COMMIT")
+            except BaseException:
+                self._copy.rollback()
+                raise
+            finally:
+                self._done = None
+                with suppress(sqlite3.Error):
+                    self._file.rollback()
+            if not is_ours:
+                self._restore()
+
+    def _repeat_in_file(self, done: list[tuple[str, tuple[Any, ...]]]) -> bool:
+        """Write into the file what was written; returns whether it is there."""
+        with self._noted():
+            for statement, values in done:
+                self._file.execute(statement, values)
+            self._file.execute("COMMIT")
+            return True
+        return False
+
+    @contextmanager
+    def _noted(self) -> Iterator[None]:
+        """Go on without the file if it is not as it should be, and say so."""
+        try:
+            yield
+        except sqlite3.Error as error:
+            if any(text in str(error) for text in _OF_THE_DISK):
+                raise
+            if "locked" in str(error):
+                self.lost.append("was locked by something else")
+            else:
+                self.altered.append(f"the file cannot be written any more ({error})")
+
+    def _is_ours(self, whole: bool) -> bool:
+        """Whether the file holds what was written; says what does not. ``whole``: every row is looked at."""
+        try:
+            is_there = _identity(self.path) == self._identity
+        except OSError:
+            is_there = False
+        if not is_there:
+            self.lost.append("was deleted or replaced")
+            return False
+        version = self._data_version()
+        found: list[str] = []
+        if whole or version != self._version:
+            try:
+                with closing(database.connect_to_read(self.path)) as file:
+                    found = database.differences(file, self._copy)
+            except (sqlite3.Error, OSError) as error:
+                found = [f"the file cannot be read any more ({error})"]
+        self.altered += found
+        self._version = version
+        return not found
+
+    def _data_version(self) -> int:
+        """Changes when another connection changes something."""
+        return int(self._file.execute("PRAGMA data_version").fetchone()[0])
+
+    def _know_file(self) -> None:
+        self._identity, self._version = _identity(self.path), self._data_version()
+
+    def _restore(self) -> None:
+        """Write the file anew, and put it in the place of whatever is there."""
+        with suppress(sqlite3.Error):
+            self._file.close()
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        database.write_anew(self._copy, self.path)
+        self._lock.renew()
+        self._file, self._is_new = database.connect(self.path), False
+        self._know_file()
+
+
+def _stored(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Values of a row, with texts that can be stored."""
+    return tuple(printable(value) if isinstance(value, str) else value for value in values)
+
+
+def _identity(path: Path) -> tuple[int, int]:
+    found = path.lstat()
+    return found.st_dev, found.st_ino
 
 
 def _dump(value: Any) -> str:

@@ -12,8 +12,9 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Any, Self
 
-from .database import connect, connect_to_read, guarded, loaded
+from .database import connect, connect_to_read, loaded
 from .files import recordings_path
+from .journal import guarded
 
 _TABLE = """
 CREATE TABLE IF NOT EXISTS recording (

@@ -10,7 +10,7 @@ from hashlib import blake2b
 from typing import Any, TypeVar
 
 from mutabot.frozen import frozen
-from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.model import Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import from_data
 from mutabot.model.events import TestEnd
 from mutabot.model.outcome import same_end
@@ -18,7 +18,9 @@ from mutabot.model.outcome import same_end
 #: keys of the journal's meta
 DRAWING = "drawing"
 VERIFICATION, FLAKY = "verification", "flaky"
-REPEATS, CONFIRMATION = "repeats", "confirmation"
+REPEATS = "repeats"
+#: whether mutants were run at first without tests that do not reach them
+CONFIRMATION = "confirmation"
 SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
 #: what is to be known of the machines that the campaign ran on, a line each
@@ -68,32 +70,18 @@ class Kept:
     """An outcome of an earlier campaign.
 
     Attributes:
+        mutant, round, verdict: as in the outcome.
         key: what it depends on.
         is_sound: whether it says anything about the mutant, and not about the tool or the machine.
-        verdict: the verdict.
-    """
-
-    key: str
-    is_sound: bool
-    verdict: Verdict
-
-
-@frozen
-class MovedOutcome:
-    """An outcome on its way from one campaign to another.
-
-    Attributes:
-        mutant, round, verdict, by: as in the outcome.
-        data: the outcome as JSON.
-        key: what it depends on.
+        data: the outcome as JSON; empty where nobody asked for it.
     """
 
     mutant: str
     round: int
-    verdict: str
-    by: str | None
-    data: str
+    verdict: Verdict
     key: str
+    is_sound: bool = True
+    data: str = ""
 
 
 @frozen
@@ -269,21 +257,6 @@ class Flaky:
         return f"{counts}; the limit is {limit:.0%} (unstable_limit):{shown}{more}"
 
 
-@frozen
-class Confirmation:
-    """Whether mutants were run at first without tests that do not reach them, and why.
-
-    Attributes:
-        is_short: whether they were.
-        rest: seconds that these tests take, if all mutants survive.
-        without: seconds that the campaign takes without them.
-    """
-
-    is_short: bool
-    rest: float
-    without: float
-
-
 def run_short(outcomes: Iterable[Outcome], seed: int) -> list[Outcome]:
     """Those that were found without some tests, or were before the whole suite was asked, in random order.
 
@@ -390,7 +363,7 @@ FACTS: Mapping[str, Any] = {
     VERIFICATION: Verification,
     FLAKY: Flaky,
     REPEATS: Repeats,
-    CONFIRMATION: Confirmation,
+    CONFIRMATION: bool,
     SINCE: Since,
     BUDGET: Budgeted,
     SHARD: ShardOf,
@@ -476,73 +449,29 @@ def text_in(value: Any) -> str:
     return value
 
 
-def agreed(value: T, *pairs: tuple[Any, Any]) -> T:
-    """The value, if what it says of itself is what the columns beside it say."""
-    if any(one != other for one, other in pairs):
+#: attributes that are repeated in columns of their own
+_REPEATED = ("id", "mutant", "round", "verdict")
+
+
+def held(kind: type[T], row: Mapping[str, Any]) -> T:
+    """The object of a class whose JSON a row holds, if the other columns say the same of it."""
+    found = from_data(kind, load(row["data"]))
+    if any(getattr(found, name) != row[name] for name in _REPEATED if name in row):
         raise ValueError
-    return value
-
-
-def mutant_in(text: Any, *pairs: tuple[str, Any]) -> Mutant:
-    """A mutant, if its attributes are those of the columns beside it."""
-    found = from_data(Mutant, load(text))
-    span = found.site.span
-    for number in (found.number, span.line, span.end_line, span.column, span.end_column):
-        _check_number(number)
-    _check_number(found.magnitude, least=-math.inf)
-    return agreed(found, *((getattr(found, name), value) for name, value in pairs))
-
-
-def planned_in(number: Any, name: Any, text: Any) -> Mutant:
-    """A mutant of the plan."""
-    return mutant_in(text, ("number", number), ("id", name))
-
-
-def known_in(name: Any, text: Any, outdated: Any) -> tuple[Mutant, bool]:
-    """A mutant of an earlier campaign, and whether something has changed that it depends on."""
-    return mutant_in(text, ("id", name)), outdated != 0
-
-
-def left_out_in(name: Any, reason: Any, text: Any) -> LeftOut:
-    """What the plan leaves out."""
-    found = from_data(LeftOut, load(text))
-    return agreed(found, (found.id, name))
-
-
-def baseline_test_in(round: Any, repetition: Any, name: Any, outcome: Any, text: Any) -> BaselineTest:
-    """A test of the baseline."""
-    found = BaselineTest(round_in(round), round_in(repetition), from_data(TestEnd, load(text)))
-    return agreed(found, (found.test.test, name))
-
-
-def control_in(file: Any, control: Any, ok: Any, detail: Any) -> ControlEnd:
-    """A control."""
-    return ControlEnd(text_in(file), text_in(control), ok == 1, text_in(detail))
-
-
-def outcome_in(mutant: Any, round: Any, verdict: Any, by: Any, text: Any, *_: Any) -> Outcome:
-    """An outcome, if it is that of the columns beside it."""
-    found = from_data(Outcome, load(text))
-    agreed(found, (found.mutant, text_in(mutant)), (found.round, round_in(round)))
-    agreed(found, (found.verdict, Verdict(verdict)), (found.by, By(by) if by is not None else None))
-    counts = (found.hits, found.acted, found.tests, found.repeats, found.commands, *found.away.values())
-    for number in (*counts, found.wall, found.cpu):
-        _check_number(number)
+    match found:
+        case Mutant(site=site):
+            span = site.span
+            _check_numbers(found.number, span.line, span.end_line, span.column, span.end_column)
+            _check_numbers(found.magnitude, least=-math.inf)
+        case BaselineTest():
+            round_in(found.round), round_in(found.repetition)
+        case Outcome():
+            round_in(found.round)
+            counts = (found.hits, found.acted, found.tests, found.repeats, found.commands)
+            _check_numbers(*counts, found.wall, found.cpu, *found.away.values())
     return found
 
 
-def _check_number(value: float | None, least: float = 0) -> None:
-    if value is not None and not least <= value < math.inf:
+def _check_numbers(*values: float | None, least: float = 0) -> None:
+    if any(value is not None and not least <= value < math.inf for value in values):
         raise ValueError
-
-
-def parts_in(text: Any) -> dict[str, str]:
-    """What a digest in a key stands for."""
-    return from_data(dict[str, str], load(text))
-
-
-def bytes_in(data: Any) -> bytes:
-    """The content of a file."""
-    if not isinstance(data, bytes):
-        raise TypeError
-    return data

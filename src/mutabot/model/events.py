@@ -240,8 +240,8 @@ class KnownLater(Event):
 
 
 @frozen
-class BranchEnd(Event):
-    """A branch has finished a test: the one in which it was forked, or a later one.
+class ForkTestEnd(Event):
+    """A fork has finished a test: the one in which it was forked, or a later one.
 
     Attributes:
         mutant: id of the mutant it was.
@@ -259,8 +259,8 @@ class BranchEnd(Event):
 
 
 @frozen
-class BranchFinished(Event):
-    """A branch has gone to the end of the session.
+class ForkSessionEnd(Event):
+    """A fork has gone to the end of the session.
 
     Attributes:
         mutants: ids of the mutants it was.
@@ -274,8 +274,8 @@ class BranchFinished(Event):
 
 
 @frozen
-class BranchDied(Event):
-    """A branch ended without saying how its test ended.
+class ForkDied(Event):
+    """A fork ended without saying how its test ended.
 
     Attributes:
         mutant: id of the mutant it was.
@@ -302,19 +302,19 @@ class ForkEnded(Event):
     """A process that this one forked has ended.
 
     Attributes:
-        fork: the number of a branch among the forks of its parent, from 1; that of the process for a copy of
+        fork: the number of a fork among the forks of its parent, from 1; that of the process for a copy of
             a fork server.
         exit_code: its exit code, negative for a signal.
-        died: what else is known of it, if it was a branch that did not say how its test ended.
+        died: what else is known of it, if it was a fork that did not say how its test ended.
     """
 
     fork: int
     exit_code: int
-    died: BranchDied | None = None
+    died: ForkDied | None = None
 
 
 @frozen
-class Unbranched(Event):
+class Unforked(Event):
     """It was not safe to fork at the first hit, in this test: these mutants need a process of their own.
 
     The test is empty before any.
@@ -448,7 +448,7 @@ class Did(Event):
 
     Attributes:
         test: the test that runs.
-        hits, acted, away, example, invalid, failure: as in ``TestEnd``.
+        hits, acted, away, example, failure: as in ``TestEnd``.
         refused: how the robot refused a mutated call; None if it did not.
         is_final: whether this refusal decides about a test that fails, since it was told as data.
     """
@@ -458,7 +458,6 @@ class Did(Event):
     acted: int = 0
     away: Mapping[str, int] = field(default_factory=dict)
     example: tuple[Any, ...] | None = None
-    invalid: bool = False
     failure: str | None = None
     refused: str | None = None
     is_final: bool = False

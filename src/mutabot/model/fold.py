@@ -183,11 +183,11 @@ def acted_in(records: Collection[ChildRecord]) -> list[str]:
 
 
 def fold_fork(
-    seen: Sequence[events.Event], exit_code: int, died: events.BranchDied | None
+    seen: Sequence[events.Event], exit_code: int, died: events.ForkDied | None
 ) -> list[events.Event]:
     """What is to be known of a fork that has ended, by its events and its parent's word of how it ended."""
     found: list[events.Event] = [
-        replace(event, exit_code=exit_code) if isinstance(event, events.BranchFinished) else event
+        replace(event, exit_code=exit_code) if isinstance(event, events.ForkSessionEnd) else event
         for event in seen
         if not isinstance(event, events.Acted)
     ]
@@ -264,7 +264,6 @@ def _with_deeds(end: events.TestEnd, did: list[events.Did]) -> events.TestEnd:
         away=added([end.away, *(one.away for one in did)]),
         example=next((one for one in examples if one is not None), None),
         failure=next((one for one in failures if one is not None), None),
-        invalid=end.invalid or any(one.invalid for one in did),
     )
     if refused and end.refused is None:
         is_final = any(one.is_final for one in refused)

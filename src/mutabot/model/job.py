@@ -66,18 +66,18 @@ class InProcess:
 
 
 @frozen
-class Branching:
-    """How a fork parent branches: which mutants, with how many processes, for how long.
+class Forking:
+    """How a fork parent forks: which mutants, with how many processes, for how long.
 
     Attributes:
         mutants: the mutants that are alive in this round.
         tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
-        walls: wall-clock seconds that a branch may take for a test, by test.
+        walls: wall-clock seconds that a fork may take for a test, by test.
         wall: the same for tests that are missing there.
         startup: the same until its first test begins.
         choices: of mutants that are alternatives in the program text: which, by id.
-        every_test: whether a branch goes on after a test that decided about its mutant.
-        at_start: test to ids of mutants that are branched before it begins, if they were not before: they may
+        every_test: whether a fork goes on after a test that decided about its mutant.
+        at_start: test to ids of mutants that are forked before it begins, if they were not before: they may
             be hit in processes below it.
         serial: whether the fork parent waits for each fork, since two of them would get in each other's way.
     """
@@ -128,7 +128,7 @@ class Job:
             missing are read at their end only.
         inspect: whether to check every callable of the vocabulary at the end, also those that no test
             imported.
-        branching: set for a fork parent: fork a branch for each live mutant at its site.
+        forking: set for a fork parent: fork once for each live mutant at its site.
         serving: set for a fork server: the socket over which jobs come. It runs no test itself.
         instrumentation: what to put into the program text; None to leave it alone.
         private_files: whether the process is to keep to itself what it does to files.
@@ -158,7 +158,7 @@ class Job:
     memory: int | None = None
     moments: Mapping[str, int] = field(default_factory=dict)
     inspect: bool = False
-    branching: Branching | None = None
+    forking: Forking | None = None
     serving: int | None = None
     instrumentation: Instrumentation | None = None
     private_files: bool = True

@@ -232,7 +232,7 @@ class Outcome:
         way: greatest difference of a probe along the way of a test, in multiples of its tolerance; None if
             probes were not read along the way.
         compared: how much was compared; None if nothing was.
-        engine: ``replay`` or ``branch``.
+        engine: ``replay`` or ``fork``.
         complete: whether every test that reaches the mutant was run, also after one had noticed it.
         kills: the tests that noticed it, in the order in which they ran: all of them if ``complete``, else
             the first at most.

@@ -11,9 +11,9 @@ from mutabot.frozen import frozen
 from mutabot.journal.records import ShardOf
 from mutabot.model import Verdict
 from mutabot.model.graded import Demand
-from mutabot.results.demands import rulings
 from mutabot.results.ladders import ladders_of
 from mutabot.results.results import Results
+from mutabot.results.thresholds import unmet
 
 
 @frozen
@@ -164,12 +164,8 @@ def _knows_thresholds(results: Results) -> bool:
 
 def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
     """Each site that tolerates more than is demanded, with direction and rounds."""
-    if not demands:
-        return
     families = [*(results.meta.get("families") or ()), *([GRADED] if results.graded else [])]
-    for one in rulings(demands, ladders_of(results), families):
-        if not one.is_met:
-            yield one.text
+    return unmet(demands, ladders_of(results) if demands else (), families)
 
 
 def _too_low(results: Results, min_score: float) -> list[str]:

@@ -1,4 +1,4 @@
-"""The thresholds of a campaign: its ladders, what they cost, and what the rounds showed, in words.
+"""The thresholds of a campaign: its ladders, what the rounds showed, in words, and which demands do not hold.
 
 Words give brackets, and never a number between them.
 """
@@ -7,9 +7,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from mutabot.errors import unknown_name_text
+from mutabot.families import GRADED
+from mutabot.model import Outcome, Verdict
+from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
 from mutabot.results.ladders import Above, Ladder, LadderRound, ladders_of, looseness
 from mutabot.results.results import Results
 
@@ -152,3 +156,80 @@ def thresholds_of(results: Results) -> Thresholds:
         rounds=results.rounds,
         state=results.state,
     )
+
+
+def unmet(
+    demands: Iterable[Demand], ladders: Sequence[Ladder], families: Sequence[str] = (GRADED,)
+) -> Iterator[str]:
+    """The demands that do not hold: ``sorting.py:38 arm.move_by y +: survives 5 mm in round 3 (mutant 17)``.
+
+    ``families`` are those that the campaign was asked for.
+    """
+    kinds = {one.id: one.quantity.kind if one.quantity is not None else None for one in ladders}
+    for demand in demands:
+        about = [one for one in ladders if demand.is_about(one.mutant, kinds[one.id])]
+        found = {f"{one.place} {one.name}": _why_unmet(demand, one) for one in about}
+        if not about:
+            found = {"no ladder": _why_nothing_fits(demand, ladders, families)}
+        source = f"{demand.source} · " if demand.source else ""
+        yield from (f"{source}{demand.text}: {where}: {why}" for where, why in found.items() if why)
+
+
+def _why_unmet(demand: Demand, ladder: Ladder) -> str:
+    """Why it does not hold that all rounds notice what is demanded, and more; empty if it does."""
+    demanded = demand.magnitude_in(ladder.unit)
+    assert demanded is not None, "it speaks of ladders of its own measure alone"
+    survivors = [
+        (one.number + 1, magnitude, outcome)
+        for one in ladder.rounds
+        for magnitude, outcome in one.outcomes.items()
+        if is_at_least(magnitude, demanded) and seen(outcome) is MagnitudeResult.MISSED
+    ]
+    if survivors:
+        return _survivors_text(ladder, survivors)
+    size = _text(ladder, demanded)
+    if ladder.number_of(demanded) is None:
+        return f"{size} is not on its ladder; `mutabot run` again plants it"
+    verdicts = {
+        one.number + 1: next((end.verdict for at, end in one.outcomes.items() if is_same(at, demanded)), None)
+        for one in ladder.rounds
+    }
+    for verdict, words in _UNKNOWN.items():
+        rounds = [number for number, found in verdicts.items() if found is verdict]
+        if rounds:
+            return f"{size} {words} in {in_rounds(rounds)}{'' if verdict else '; `mutabot run` goes on'}"
+    is_noticed = any(one is not None and one.is_killed for one in verdicts.values())
+    if is_noticed or {*verdicts.values()} == {Verdict.REFUSED}:
+        return ""
+    return f"{size} has no effect in any round, so nothing is known; demand it of other sites"
+
+
+#: ends of a round that say nothing of a magnitude, and what is said of them; None where it was not run
+_UNKNOWN = {Verdict.UNSTABLE: "is unstable", Verdict.ERROR: "ended in error", None: "was not run"}
+
+
+def _survivors_text(ladder: Ladder, survivors: Sequence[tuple[int, float, Outcome]]) -> str:
+    unreached = [number for number, _, outcome in survivors if outcome.verdict is Verdict.NOT_COVERED]
+    if unreached:
+        return f"no test reaches it in {in_rounds(unreached)}"
+    rounds: dict[float, list[int]] = {}
+    for number, size, _ in survivors:
+        rounds.setdefault(size, []).append(number)
+    told = [
+        f"{_text(ladder, size)} in {in_rounds(numbers)} (mutant {ladder.number_of(size)})"
+        for size, numbers in rounds.items()
+    ]
+    return f"survives {', '.join(told)}"
+
+
+def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Sequence[str]) -> str:
+    if GRADED not in families:
+        return 'the campaign has no graded mutants; add "graded" to families, or run with --family graded'
+    if not ladders:
+        return "the campaign has no ladders"
+    here = [one for one in ladders if demand.is_at(one.mutant)]
+    if not here:
+        places = {name for one in ladders for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
+        return unknown_name_text("site", demand.site or "", places)
+    known = ", ".join(sorted({f"{one.name} in {one.unit or 'no unit'}" for one in here}))
+    return f"fits none of {len(here)} ladders: {known}"

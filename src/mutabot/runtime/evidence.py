@@ -104,7 +104,6 @@ class Evidence:
         example: value before and after, at the first hit at which it acted.
         refusals: the exceptions by which the robot refused mutated calls, the latest last; not all of many.
         said: how the robot refused a mutated call by data, in words; None if it did not.
-        invalid: whether a mutated call rejected its arguments' types.
         failure: what went wrong in the tool or the operator itself, or None.
         is_of_text: whether the mutant is one of the program text, which makes no calls itself: a refusal
             then counts only if it ends the test.
@@ -117,7 +116,6 @@ class Evidence:
     example: tuple[Any, ...] | None = None
     refusals: tuple[BaseException, ...] = ()
     said: str | None = None
-    invalid: bool = False
     failure: str | None = None
     is_of_text: bool = False
     is_unknown: bool = False
@@ -144,7 +142,6 @@ def together(found: Sequence[Evidence]) -> Evidence:
         example=next((one.example for one in found if one.example is not None), None),
         refusals=tuple(refusal for one in found for refusal in one.refusals),
         said=next((one.said for one in found if one.said is not None), None),
-        invalid=any(one.invalid for one in found),
         failure=next((one.failure for one in found if one.failure is not None), None),
         is_of_text=any(one.is_of_text for one in found),
         is_unknown=any(one.is_unknown for one in found),

@@ -23,6 +23,7 @@ from mutabot.model.source_units import (
     Executed,
     functions_of,
 )
+from mutabot.runtime.audit import FRAMES, listen
 from mutabot.runtime.program_text import loading
 
 #: the built-in name of the bytes, one for each function
@@ -70,7 +71,7 @@ class ExecutedUnits:
                 self._common.add((name, WHOLE))
         loading.add(self)
         loading.hook_pytest(self.wants, self.change)
-        sys.addaudithook(self._hear)
+        listen(("open", "import", "exec", *_STARTS), self._hear)
 
     def wants(self, path: str) -> bool:
         """Whether a file is the project's own."""
@@ -139,7 +140,7 @@ class ExecutedUnits:
         return real[len(self._root) :]
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """Something happens that may matter beside what is executed; see ``sys.addaudithook``."""
+        """Something happens that may matter beside what is executed; see ``runtime.audit``."""
         if event == "open":
             path, _, flags = arguments
             if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):
@@ -159,7 +160,7 @@ class ExecutedUnits:
 
     def _is_import_of_library(self) -> bool:
         """Whether an installed package does it while it is imported, as ``glfw`` does to know a version."""
-        frame: FrameType | None = sys._getframe(2)
+        frame: FrameType | None = sys._getframe(1 + FRAMES)
         while frame is not None:
             file = frame.f_code.co_filename
             if "site-packages" in file and frame.f_code.co_name == "<module>":
@@ -170,21 +171,22 @@ class ExecutedUnits:
         return False
 
 
+def _who(readers: tuple[str, ...]) -> str:
+    """The name of the module that does what is heard of; one of ``readers`` does it for another."""
+    frame: FrameType | None = sys._getframe(2 + FRAMES)
+    while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in readers:
+        frame = frame.f_back
+    return str(frame.f_globals.get("__name__", "")) if frame is not None else ""
+
+
 def _is_by_us() -> bool:
     """Whether it is Mutabot that does what is heard of, be it by modules that read program text."""
-    frame: FrameType | None = sys._getframe(2)
-    while frame is not None and frame.f_globals.get("__name__") in ("linecache", "tokenize", "codecs"):
-        frame = frame.f_back
-    return frame is not None and str(frame.f_globals.get("__name__", "")).startswith("mutabot.")
+    return _who(("linecache", "tokenize", "codecs")).startswith("mutabot.")
 
 
 def _is_import() -> bool:
     """Whether a program text is opened by what imports it, or by pytest."""
-    frame: FrameType | None = sys._getframe(2)
-    readers = ("pathlib", "linecache", "tokenize", "codecs")
-    while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in readers:
-        frame = frame.f_back
-    name = str(frame.f_globals.get("__name__", "")) if frame is not None else ""
+    name = _who(("pathlib", "linecache", "tokenize", "codecs"))
     return name.startswith("_pytest.") or name in (
         "_frozen_importlib_external",
         "importlib._bootstrap_external",

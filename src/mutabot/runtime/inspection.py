@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import importlib
-import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, Operation, Vocabulary
 from mutabot.model.events import Event, Problem, Remark
 from mutabot.model.quantity import Value
-from mutabot.runtime.observation.probes import is_bound, needed_arguments
-from mutabot.runtime.targets.callables import not_imported
-from mutabot.runtime.targets.target import Finding, Interception, NotFoundError, resolve
+from mutabot.runtime.targets.callables import Callables, not_imported
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Finding, NotFoundError, resolve
+
+#: the targets of a process
+Kinds = Sequence[Callables | Messages]
 
 
 class Inspection:
@@ -34,15 +36,12 @@ class Inspection:
         self._send = send
         self.elsewhere: set[str] = set()
         self._told: set[tuple[str, str]] = set()
-        self._askers: dict[str, type | None] = {}
         self._unfit: dict[tuple[str, str], Callable[[], None]] = {}
         self._fit: dict[str, set[str]] = {}
 
     def note(self, call: Call, read: Mapping[str, Value]) -> None:
         """A call was made, and these values were read from its result."""
         self._fit.setdefault(call.operation.target, set()).update(read)
-        instance = call.payload.instance
-        self._askers[call.operation.target] = None if instance is None else type(instance)
 
     def target_is_wrong(self, target: str, finding: Finding) -> None:
         """A target of the vocabulary turned out wrong when it was found."""
@@ -69,46 +68,26 @@ class Inspection:
         problem = Problem(source, finding.key, finding.text, finding.name, finding.known)
         self._send(Remark(source, finding.key, finding.text) if finding.is_remark else problem)
 
-    def look_ahead(self, interception: Interception) -> None:
-        """The tests are about to begin: say what can be said about the targets that are there already."""
-        if self.is_asked:
-            for operation in self._vocabulary.operations:
-                self.check_target(operation, interception)
-
-    def check_target(self, operation: Operation, interception: Interception) -> None:
+    def check_target(self, operation: Operation, kinds: Kinds) -> None:
         """Say what of an operation does not fit its target."""
-        for finding in interception.of(operation.kind).check(operation):
-            self.tell(operation.source, finding)
+        for targets in kinds:
+            for finding in targets.check(operation):
+                self.tell(operation.source, finding)
 
-    def inspect(self, interception: Interception) -> None:
+    def inspect(self, kinds: Kinds) -> None:
         """Find what no test led to, so that every target of the vocabulary is looked at."""
-        for targets in interception.kinds:
+        for targets in kinds:
             for target, finding in targets.seek():
                 self.tell(self._source_of(target), finding)
         for operation in self._vocabulary.operations:
-            self.check_target(operation, interception)
-            self._check_current(operation)
-            for finding in interception.of("messages").unheard(operation):
-                self.tell(operation.source, finding)
+            self.check_target(operation, kinds)
+            for targets in kinds:
+                for finding in targets.unheard(operation) if isinstance(targets, Messages) else ():
+                    self.tell(operation.source, finding)
         for tell in self._unfit.values():
             tell()
         self._check_idle()
         self._check_exceptions()
-        self._check_probes()
-
-    def _check_current(self, operation: Operation) -> None:
-        if operation.target not in self._askers:
-            return
-        for current in operation.currents:
-            reading = self._vocabulary.operation(current)
-            if reading is not None and reading.named is not None:
-                continue  # nothing is asked: what came last tells
-            try:
-                why = why_not_asked(current, self._askers[operation.target])
-            except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own
-                continue
-            if why is not None:
-                self.tell(operation.source, Finding("current", why))
 
     def _check_idle(self) -> None:
         """Functions that make the answer of a command that is left out."""
@@ -132,13 +111,6 @@ class Inspection:
             if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
                 self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
 
-    def _check_probes(self) -> None:
-        for probe in self._vocabulary.probes:
-            # what its objects have is not known to a class
-            owner = self._look_up(probe.source, "call", probe.owner or probe.target)
-            if owner is not None and probe.owner and not isinstance(owner, type):
-                self._look_up(probe.source, "call", probe.target)
-
     def _look_up(self, source: str, key: str, target: str) -> Any:
         """What ``module:qualified.name`` names; None, and a problem, if there is no such thing."""
         module, _, qualname = target.partition(":")
@@ -158,27 +130,3 @@ class Inspection:
             sources[self._vocabulary.clock.tick] = self._vocabulary.clock.source
         operation = self._vocabulary.operation(target)
         return operation.source if operation is not None else sources.get(target, "")
-
-
-def why_not_asked(reading: str, asker: type | None) -> str | None:
-    """Why an operation's ``current`` cannot be asked where the robot is, and what is needed; None if it can.
-
-    Args:
-        reading: the callable that reads it.
-        asker: the class of the object that the operation is called on; None for a function.
-    """
-    module, _, qualname = reading.partition(":")
-    owner, name, _ = resolve(sys.modules[module], qualname)
-    if asker is not None and "." in qualname and hasattr(asker, name):
-        owner = asker
-    elif isinstance(owner, type) and is_bound(owner, name):
-        of = f"the operation is called on {asker.__name__}" if asker else "the operation is a function"
-        return (
-            f"{reading} is read from an object of {owner.__name__}, but {of}; "
-            f"name {'a method of that class' if asker else 'a function'} that needs no arguments"
-        )
-    found = getattr(owner, name)
-    needed = needed_arguments(found) if callable(found) else []
-    if isinstance(owner, type) and is_bound(owner, name):
-        needed = needed[1:]  # self
-    return f"{reading} needs {', '.join(needed)}, but it is asked without arguments" if needed else None

@@ -18,12 +18,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from time import monotonic  # before a simulation takes over the clock
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from mutabot.frozen import frozen
 from mutabot.model.events import Watched
+from mutabot.runtime.isolation.namespaces import left_out
 from mutabot.runtime.seeds import node_id
 
 
@@ -77,17 +78,21 @@ _NAME = re.compile(r"[A-Za-z0-9._-]+")
 def switch_off(manager: pytest.PytestPluginManager) -> None:
     """Switch off what is installed of these plug-ins; pytest has not loaded any by itself yet."""
     config: Any = manager.get_plugin("pytestconfig")
-    found = [plugin for plugin in PLUGINS if _replace(manager, config, plugin)]
-    if found:
-        manager.register(_Markers(found), "mutabot-markers")
-        _need_no_more(config, {_normal(plugin.package) for plugin in found})
+    off = _SwitchedOff()
+    for plugin in PLUGINS:
+        replaced = [_replace(manager, config, off, *entry) for entry in plugin.entries]
+        if True in replaced:
+            off.plugins.append(plugin)
+    # the project's configuration may require them
+    packages = {_normal(plugin.package) for plugin in off.plugins}
+    required = config.getini("required_plugins")
+    required[:] = [text for text in required if _normal(text) not in packages]
+    manager.register(off, "mutabot-switches-off")
 
 
-def _replace(manager: pytest.PytestPluginManager, config: Any, plugin: Plugin) -> bool:
-    return True in [_replace_entry(manager, config, *entry) for entry in plugin.entries]
-
-
-def _replace_entry(manager: pytest.PytestPluginManager, config: Any, entry: str, module: str) -> bool:
+def _replace(
+    manager: pytest.PytestPluginManager, config: Any, off: _SwitchedOff, entry: str, module: str
+) -> bool:
     """Block a plug-in and let something stand in for it; False if it is not installed."""
     was_named = any(manager.has_plugin(name) for name in (entry, module))  # by ``-p``, before us
     for name in (entry, module):
@@ -99,8 +104,7 @@ def _replace_entry(manager: pytest.PytestPluginManager, config: Any, entry: str,
     hooks = () if was_named else _DECLARING  # nothing can be declared twice
     manager.register(_stand_in(plugin, hooks), f"mutabot-stands-in-for-{entry}")
     defaults = vars(config.option)  # nothing else yet
-    forgotten = {name: defaults[name] for name in _options(plugin) if name in defaults}
-    manager.register(_Forgetting(forgotten), f"mutabot-forgets-{entry}")
+    off.defaults |= {name: defaults[name] for name in _options(plugin) if name in defaults}
     return True
 
 
@@ -145,44 +149,28 @@ def _is_fixture(value: Any) -> bool:
     return type(value).__name__ == "FixtureFunctionDefinition" or hasattr(value, "_pytestfixturefunction")
 
 
-def _need_no_more(config: Any, packages: set[str]) -> None:
-    """The project's configuration may require them."""
-    required = config.getini("required_plugins")
-    required[:] = [text for text in required if _normal(text) not in packages]
-
-
 def _normal(requirement: str) -> str:
     name = _NAME.match(requirement.strip())
     return re.sub(r"[._-]+", "-", name[0]).lower() if name else ""
 
 
-class _Forgetting:
-    """Nobody is told what the options say: all have their defaults."""
+class _SwitchedOff:
+    """Declares the markers of plug-ins; nobody is told what their options say: all have their defaults."""
 
-    def __init__(self, defaults: dict[str, Any]) -> None:
-        self._defaults = defaults
+    def __init__(self) -> None:
+        self.plugins: list[Plugin] = []
+        self.defaults: dict[str, Any] = {}
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_cmdline_main(self, config: pytest.Config) -> None:
         """The command line was read."""
-        vars(config.option).update(self._defaults)
-
-
-class _Markers:
-    """Declares the markers of plug-ins."""
-
-    def __init__(self, plugins: list[Plugin]) -> None:
-        self._plugins = plugins
+        vars(config.option).update(self.defaults)
 
     def pytest_configure(self, config: pytest.Config) -> None:
-        """Tell pytest that these are no mistakes."""
-        for plugin in self._plugins:
+        """Tell pytest that the markers are no mistakes."""
+        for plugin in self.plugins:
             for marker in plugin.markers:
                 config.addinivalue_line("markers", f"{marker}: of {plugin.package}, without effect here")
-
-
-if TYPE_CHECKING:
-    import pytest  # processes below the tests need none
 
 
 @contextmanager
@@ -201,7 +189,8 @@ def alarm_held() -> Iterator[None]:
 
 def watched(test: str, seconds: float, by: str) -> Watched:
     """The report that ``by`` ends this process with exit code 1 unless ``test`` ends in time."""
-    return Watched(test, monotonic() + seconds, f"no end after {seconds:g} s of wall clock ({by})")
+    until = monotonic() + left_out() + seconds
+    return Watched(test, until, f"no end after {seconds:g} s of wall clock ({by})")
 
 
 def watched_by_faulthandler(item: pytest.Item) -> Watched | None:

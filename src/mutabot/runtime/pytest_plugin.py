@@ -25,12 +25,17 @@ def _import_us_unrewritten() -> None:
 
 _import_us_unrewritten()  # before anything else of us is imported
 
-from mutabot.model.call import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
+from mutabot.model.call import (  # noqa: E402
+    CAMPAIGN_SEED_VARIABLE,
+    DEFAULT_SEED,
+    ROUND_VARIABLE,
+    SEED_VARIABLE,
+)
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
+from mutabot.runtime import seeds  # noqa: E402
 from mutabot.runtime.seeds import PytestNode, node_id  # noqa: E402
 
 if TYPE_CHECKING:
-    from mutabot.runtime.plain_round import PlainRound
     from mutabot.runtime.session_hooks import SessionHooks
 
 _NAME = "mutabot_seed"
@@ -71,8 +76,6 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None
         _hooks = SessionHooks.from_files(job, int(pipe))
         _hooks.config = early_config
     elif _hooks is None and os.environ.get(ROUND_VARIABLE):
-        from mutabot.runtime.plain_round import PlainRound  # noqa: PLC0415  # see above
-
         _plain_round = PlainRound.from_environment()
     try:
         return (yield)
@@ -150,9 +153,7 @@ def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, 
     seeded = _hooks or _plain_round
     if seeded is None or fixturedef.scope == "function":
         return (yield)
-    from mutabot.runtime.seeds import seeded_apart  # noqa: PLC0415
-
-    with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
+    with seeds.seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
         return (yield)
 
 
@@ -180,3 +181,56 @@ def _offer_at_every_scope(owner: str) -> None:
 def _is_defined_by(owner: str, request: Any) -> bool:
     definitions = request._fixturemanager.getfixturedefs(_NAME, request._pyfuncitem)
     return bool(definitions) and getattr(definitions[-1].func, "__module__", None) == owner
+
+
+class PlainRound:
+    """Pytest's hooks for a round outside of a campaign: plain pytest draws exactly the seeds of that round.
+
+    ``MUTABOT_ROUND=3 pytest tests/test_place.py::test_it`` fails again where a campaign says that the test
+    fails in round 3. ``MUTABOT_CAMPAIGN_SEED`` is the campaign's seed, 1 if it is not set.
+
+    Args:
+        seed: the campaign's seed.
+        round: 0-based round.
+    """
+
+    def __init__(self, seed: int, round: int) -> None:
+        self._seed, self._round = seed, round
+        seeds.seed_all(seeds.derive(seed, "import"))
+
+    @classmethod
+    def from_environment(cls) -> PlainRound | None:
+        """The round that the environment names, or None. Raises pytest.UsageError for what makes no sense."""
+        number = _whole_number(ROUND_VARIABLE, least=1)
+        if number is None:
+            return None
+        if os.environ.get(SEED_VARIABLE):
+            text = f"{ROUND_VARIABLE} gives every test its seed in that round, {SEED_VARIABLE} another one"
+            raise pytest.UsageError(f"{text}; set one of the two")
+        seed = _whole_number(CAMPAIGN_SEED_VARIABLE, least=0)
+        return cls(DEFAULT_SEED if seed is None else seed, number - 1)
+
+    def seed_of(self, name: str) -> int:
+        """The seed of a test or shared fixture in this round."""
+        return seeds.derive(self._seed, self._round, name)
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtestloop(self) -> Generator[None, Any, Any]:
+        """All tests are collected."""
+        seeds.seed_all(self.seed_of("session"))
+        return (yield)
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        """One test, its fixtures included."""
+        seeds.seed_all(self.seed_of(node_id(item)))
+        return (yield)
+
+
+def _whole_number(variable: str, *, least: int) -> int | None:
+    text = os.environ.get(variable, "").strip()
+    if not text:
+        return None
+    if not text.isdecimal() or int(text) < least:
+        raise pytest.UsageError(f"{variable} is {text!r}; it takes a whole number from {least} on")
+    return int(text)

@@ -11,19 +11,19 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Choice, Moment, Mutant, Operation, Probe
-from mutabot.model.events import Acted, Called, Event, KnownLater, SiteSeen, TextsSeen
+from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Budget, Job
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import Sink
 from mutabot.runtime.evidence import Evidence, Meter, together
-from mutabot.runtime.inspection import Inspection
+from mutabot.runtime.inspection import Inspection, Kinds
 from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Aside, Dispatcher
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
 from mutabot.runtime.observation.clock import ClockReader, ProgramTime
 from mutabot.runtime.observation.instances import Instances
-from mutabot.runtime.observation.probes import Along, Reading, Rehearsal, TestRecording, rehearse, take
+from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
 from mutabot.runtime.process_fault import ProcessFaults
 from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.handing import Handing
@@ -32,7 +32,8 @@ from mutabot.runtime.program_text.session_text import SessionText
 from mutabot.runtime.program_text.standing import Standing, StandIns, last_name
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.target import Finding, Handler, Interception
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Finding, Handler
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -47,7 +48,7 @@ class Session:
         pipe: where reports go.
         locator: finds the site of a frame, and of a function that is called back.
         recorder: traces; always kept, since survivors are compared with the original.
-        interception: what stands around the vocabulary's targets.
+        callables, messages: what stands around the vocabulary's targets; no messages where none is asked for.
         passing: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
         is_fork: whether this process was forked to be its mutant.
@@ -58,9 +59,8 @@ class Session:
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
-        refused_calls: in the baseline, calls of the running test that the robot refused: see ``TestEnd``.
-        live: in the baseline, sites that returned the robot's own memory: see ``TestEnd``.
-        on_refused, on_live: told of each of them; None if nobody asks.
+        noted: in the baseline, calls of the running test that the robot refused, or that returned its memory.
+        on_noted: told of each of them; None if nobody asks.
         placed: faults that their providers put in place before each test.
     """
 
@@ -68,14 +68,14 @@ class Session:
     pipe: Sink
     locator: Locator
     recorder: Recorder = field(init=False)
-    interception: Interception = field(init=False)
+    callables: Callables = field(init=False)
+    messages: Messages | None = None
     passing: Dispatcher = field(init=False)
     inspection: Inspection = field(init=False)
     placed: ProcessFaults = field(init=False)
     recording: TestRecording = field(init=False)
     instances: Instances = field(default_factory=Instances)
     along: Along = field(init=False)
-    rehearsal: Rehearsal = field(default_factory=Rehearsal)
     is_fork: bool = False
     text: SessionText | None = None
     returns: Returns | None = None
@@ -83,10 +83,8 @@ class Session:
     standing: Standing = field(init=False)
     handing: Handing = field(init=False)
     test: str = ""
-    refused_calls: list[tuple[int, int]] = field(default_factory=list)
-    live: set[int] = field(default_factory=set)
-    on_refused: Callable[[int, int], None] | None = None
-    on_live: Callable[[int], None] | None = None
+    noted: dict[Noted, None] = field(default_factory=dict)
+    on_noted: Callable[[Noted], None] | None = None
     _adapters: list[Adapter] = field(default_factory=list)
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
     _telling: list[Adapter] = field(default_factory=list)
@@ -100,7 +98,7 @@ class Session:
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
         self.placed = ProcessFaults(self._acted)
-        self.interception = Interception(self.inspection.target_is_wrong)
+        self.callables = Callables(self.inspection.target_is_wrong)
         self.passing = Dispatcher(
             self.locator, self.recorder, self.instances, self.along, self._raised, self._on_end
         )
@@ -114,7 +112,11 @@ class Session:
             self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
         for operation in vocabulary.operations:
-            self.interception.wrap(operation, self._handler(operation))
+            handler = self._handler(operation)
+            if operation.kind == "messages":
+                self._heeded().wrap(operation.target, handler)
+            elif operation.kind is None:
+                self.callables.wrap(operation.target, handler)
         self._see_calls()
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.wait is not None:
@@ -122,7 +124,7 @@ class Session:
         if vocabulary.clock is not None:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
-            self.interception.of().wrap(clock.tick, reader.handler())
+            self.callables.wrap(clock.tick, reader.handler())
         self._listen()
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
@@ -132,24 +134,16 @@ class Session:
     def _see_calls(self) -> None:
         """See calls where they are written, of whatever stands in the place of an operation."""
         called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
-        callables = self.interception.of()
-        assert isinstance(callables, Callables)
-        self.standing = Standing(called, callables, self.locator, self._sees_itself)
+        self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
         self._tell_standing()
         names = {last_name(one.operation) for one in called}
         self.handing = Handing(self.standing, self.passing.given)
         self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
         self.call_sites.install()
 
-    def remove(self) -> None:
-        """Intercept nothing any more."""
-        self.call_sites.remove()
-        self.handing.remove()
-        self.interception.remove()
-
     def _tell_standing(self) -> None:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
-        mutants = self.job.branching.mutants if self.job.branching is not None else ()
+        mutants = self.job.forking.mutants if self.job.forking is not None else ()
         own = (self.job.mutant,) if self.job.mutant is not None else ()
         self.standing.known = dict(self.job.known) | {
             one.site.span: one.operation for one in (*mutants, *own)
@@ -166,7 +160,17 @@ class Session:
         if any(refused.topic is not None for refused in told) or any(
             adapter.operation.named is not None for adapter in self._telling
         ):
-            self.interception.of("messages").on_heard = self._heard
+            self._heeded().on_heard = self._heard
+
+    def _heeded(self) -> Messages:
+        """The names on middlewares, which are hooked as soon as anybody asks for one."""
+        self.messages = self.messages or Messages(self.inspection.target_is_wrong)
+        return self.messages
+
+    @property
+    def targets(self) -> Kinds:
+        """All targets of this process."""
+        return [self.callables] if self.messages is None else [self.callables, self.messages]
 
     def _heard(self, name: str, message: Any) -> None:
         for activation in self.activations:
@@ -180,7 +184,8 @@ class Session:
         vocabulary = self.job.vocabulary
         readings = {name: vocabulary.operation(name) for name in operation.currents}
         told = partial(self.inspection.path_is_wrong, operation)
-        adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), self._time)
+        time = (self._time.now, self._time.wait)
+        adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), *time)
         self._adapters.append(adapter)
         adapter.handler = self.passing.handler(adapter)
         self._sees_itself.add(adapter.handler)
@@ -268,7 +273,8 @@ class Session:
         self.activate(mutant)
         self._start_activations()
         if self.text is not None:
-            self.text.become(choices)
+            self.text.alternatives.on_place = None
+            self.text.alternatives.activate(*choices)
 
     def take_on(self, job: Job, pipe: Sink) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
@@ -287,14 +293,13 @@ class Session:
         self.test = test
         self._look_again()
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
-        is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
+        is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()
         self.recorder.clock = self.recording.clock if self.job.evidence else None
         self.instances.start(fixtures)
         self.passing.calls.clear()
-        self.refused_calls.clear()
-        self.live.clear()
+        self.noted.clear()
         self.passing.on_live = self._is_live if is_baseline else None
         self.passing.refused.on_refused = self._refused if is_baseline else None
         self.passing.refused.start(self.job.refused.get(test, ()))
@@ -364,7 +369,7 @@ class Session:
             self.returns.stop()
         self.along.stop()
         self.recording.stop()
-        reading, self.rehearsal = rehearse(self._read_probes)
+        reading = rehearse(self._read_probes)
         self.instances.let_go()  # what the program is done with may go
         return reading
 
@@ -384,10 +389,6 @@ class Session:
         modules = {probe: sys.modules.get(probe.target.partition(":")[0]) for probe in probes}
         files = {probe: getattr(module, "__file__", None) or "" for probe, module in modules.items()}
         return tuple(probe for probe in probes if not self.returns.wants(files[probe]))
-
-    def look_ahead(self) -> None:
-        """The tests are about to begin: say what can be said about the targets that are there already."""
-        self.inspection.look_ahead(self.interception)
 
     def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
         """All tests are over: wait for forks, tell what was seen, and check the vocabulary if asked to.
@@ -414,7 +415,7 @@ class Session:
 
     def inspect_targets(self) -> None:
         """Look at every target of the vocabulary, also of what no test has led to."""
-        self.inspection.inspect(self.interception)
+        self.inspection.inspect(self.targets)
 
     def _raised(self, error: BaseException, made: SiteCall) -> None:
         names = self._refusals(made.call.operation)
@@ -426,16 +427,16 @@ class Session:
 
     def _refused(self, made: SiteCall) -> None:
         """The robot refused a call of the original."""
-        self.refused_calls.append((self._index_of(made), made.number))
-        if self.on_refused is not None:
-            self.on_refused(*self.refused_calls[-1])
+        self._note(Noted(self._index_of(made), made.number))
 
     def _is_live(self, made: SiteCall) -> None:
         """A call of the original returned the robot's own memory."""
-        site = self._index_of(made)
-        if site not in self.live and self.on_live is not None:
-            self.on_live(site)
-        self.live.add(site)
+        self._note(Noted(self._index_of(made)))
+
+    def _note(self, one: Noted) -> None:
+        if one not in self.noted and self.on_noted is not None:
+            self.on_noted(one)
+        self.noted[one] = None
 
     def _index_of(self, made: SiteCall) -> int:
         return self.recorder.index_of(replace(seen_by(made), direct=False))

@@ -15,7 +15,7 @@ from mutabot import extensions
 from mutabot.frozen import compile_all
 from mutabot.model import Mutant, Role
 from mutabot.model.events import SessionEnd
-from mutabot.model.job import Branching, Job, read_job
+from mutabot.model.job import Forking, Job, read_job
 from mutabot.operators.registry import preload
 from mutabot.runtime import seeds
 from mutabot.runtime.event_file import EventFile, Held
@@ -100,8 +100,9 @@ class SessionHooks:
             hooks._make_private(job, home)
         hooks.session.returns = Returns(hooks.locator)
         hooks.session.install()
-        hooks.look_at_checks()
-        hooks.record_units()
+        Checks(job.root, hooks._is_of_tests, hooks.tests.looks).install()
+        hooks.session.call_sites.hook_pytest()
+        hooks.tests.units.install()
         if job.serving is None:
             hooks._begin(home)
         return hooks
@@ -126,17 +127,17 @@ class SessionHooks:
         watch_forks(members.folder, self.session)
         if job.mutant is not None:
             self.tests.left_out = job.left_out(job.mutant.id)
-        if job.branching is not None:
-            preload({mutant.operator for mutant in job.branching.mutants})  # and not in every fork
-            self._be_fork_parent(job.branching, home, members, has_nodes=has_nodes)
+        if job.forking is not None:
+            preload({mutant.operator for mutant in job.forking.mutants})  # and not in every fork
+            self._be_fork_parent(job.forking, home, members, has_nodes=has_nodes)
 
-    def _be_fork_parent(self, branching: Branching, home: str, members: Members, *, has_nodes: bool) -> None:
+    def _be_fork_parent(self, forking: Forking, home: str, members: Members, *, has_nodes: bool) -> None:
         compile_all()
         log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
         assert isinstance(pipe, EventFile)
         track_event_loops()
         parent = ForkParent(
-            branching, self.job.tests or (), pipe,
+            forking, self.job.tests or (), pipe,
             Isolation((log.st_dev, log.st_ino), home, self._files, self._not_private), self._become,
             has_nodes, members.have_begun,
         )  # fmt: skip
@@ -154,16 +155,6 @@ class SessionHooks:
         fork = ForkedRun(self.session, self.session.fork_parent, mutant, folder)
         self.tests.fork = fork
         self.session.become(mutant, fork.choices)
-
-    def look_at_checks(self) -> None:
-        """Note what tests check."""
-        looks, root = self.tests.looks, self.job.root
-        Checks(root, self._is_of_tests, looks).install()
-        self.session.call_sites.hook_pytest()
-
-    def record_units(self) -> None:
-        """Note what is executed."""
-        self.tests.units.install()
 
     def _is_of_tests(self, path: str) -> bool:
         """Whether a file is the project's own, and not the program's."""
@@ -240,7 +231,6 @@ class SessionHooks:
         if self._server is not None:
             session.items.clear()
             return (yield)
-        self.session.look_ahead()
         seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
         result = yield
         drop_idle_plugins(session.config)

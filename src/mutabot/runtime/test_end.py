@@ -18,7 +18,6 @@ from mutabot.model.path import class_name
 from mutabot.runtime import FOLDER
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.observation.checks import FILE as AROUND_COMPARISONS
 from mutabot.runtime.targets.target import is_named
 
 if TYPE_CHECKING:
@@ -89,7 +88,7 @@ def with_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None
     return replace(
         end,
         failure=evidence.failure or cause.failure,
-        invalid=evidence.invalid or cause.invalid,
+        invalid=cause.invalid,
         refused=refusal,
         caught=is_caught and end.outcome == FAILED and cause.refused is None,
         hits=evidence.hits,
@@ -155,8 +154,6 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
     for frame, _ in _from_the_raise(error):
         filename = locator.real(frame.f_code.co_filename)
-        if filename == AROUND_COMPARISONS:
-            continue
         if filename.startswith(FOLDER) or _is_of_a_middleware(frame):
             return False
         role = locator.role(filename)

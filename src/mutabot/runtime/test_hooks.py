@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Generator, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
@@ -18,6 +17,7 @@ from mutabot.model.events import TestEnd, TestStart
 from mutabot.model.process_time import TimeUsed
 from mutabot.model.source_units import Executed
 from mutabot.runtime import seeds
+from mutabot.runtime.audit import listen
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.executed import ExecutedUnits
 from mutabot.runtime.interception.trace import Locator
@@ -112,7 +112,7 @@ class TestHooks:
         self.looks.clear()
         if not self._hears:
             self._hears = True
-            sys.addaudithook(self._hear)
+            listen(("socket.bind",), self._hear)
         session = self.session
         session.pipe.send(TestStart(test))
         limit = watched_by_faulthandler(item)
@@ -129,11 +129,10 @@ class TestHooks:
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Note a fixed address that the test waits at: two processes cannot have it at the same time."""
-        if event == "socket.bind" and self._address is None:
-            address = arguments[1]
-            is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
-            if not is_chosen:  # by the system, which gives one that nobody else has
-                self._address = f"waits at the address {address!r}"
+        address = arguments[1]
+        is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
+        if not is_chosen and self._address is None:  # by the system, which gives one that nobody else has
+            self._address = f"waits at the address {address!r}"
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
@@ -222,8 +221,8 @@ class TestHooks:
             timeout=meter.exceeded or end.timeout,
             # what the machine had to do with a time-out of the suite's own
             hindered=self._used.hindrance([os.getpid()]) if end.timeout is not None else None,
-            refused_calls=tuple(session.refused_calls),
-            live=tuple(sorted(session.live)),
+            refused_calls=tuple((one.site, one.refused) for one in session.noted if one.refused is not None),
+            live=tuple(sorted(one.site for one in session.noted if one.refused is None)),
             operations=meter.operations,
             commands=session.commands,
             wall=wall,
@@ -234,8 +233,8 @@ class TestHooks:
             probes=self._reading.values,
             unread=self._reading.unread,
             exclusive=self._address,
-            reading=session.rehearsal.seconds,
-            not_along=session.rehearsal.why_not,
+            reading=self._reading.seconds,
+            not_along=self._reading.not_along,
             more_checks=self.looks.more,
             recording=session.recording.text(session.recorder.told()),
             executed=self._executed(evidence),

@@ -110,6 +110,7 @@ class ProposedCheck:
         spread: how far these are apart; None if both must be equal.
         tolerance: greatest distance; None if both must be equal.
         trials: the mutants and rounds that it would notice.
+        is_clear: whether all of these are far off: ten times what the original may be.
     """
 
     place: PlaceInTest
@@ -119,15 +120,16 @@ class ProposedCheck:
     spread: float | None = None
     tolerance: float | None = None
     trials: Trials = frozenset()
+    is_clear: bool = True
 
     @property
     def worth(self) -> tuple[int, ...]:
-        """What a person would rather write: the suite's reader, a relation, a place, few digits."""
+        """What a person would rather write: the suite's reader, a relation, a place, far off, few digits."""
         name = _last(self.reading)
         rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
         digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
-        return -self.reading.way, is_relation, -rank, -digits, -len(self.statement)
+        return -self.reading.way, is_relation, -rank, self.is_clear, -digits, -len(self.statement)
 
     @property
     def statement(self) -> str:
@@ -169,7 +171,7 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
         compared, stated = _stated(project.module(place.file))
         seen = _ReadAtEnd(place, runs, mutants, given, stated)
         for check in (check for reading in readings for check in seen.checks(reading)):
-            why = _why_not(check, compared)
+            why = _why_not(check, compared, stated)
             if why is None:
                 found.append(check)
             else:
@@ -195,7 +197,8 @@ class _ReadAtEnd:
         runs: what the original read, in each run.
         mutants: what mutants made it read.
         given: the readings of what the test was given.
-        stated: the largest tolerance that the tests state, by the last name of what they look at.
+        stated: the largest tolerance that the tests state, by the last name of what they look at, and by
+            all of it with an equals sign before it.
     """
 
     place: PlaceInTest
@@ -225,16 +228,24 @@ class _ReadAtEnd:
         floor = max(reading.tolerance, other.tolerance if other is not None else 0.0)
         band = band_of([apart(read) for read in self.runs], floor)
         sizes = self._furthest(lambda read: abs(apart(read) - band.middle))
-        outside = [size for size in sizes.values() if size > band.tolerance]
+        outside = sorted({size for size in sizes.values() if size > band.tolerance})
         if not outside:
             return None
-        value, wide = readable(band, min(outside), self.stated.get(_last(reading), 0.0))
+        stated = self.stated.get(_last(reading), 0.0)
+        written = [(size, *readable(band, size, stated)) for size in outside]
+        # let through what only many digits would notice, or less than the tests allow, if there are others
+        own = self.stated.get(f"={reading.text}", 0.0)
+        fitting = (one for one in written if digits_of(one[1]) <= _DIGITS and one[2] >= own)
+        nearest, value, wide = next(fitting, written[0])
         if other is not None and abs(band.middle) > wide - band.tolerance:
             return None  # it is always as far from it, but not there
         middle = 0.0 if other is not None else value
         trials = _beyond(self._furthest(lambda read: abs(apart(read) - middle)), wide)
         expected = value if other is None else other
-        return ProposedCheck(self.place, reading, expected, len(self.runs), band.spread, wide, trials)
+        is_clear = nearest >= 10 * band.tolerance
+        return ProposedCheck(
+            self.place, reading, expected, len(self.runs), band.spread, wide, trials, is_clear
+        )
 
     def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
         """The check that something equals another reading, or a value; None if it does not always do so."""
@@ -263,11 +274,17 @@ def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
     return frozenset(trial for trial, size in sizes.items() if size > tolerance)
 
 
-def _why_not(check: ProposedCheck, compared: set[str]) -> str | None:
-    """Why a person would not merge it; None if one may. ``compared``: names that the tests compare."""
+def _why_not(check: ProposedCheck, compared: set[str], stated: Mapping[str, float]) -> str | None:
+    """Why a person would not merge it; None if one may.
+
+    ``compared``, ``stated``: the names that the tests compare, and the tolerances that they state.
+    """
     text, name = check.reading.text, _last(check.reading)
     if _CLOCK.search(name) and name not in compared:
         return f"only its time differs ({text}), and the tests set no deadline"
+    own = stated.get(f"={text}", 0.0)
+    if check.tolerance is not None and check.tolerance < own:
+        return f"{text} differs by less than the tests allow: {own!r}"
     if is_number(check.value) and digits_of(float(check.value)) > _DIGITS:
         return f"only an exact value would notice it: {check.statement}"
     return None
@@ -279,7 +296,7 @@ def _last(reading: ReadExpression) -> str:
 
 
 def _stated(module: ast.Module | None) -> tuple[set[str], dict[str, float]]:
-    """The names that tests compare, and the largest tolerance that they state by the last of these names."""
+    """The names that tests compare, and the largest tolerances that they state: see ``_ReadAtEnd``."""
     compared: set[str] = set()
     tolerances: dict[str, float] = {}
     for node in ast.walk(module) if module is not None else ():
@@ -287,14 +304,22 @@ def _stated(module: ast.Module | None) -> tuple[set[str], dict[str, float]]:
             compared.update(_NAME.findall(ast.unparse(node)))
         match node:
             case ast.Compare(left=looked, comparators=[ast.Call(keywords=keywords)]):
-                pass
+                allowed = [one.value for one in keywords if one.arg == "abs"]
+            case ast.Compare(
+                left=ast.Call(
+                    func=ast.Name(id="abs"), args=[ast.BinOp(left=looked, op=ast.Sub() | ast.Add())]
+                ),
+                comparators=[ast.Constant() as most],
+            ):
+                allowed = [most]
             case ast.Call(args=[looked, *_], keywords=keywords):
-                pass
+                allowed = [one.value for one in keywords if one.arg == "delta"]
             case _:
                 continue
-        last = _LAST.search(ast.unparse(looked))
-        for one in keywords:
-            is_tolerance = one.arg == ("abs" if isinstance(node, ast.Compare) else "delta")
-            if is_tolerance and last and isinstance(one.value, ast.Constant) and is_number(one.value.value):
-                tolerances[last[1]] = max(tolerances.get(last[1], 0.0), float(one.value.value))
+        text = ast.unparse(looked)
+        last = _LAST.search(text)
+        sizes = [one.value for one in allowed if isinstance(one, ast.Constant)]
+        for size in (float(size) for size in sizes if is_number(size)):
+            for name in (f"={text}", *([last[1]] if last else [])):
+                tolerances[name] = max(tolerances.get(name, 0.0), size)
     return compared, tolerances

@@ -12,13 +12,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeGuard
 
-from mutabot.campaign.again import as_it_is_now
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.isolated_run import task
+from mutabot.campaign.engines.tasks import task
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import open_executor
+from mutabot.campaign.run import as_it_is_now, open_executor
 from mutabot.frozen import frozen
 from mutabot.model import Mutant, Operation, Probe
 from mutabot.model.events import TestEnd

@@ -15,7 +15,7 @@ from mutabot.errors import BaselineError, UnstableError
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
 from mutabot.model.call import derive
-from mutabot.runtime.plain_round import PlainRound
+from mutabot.runtime.pytest_plugin import PlainRound
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, request_for, write_project
 from tests.campaign.scripted import CHECKED, Script
 
@@ -46,7 +46,7 @@ TESTS = """
         mission.run(Arm())
 """
 CHECKS = "tests/test_mission.py::test_checks"
-ENGINES = pytest.mark.parametrize("engine", ["branch", REPLAY])
+ENGINES = pytest.mark.parametrize("engine", ["fork", REPLAY])
 
 
 def failing_rounds(seed: int, rounds: int) -> list[int]:
@@ -97,7 +97,7 @@ def test_a_test_that_fails_in_one_round_is_set_aside_there_and_plain_pytest_fail
     assert others == dict.fromkeys(set(range(2)) - {bad}, Verdict.KILLED)
     assert found[bad].verdict is Verdict.UNSTABLE
     assert (found[bad].message or "").startswith("the tests that can be relied on let it through; tests/")
-    if engine == "branch":
+    if engine == "fork":
         check_with_plain_pytest(tmp_path, seed, bad, line)
 
 
@@ -125,7 +125,7 @@ def test_more_failing_rounds_than_the_limit_allows_end_the_run(tmp_path: Path, s
         campaign(tmp_path, rounds=2)
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_a_test_that_fails_in_all_rounds_is_an_error(tmp_path: Path, script: Script, engine: str) -> None:
     script.original = lambda run: CHECKED if run.test == CHECKS else {}
     write_project(tmp_path, MISSION, TESTS)
@@ -145,7 +145,7 @@ def test_a_test_that_fails_by_chance_in_the_only_round_is_flaky(tmp_path: Path, 
     write_project(
         tmp_path, MISSION, TESTS, configuration=CONFIGURATION + "    unstable_limit = 0.5\n", more=more
     )
-    found, progress = campaign(tmp_path, engine="branch", rounds=1)
+    found, progress = campaign(tmp_path, engine="fork", rounds=1)
     assert found[0].verdict is Verdict.KILLED
     assert (
         "set aside in round 1: tests/test_other.py::test_flaky (failed and passed in equal runs)"

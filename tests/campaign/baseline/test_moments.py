@@ -13,7 +13,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.execution.processes import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary
 from mutabot.model.events import TestEnd
-from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_branches, outcomes, request_for, write_project
+from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_forks, outcomes, request_for, write_project
 
 MISSION = """
     def run(arm):
@@ -57,7 +57,7 @@ def named(found: dict[tuple[str, int], Outcome], part: str) -> Outcome:
 
 
 def test_a_fault_that_is_seen_on_the_way_alone_is_told(tmp_path: Path) -> None:
-    found = by_branches(project(tmp_path))
+    found = by_forks(project(tmp_path))
     reverse = named(found, "move_by#1:dx:reverse")
     assert (reverse.verdict, reverse.indistinguishable) == (Verdict.SURVIVED, False)
     assert (reverse.distance, reverse.way) == (0.0, pytest.approx(500))
@@ -75,10 +75,10 @@ def test_a_fork_is_compared_on_the_way_in_the_tests_after_its_own_too(tmp_path: 
     tests = folder / "tests" / "test_mission.py"
     tests.write_text(tests.read_text() + "\n\ndef test_it_arrives_again():\n    test_it_arrives()\n")
     only = ("*position#1:result:negate", "*move_by#1:dx:reverse")
-    forked = by_branches(folder, only=only)
-    replayed = by_branches(folder, only=only, engine="replay", fresh=True)
+    forked = by_forks(folder, only=only)
+    replayed = by_forks(folder, only=only, engine="replay", fresh=True)
     for pair, one in forked.items():
-        assert one.engine == "branch"
+        assert one.engine == "fork"
         assert one.compared is not None
         assert (one.compared.calls, one.compared.moments) == (6, 6)
         assert (one.compared, one.way) == (replayed[pair].compared, replayed[pair].way)

@@ -10,7 +10,7 @@ from mutabot.campaign.check import check
 from mutabot.campaign.run import at_it, begin, run_campaign
 from mutabot.errors import ConfigurationError
 from mutabot.model import Outcome, Verdict
-from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_branches, request_for, write_project
+from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_forks, request_for, write_project
 
 MISSION = """
     def run(arm):
@@ -47,7 +47,7 @@ def test_a_probe_that_no_test_can_read_is_refused(tmp_path: Path, probe: str, wo
     robot = ROBOT + "\n    def broken():\n        raise RuntimeError('the camera is off')\n"
     robot += "\n    def silent():\n        pass\n"
     folder = project(tmp_path, probe, robot=robot, more="def box():\n    return 1.0\n")
-    request = request_for(folder, engine="branch")
+    request = request_for(folder, engine="fork")
     with pytest.raises(ConfigurationError) as caught:
         (run_campaign if probe == "world:box" else check)(request, Quiet())
     assert f"{probe} cannot be read at the end of any test" in str(caught.value)
@@ -57,7 +57,7 @@ def test_a_probe_that_no_test_can_read_is_refused(tmp_path: Path, probe: str, wo
 
 def test_a_method_is_read_from_the_object_that_the_program_uses(tmp_path: Path) -> None:
     """The mutant ends elsewhere, which nobody checks: it must not look as if nothing had happened."""
-    found = by_branches(project(tmp_path, "robot:Arm.position"))
+    found = by_forks(project(tmp_path, "robot:Arm.position"))
     reverse = outcome(found, "move_by#1:dx:reverse")
     assert reverse.verdict is Verdict.SURVIVED
     assert reverse.distance == pytest.approx(500)
@@ -88,7 +88,7 @@ def test_errors_at_both_sides_are_not_equal_worlds(tmp_path: Path) -> None:
     folder = project(tmp_path, "robot:look", tests=tests, robot=robot)
     mission = folder / "mission.py"
     mission.write_text(mission.read_text() + "\ndef look(arm):\n    arm.position()\n")
-    found = by_branches(folder)
+    found = by_forks(folder)
     reverse = outcome(found, "move_by#1:dx:reverse")
     assert reverse.verdict is Verdict.SURVIVED
     assert (reverse.indistinguishable, reverse.distance, reverse.divergence) == (None, None, ())
@@ -104,7 +104,7 @@ def test_a_probe_that_only_the_mutant_cannot_read_is_another_world(tmp_path: Pat
     robot += "\n    ARM = Arm()\n    def ahead():\n        if ARM.x < 0: raise ValueError('nothing there')\n"
     robot += "        return ARM.x\n"
     tests = TESTS.replace("Arm()", "ARM").replace("import Arm", "import ARM")
-    found = by_branches(project(tmp_path, "robot:ahead", tests=tests, robot=robot))
+    found = by_forks(project(tmp_path, "robot:ahead", tests=tests, robot=robot))
     reverse = outcome(found, "move_by#1:dx:reverse")
     assert reverse.indistinguishable is False
     assert "ahead: cannot be read, as it could be in the original: ValueError" in reverse.divergence[0]

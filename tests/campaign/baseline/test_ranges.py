@@ -56,7 +56,7 @@ def reversed_in(folder: Path, engine: str) -> tuple[Outcome, list[str]]:
     return outcome, told.lines
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_a_mutant_stays_away_from_what_is_out_of_range_and_says_so(engine: str, tmp_path: Path) -> None:
     outcome, lines = reversed_in(project(tmp_path), engine)
     assert (outcome.verdict, outcome.acted, outcome.hits) == (Verdict.SURVIVED, 1, 4)
@@ -67,7 +67,7 @@ def test_a_mutant_stays_away_from_what_is_out_of_range_and_says_so(engine: str, 
     assert lines.count(REMARK) == 1
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_what_the_robot_limits_itself_may_be_sent(engine: str, tmp_path: Path) -> None:
     outcome, lines = reversed_in(project(tmp_path, ", clip = [-1, 1]"), engine)
     assert (outcome.verdict, outcome.acted, outcome.hits) == (Verdict.KILLED, 3, 4)
@@ -76,7 +76,7 @@ def test_what_the_robot_limits_itself_may_be_sent(engine: str, tmp_path: Path) -
 
 
 def test_check_tells_what_is_out_of_range(tmp_path: Path) -> None:
-    report = check(request_for(project(tmp_path), engine="branch"), Quiet())
+    report = check(request_for(project(tmp_path), engine="fork"), Quiet())
     assert f"note      {REMARK}" in report.lines
     assert REMARK.rpartition(": ")[2] in str(report.data["remarks"])
 

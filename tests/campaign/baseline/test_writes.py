@@ -6,7 +6,7 @@ from textwrap import dedent
 
 import pytest
 
-from mutabot.campaign.baseline.site_names import written_through
+from mutabot.campaign.baseline.writes import written_through
 
 WRITTEN = [
     "data.qpos[0] = 1",

@@ -180,7 +180,7 @@ VOCABULARY = """
 """
 
 
-@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_a_survivor_that_is_turned_as_the_original_is_indistinguishable(
     engine: str, tmp_path: Folder
 ) -> None:

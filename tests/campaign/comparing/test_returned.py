@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.model import Outcome, Verdict
-from tests.campaign.project import VOCABULARY, by_branches, write_project
+from tests.campaign.project import VOCABULARY, by_forks, write_project
 
 PROBED = VOCABULARY + '\n    [[probe]]\n    call = "robot:Arm.x"\n'
 MISSION = """
@@ -33,7 +33,7 @@ MISSION = """
 
 def survivors(folder: Path, tests: str) -> dict[str, Outcome]:
     """Survivors of the first round by their ids, equal for both engines."""
-    found = by_branches(write_project(folder, MISSION, tests, vocabulary=PROBED))
+    found = by_forks(write_project(folder, MISSION, tests, vocabulary=PROBED))
     return {mutant: one for (mutant, _), one in found.items() if one.verdict is Verdict.SURVIVED}
 
 
@@ -106,7 +106,7 @@ def test_notes_and_mutants_of_the_text_stand_in_the_same_functions(tmp_path: Pat
             mission.when(Arm(0.5))
     """
     folder = write_project(tmp_path, MISSION, tests, vocabulary=PROBED)
-    found = by_branches(folder, families=("robot", "conventional"))
+    found = by_forks(folder, families=("robot", "conventional"))
     returned = [one.divergence for (mutant, _), one in found.items() if "arm" not in mutant]
     assert any("run returned" in line for lines in returned for line in lines)
     negate = next(one for (mutant, _), one in found.items() if ":when:" in mutant and "negate" in mutant)

@@ -40,7 +40,7 @@ TESTS = f"""
 #: the one that reaches the mutants first, and one that is left out
 GOES, OTHER_TEST = "tests/test_mission.py::test_goes", "tests/test_mission.py::test_other_3"
 AGAIN = "tests/test_mission.py::test_goes_again"
-ENGINES = pytest.mark.parametrize("engine", ["branch", "replay"])
+ENGINES = pytest.mark.parametrize("engine", ["fork", "replay"])
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Script:
 
 def campaign(folder: Path, **changes: Any) -> tuple[list[Outcome], list[str]]:
     quiet = Quiet()
-    request = request_for(folder, **{"only": ("skip",), "engine": "branch", **changes})
+    request = request_for(folder, **{"only": ("skip",), "engine": "fork", **changes})
     with Journal.open(run_campaign(request, quiet)) as journal:
         return journal.outcomes(), quiet.lines
 

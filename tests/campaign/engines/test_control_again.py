@@ -11,7 +11,7 @@ from mutabot.errors import ControlError
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 from tests.campaign.scripted import Died, Script
 
-#: hangs in what is neither the baseline nor a trunk: these are copies of the process that imported it
+#: hangs in what is neither the baseline nor a fork parent: these are copies of the process that imported it
 MISSION = """
     import os
     import time
@@ -41,7 +41,7 @@ def project(folder: Path, mission: str) -> None:
     write_project(folder, mission, TESTS, configuration=CONFIGURATION + "    timeout_seconds = 2\n")
 
 
-@pytest.mark.parametrize("engine", ["replay", "branch"])
+@pytest.mark.parametrize("engine", ["replay", "fork"])
 def test_a_control_that_hangs_once_does_not_end_the_campaign(
     tmp_path: Path, script: Script, engine: str
 ) -> None:
@@ -61,5 +61,5 @@ def test_a_control_that_hangs_once_does_not_end_the_campaign(
 def test_a_control_that_hangs_twice_ends_the_campaign(tmp_path: Path) -> None:
     project(tmp_path, MISSION)
     with pytest.raises(ControlError, match="no verdict of this campaign could be believed") as caught:
-        run_campaign(request_for(tmp_path, engine="branch", only=("*:reverse",)), Quiet())
+        run_campaign(request_for(tmp_path, engine="fork", only=("*:reverse",)), Quiet())
     assert "no end after 2 s of wall clock" in str(caught.value)

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.model import By, Outcome, Verdict
-from tests.campaign.project import Quiet, by_branches, no_private_files, outcomes, request_for, write_project
+from tests.campaign.project import Quiet, by_forks, no_private_files, outcomes, request_for, write_project
 from tests.campaign.scripted import Script
 
 FUNCTIONS = ("strict", "lenient", "typed", "busy", "maybe", "gives_up", "expected", "inverse")
@@ -101,7 +101,7 @@ def by_function(found: dict[tuple[str, int], Outcome]) -> dict[str, dict[str, Ou
 
 
 def test_all_that_makes_the_suite_fail_kills_and_nothing_else(tmp_path: Path) -> None:
-    found = by_function(by_branches(write_project(tmp_path, MISSION, TESTS)))
+    found = by_function(by_forks(write_project(tmp_path, MISSION, TESTS)))
     ends = {
         name: {operator: (one.verdict, one.by) for operator, one in row.items()}
         for name, row in found.items()
@@ -109,7 +109,7 @@ def test_all_that_makes_the_suite_fail_kills_and_nothing_else(tmp_path: Path) ->
     assert ends == EXPECTED
     assert found["strict"]["reverse"].message == WRONG_WAY
     assert found["expected"]["reverse"].message == "Unexpected success"
-    assert found["strict"]["reverse"].engine == ("replay" if no_private_files() else "branch")
+    assert found["strict"]["reverse"].engine == ("replay" if no_private_files() else "fork")
     # the suite passes, but the world is not the original's
     for name, end in (("maybe", "skipped"), ("gives_up", "xfailed")):
         outcome = found[name]["skip"]
@@ -127,7 +127,7 @@ ONE_TEST = """
 """
 
 
-@pytest.mark.parametrize("engine", ["replay", "branch"])
+@pytest.mark.parametrize("engine", ["replay", "fork"])
 def test_a_test_that_may_fail_is_not_flaky_if_it_passes_now_and_then(
     tmp_path: Path, script: Script, engine: str
 ) -> None:
@@ -160,7 +160,7 @@ DIVERGES = """
 
 
 def test_a_test_in_which_the_simulator_is_to_fail_judges_nothing(tmp_path: Path) -> None:
-    found = by_branches(write_project(tmp_path, MISSION, DIVERGES))
+    found = by_forks(write_project(tmp_path, MISSION, DIVERGES))
     assert {(one.verdict, one.test) for one in found.values()} == {
         (Verdict.KILLED, "tests/test_mission.py::test_moves")
     }

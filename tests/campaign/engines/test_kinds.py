@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.model import By, Outcome, Verdict
-from tests.campaign.engines.test_branching import facts
+from tests.campaign.engines.test_forking import facts
 from tests.campaign.project import Quiet, outcomes, request_for, run, write_project
 
 MOVES = """
@@ -185,7 +185,7 @@ LIMITED_TESTS = """
         mission.run(arm)
         assert arm.x == 0.25
 """
-SLOW_BRANCHES = """
+SLOW_FORKS = """
     import time
 
     def run(arm):
@@ -196,21 +196,21 @@ SLOW_BRANCHES = """
 
 
 @pytest.mark.usefixtures("plugins")
-def test_a_trunk_that_waits_for_its_branches_is_not_overdue(tmp_path: Path) -> None:
-    """Three branches of 0.7 s each, one at a time, in a test that may take 2 s."""
+def test_a_fork_parent_that_waits_for_its_forks_is_not_overdue(tmp_path: Path) -> None:
+    """Three forks of 0.7 s each, one at a time, in a test that may take 2 s."""
     tests = LIMITED_TESTS.replace("MARK", "@pytest.mark.timeout(2)")
-    folder = write_project(tmp_path, SLOW_BRANCHES, tests, vocabulary=MOVES)
+    folder = write_project(tmp_path, SLOW_FORKS, tests, vocabulary=MOVES)
     progress = Quiet()
-    found = outcomes(run_campaign(request_for(folder, jobs=1, engine="branch"), progress))
+    found = outcomes(run_campaign(request_for(folder, jobs=1, engine="fork"), progress))
     assert {(one.verdict, one.by) for one in found} == {CHECK}
     assert not [line for line in progress.lines if "other tests" in line or "flaky" in line]
 
 
-def test_a_watchdog_that_only_prints_does_not_keep_a_trunk_from_forking(tmp_path: Path) -> None:
+def test_a_watchdog_that_only_prints_does_not_keep_a_fork_parent_from_forking(tmp_path: Path) -> None:
     configuration = CONFIGURATION.replace('"--doctest-modules"', '"-o", "faulthandler_timeout=60"')
     tests = LIMITED_TESTS.replace("MARK", "")
-    folder = write_project(tmp_path, SLOW_BRANCHES, tests, vocabulary=MOVES, configuration=configuration)
-    found = run(folder, engine="branch", only=("*:skip",))
+    folder = write_project(tmp_path, SLOW_FORKS, tests, vocabulary=MOVES, configuration=configuration)
+    found = run(folder, engine="fork", only=("*:skip",))
     assert {(one.verdict, one.by) for one in found.values()} == {CHECK}
 
 

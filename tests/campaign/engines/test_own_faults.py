@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign import verdict
-from mutabot.campaign.engines import fork_parent, isolated_run
+from mutabot.campaign.engines import engine as engines
 from mutabot.errors import JournalError
 from mutabot.model import Verdict
 from tests.campaign.project import run, write_project
@@ -33,7 +33,7 @@ def project(tmp_path: Path, script: Script) -> Path:
     return write_project(tmp_path, MISSION, TESTS)
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_a_mutant_that_cannot_be_judged_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch, engine: str
 ) -> None:
@@ -55,40 +55,40 @@ def test_a_mutant_that_cannot_be_judged_is_an_error(
 def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run_of = isolated_run.run_of
+    run_of = engines.run_of
 
     def broken(result: Any, sources: Any) -> Any:
         if result.task.job.mutant.id == CHOSEN:
             raise RuntimeError("broken")
         return run_of(result, sources)
 
-    monkeypatch.setattr(isolated_run, "run_of", broken)
+    monkeypatch.setattr(engines, "run_of", broken)
     found = run(project, engine="replay")
     assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
 
 
-def test_a_report_of_a_branch_that_cannot_be_used_is_an_error(
+def test_a_report_of_a_fork_that_cannot_be_used_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = fork_parent._ForkParent._branch_ended
+    ended = engines._ForkParent._fork_ended
 
     def broken(self: Any, line: Any) -> Any:
         if line.mutant == CHOSEN:
             raise RuntimeError("broken")
         return ended(self, line)
 
-    monkeypatch.setattr(fork_parent._ForkParent, "_branch_ended", broken)
-    found = run(project, engine="branch")
+    monkeypatch.setattr(engines._ForkParent, "_fork_ended", broken)
+    found = run(project, engine="fork")
     assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
 
 
-def test_a_test_of_the_trunk_that_cannot_be_used_is_left_to_replay(
+def test_a_test_of_the_fork_parent_that_cannot_be_used_is_left_to_replay(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def broken(self: Any, end: Any) -> Any:
         raise RuntimeError("broken")
 
-    monkeypatch.setattr(fork_parent._ForkParent, "_test_ended", broken)
+    monkeypatch.setattr(engines._ForkParent, "_test_ended", broken)
     found = run(project, engine="auto")
     assert {one.engine for one in found.values()} == {"replay"}
     assert {one.verdict for one in found.values()} == {Verdict.KILLED, Verdict.SURVIVED}
@@ -100,4 +100,4 @@ def test_an_error_of_the_disk_is_none_of_the_mutant(project: Path, monkeypatch: 
 
     monkeypatch.setattr(verdict, "judge", full)
     with pytest.raises(JournalError):
-        run(project, engine="branch")
+        run(project, engine="fork")

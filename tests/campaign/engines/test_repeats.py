@@ -42,7 +42,7 @@ TESTS = """
 FLAKY = "tests/test_mission.py::test_flaky"
 #: the one that is noticed, or was once
 FALSE = "mission.py:run:arm.move_by#2:dx:reverse"
-ENGINES = pytest.mark.parametrize("engine", ["replay", "branch"])
+ENGINES = pytest.mark.parametrize("engine", ["replay", "fork"])
 
 
 def campaign(folder: Path, **changes: Any) -> tuple[Results, dict[str, Outcome], Quiet]:
@@ -79,7 +79,7 @@ def test_repeats_beyond_their_time_are_left_and_told(
     for name in ("SECONDS", "SHARE", "MOST_SECONDS", "MOST_SHARE"):
         monkeypatch.setattr(rerun, name, 0.0)
     write_project(tmp_path, MISSION, TESTS)
-    results, found, progress = campaign(tmp_path, engine="branch", repeats=True)
+    results, found, progress = campaign(tmp_path, engine="fork", repeats=True)
     assert found[FALSE].verdict is Verdict.KILLED
     assert any("1 were left, as repeats may take 0 s" in line for line in progress.lines)
     assert (results.repeats.doubted, false_kills(results.repeats)) == (Repeated(1, 0, 0), None)

@@ -36,7 +36,7 @@ TESTS = """
         assert arm.x == 0.25
 """
 FLAKY, SOUND = "tests/test_mission.py::test_flaky", "tests/test_mission.py::test_sound"
-ENGINES = pytest.mark.parametrize("engine", ["replay", "branch"])
+ENGINES = pytest.mark.parametrize("engine", ["replay", "fork"])
 
 
 def campaign(folder: Path, **changes: Any) -> tuple[Results, Quiet]:
@@ -105,9 +105,11 @@ def test_flaky_tests_beyond_the_limit_stop_the_run_before_any_mutant(tmp_path: P
     assert outcomes(tmp_path / ".mutabot" / "journal.sqlite") == []
 
 
-def test_flaky_tests_that_a_trunk_finds_beyond_the_limit_fail_the_run(tmp_path: Path, script: Script) -> None:
+def test_flaky_tests_that_a_fork_parent_finds_fail_the_run_beyond_the_limit(
+    tmp_path: Path, script: Script
+) -> None:
     flaky_project(tmp_path, script, 0.4)
-    results, progress = campaign(tmp_path, engine="branch")
+    results, progress = campaign(tmp_path, engine="fork")
     assert any("set aside as flaky" in line and "test_flaky" in line for line in progress.lines)
     decision = decide(results, max_unstable=0.4)
     assert decision.exit_code == 4
@@ -185,7 +187,7 @@ def test_outcomes_without_a_run_are_not_chosen() -> None:
     ("change", "same"),
     [
         ({}, True),
-        ({"wall": 3.0, "engine": "branch"}, True),
+        ({"wall": 3.0, "engine": "fork"}, True),
         ({"message": "<Arm at 0x7f0000aaaaaa> in /tmp/pytest-of-me/pytest-7/x"}, True),
         ({"message": "<Leg at 0x7f0000aaaaaa> in /tmp/pytest-of-me/pytest-7/x"}, False),
         ({"by": By.EXCEPTION}, False),

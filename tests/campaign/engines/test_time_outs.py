@@ -106,7 +106,7 @@ def flag() -> Iterator[Path]:
     path.unlink(missing_ok=True)
 
 
-ENGINES = ["branch", REPLAY]
+ENGINES = ["fork", REPLAY]
 
 
 @pytest.mark.whole

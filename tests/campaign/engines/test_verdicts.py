@@ -166,7 +166,7 @@ EXPECTED = {
 }
 
 
-@pytest.fixture(scope="module", params=["branch", REPLAY])
+@pytest.fixture(scope="module", params=["fork", REPLAY])
 def campaign(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, dict[str, Outcome], dict[str, str]]:

@@ -391,7 +391,7 @@ def test_errors_and_unstable_outcomes_are_never_reused(project: Project) -> None
     with edited(project.journal) as connection:
         for pair, verdict in zip(sorted(bad), (Verdict.ERROR, Verdict.UNSTABLE), strict=True):
             connection.execute(
-                "UPDATE outcome SET verdict = ?1, \"by\" = NULL, data = json_set(json_remove(data, '$.by'), "
+                "UPDATE outcome SET verdict = ?1, data = json_set(json_remove(data, '$.by'), "
                 "'$.verdict', ?1) WHERE mutant = ?2 AND round = ?3",
                 (verdict.value, *pair),
             )
@@ -492,7 +492,7 @@ def test_a_full_disk_stops_the_campaign_and_keeps_what_is_there(
 
     def fill(self: Journal, outcome: Outcome, *, key: str) -> None:
         if len(self.outcomes()) == 3:
-            connection = self._store._file
+            connection = self._file
             pages = connection.execute("PRAGMA page_count").fetchone()[0]
             connection.execute(f"PRAGMA max_page_count = {pages}")
             outcome = Outcome(outcome.mutant, outcome.round, outcome.verdict, message="x" * 100_000)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.run import plan_only, run_campaign
-from mutabot.campaign.sharding.merge import merge
+from mutabot.campaign.sharding.shards import merge
 from mutabot.config.options import Shard
 from mutabot.errors import MergeError, UsageError
 from mutabot.journal.files import recordings_path
@@ -29,7 +29,7 @@ MORE = """
         arm.grip(True)
 """
 CHANGES = {
-    "rounds": 2, "evidence": True, "families": ("robot", "graded"), "engine": "branch",
+    "rounds": 2, "evidence": True, "families": ("robot", "graded"), "engine": "fork",
     "only": ("mission.py:run:arm.move_by#1:*",),
 }  # fmt: skip
 

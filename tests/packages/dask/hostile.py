@@ -105,7 +105,7 @@ ATTACKS = (
 #: a worker that says of every unit that mutants were killed which it was not asked for
 FORGER = """
 from dataclasses import replace
-from mutabot.model.events import BranchEnd, SessionEnd
+from mutabot.model.events import ForkTestEnd, SessionEnd
 from mutabot.model.events import TestEnd
 from mutabot_dask import far
 from mutabot_dask.unit import UnitAnswer, WorkUnit
@@ -119,7 +119,7 @@ def run_unit(data):
         return honest(data)  # a control
     (test, *_), mutant = unit.task.job.tests, unit.task.job.mutant
     killed = TestEnd(test, "failed", hits=1, acted=1)
-    forged = BranchEnd(replace(mutant, operator="noise").id, killed)
+    forged = ForkTestEnd(replace(mutant, operator="noise").id, killed)
     answer = UnitAnswer.of_result((killed, forged, SessionEnd(1)), Result(unit.task))
     return replace(answer, ticket=unit.ticket).data("/", "/")
 

@@ -21,16 +21,16 @@ from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.events import (
     Acted,
-    BranchEnd,
     Called,
     ForkEnded,
+    ForkTestEnd,
     SessionEnd,
     SiteSeen,
     TestEnd,
     TestStart,
     event_to_data,
 )
-from mutabot.model.job import Branching, Job
+from mutabot.model.job import Forking, Job
 from mutabot.model.mutant import Place
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.dispatch import Dispatch
@@ -67,8 +67,8 @@ def unit(ticket: str = "ticket") -> WorkUnit:
     return WorkUnit(GROUND, task(1), ticket)
 
 
-def trunk(ticket: str = "ticket") -> WorkUnit:
-    job = replace(unit().task.job, mutant=None, branching=Branching((mutant(1),)))
+def fork_parent(ticket: str = "ticket") -> WorkUnit:
+    job = replace(unit().task.job, mutant=None, forking=Forking((mutant(1),)))
     return WorkUnit(GROUND, Task(None, job, is_fork_parent=True), ticket)
 
 
@@ -126,7 +126,7 @@ _WRONG: dict[str, bytes] = {
     "a line without its test": changed(lambda a: a["lines"][END_LINE].pop("test")),
     "a line of fork servers": changed(lambda a: a["lines"].append(event_to_data(ForkEnded(1, 1)))),
     "an outcome of a mutant of others": changed(
-        lambda a: a["lines"].append(event_to_data(BranchEnd(mutant(2).id, END)))
+        lambda a: a["lines"].append(event_to_data(ForkTestEnd(mutant(2).id, END)))
     ),
     "a test of others": changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test")),
     "an outcome that there is not": changed(lambda a: a["lines"][END_LINE].update(outcome="great")),
@@ -151,14 +151,14 @@ def test_an_answer_of_absurd_size_is_not_read() -> None:
         UnitAnswer.of(b" " * (MOST_BYTES + 1), unit())
 
 
-def test_a_trunk_tells_of_its_own_mutants_only() -> None:
+def test_a_fork_parent_tells_of_its_own_mutants_only() -> None:
     data = good()
-    data["lines"].append(event_to_data(BranchEnd(mutant(1).id, replace(END, trace=()))))
-    _, lines = UnitAnswer.of(packed(data), trunk())
-    assert sum(isinstance(line, BranchEnd) for line in lines) == 1
-    data["lines"].append(event_to_data(BranchEnd(mutant(2).id, replace(END, trace=()))))
+    data["lines"].append(event_to_data(ForkTestEnd(mutant(1).id, replace(END, trace=()))))
+    _, lines = UnitAnswer.of(packed(data), fork_parent())
+    assert sum(isinstance(line, ForkTestEnd) for line in lines) == 1
+    data["lines"].append(event_to_data(ForkTestEnd(mutant(2).id, replace(END, trace=()))))
     with pytest.raises(Misfit, match="is no mutant of this unit"):
-        UnitAnswer.of(packed(data), trunk())
+        UnitAnswer.of(packed(data), fork_parent())
 
 
 def test_texts_can_be_stored() -> None:

@@ -66,7 +66,7 @@ def when(condition: Callable[[], bool], then: Callable[[], Any]) -> threading.Th
     return thread
 
 
-@pytest.mark.parametrize("engine", ["branch", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_outcomes_are_those_of_a_campaign_without_a_cluster(
     engine: str, there: ClusterSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -74,10 +74,10 @@ def test_outcomes_are_those_of_a_campaign_without_a_cluster(
     ask = Link.ask
     monkeypatch.setattr(Link, "ask", lambda *given: asked.append(given[2].__name__) or ask(*given))
     project = write(tmp_path / "project")
-    only = () if engine == "branch" else ("reverse",)
+    only = () if engine == "fork" else ("reverse",)
     plain, found, told = run_twice(project, there, engine=engine, only=only)
     assert found == plain
-    assert asked.count("run_unit") >= (2 if engine == "branch" else len(plain)), told.lines
+    assert asked.count("run_unit") >= (2 if engine == "fork" else len(plain)), told.lines
     assert [line.partition(",")[0] for line in told.lines if "worker" in line] == ["workers are sent 5 files"]
 
 
@@ -167,7 +167,7 @@ def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(
 
 
 @pytest.mark.whole
-@pytest.mark.parametrize("engine", ["replay", pytest.param("branch", marks=pytest.mark.whole)])
+@pytest.mark.parametrize("engine", ["replay", pytest.param("fork", marks=pytest.mark.whole)])
 def test_what_takes_too_long_on_a_worker_is_decided_at_home(
     engine: str, there: ClusterSettings, tmp_path: Path
 ) -> None:

@@ -11,7 +11,7 @@ import pytest
 from mutabot.model.answer import keep, restore
 from mutabot.model.events import Problem
 from mutabot_ros import _master
-from tests.runtime.stage import Make, Stage
+from tests.runtime.stage import Make, Stage, take_away
 
 rospy = pytest.importorskip("rospy")
 std_srvs = pytest.importorskip("std_srvs.srv")
@@ -582,5 +582,5 @@ def test_nothing_of_us_is_left_when_a_session_is_over(make: Making) -> None:
     before = [vars(owner)[name] for owner, name in places]
     session = make("", GOAL).session()
     assert all(vars(owner)[name] is not was for (owner, name), was in zip(places, before, strict=True))
-    session.interception.remove()
+    take_away(session)
     assert [vars(owner)[name] for owner, name in places] == before

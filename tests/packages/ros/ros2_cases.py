@@ -12,7 +12,7 @@ from mutabot.model.answer import keep, restore
 from mutabot.model.events import Problem
 from mutabot.model.job import Idle
 from mutabot.runtime.interception.trace import LOST
-from tests.runtime.stage import Make, Stage
+from tests.runtime.stage import Make, Stage, take_away
 
 rclpy = pytest.importorskip("rclpy")
 std_srvs = pytest.importorskip("std_srvs.srv")
@@ -658,7 +658,7 @@ def test_what_does_not_fit_a_type_is_told_with_the_nearest_name(make: Making) ->
 def test_hooks_are_taken_away(make: Making) -> None:
     stage = make(PUBLISHING, GOAL)
     stage.run(stage.session())
-    stage.sessions[-1].interception.remove()
+    take_away(stage.sessions[-1])
     for kind, name in [
         (rclpy.node.Node, "create_publisher"),
         (rclpy.publisher.Publisher, "publish"),

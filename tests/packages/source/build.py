@@ -13,7 +13,9 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
+from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.session_text import SessionText
+from mutabot.runtime.program_text.switches import hand_through
 from mutabot_source.nodes import same_program
 from mutabot_source.operator import TextExample
 from mutabot_source.refine import refine
@@ -63,8 +65,16 @@ def imported(
         yield load(folder / text.file), hook
         assert not hook.problems
     finally:
-        hook.remove()
+        switch_off(hook)
         sys.modules.pop(Path(text.file).stem, None)
+
+
+def switch_off(hook: SessionText) -> None:
+    """Import as ever from now on; text that is instrumented goes on as the original."""
+    loading._steps.remove(hook)
+    hook.alternatives.activate()
+    if hook.sightings is not None:
+        hook.sightings.switches[1:] = [hand_through] * (len(hook.sightings.switches) - 1)
 
 
 def load(path: Path) -> ModuleType:

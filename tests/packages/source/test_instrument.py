@@ -23,7 +23,7 @@ from mutabot.runtime.program_text.session_text import SessionText
 from mutabot.runtime.program_text.switches import Alternatives, error_of
 from mutabot_source.refine import merge, refine
 from mutabot_source.texts import find_texts
-from tests.packages.source.build import choices, imported, load, spliced, text_of
+from tests.packages.source.build import choices, imported, load, spliced, switch_off, text_of
 
 #: what the operators that raise call it
 BOMB, ZERO_VALUE = error_of("Bomb"), error_of("ZeroValue")
@@ -200,7 +200,7 @@ def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
     try:
         assert load(tmp_path / text.file).x == 5
     finally:
-        hook.remove()
+        switch_off(hook)
     assert hook.problems == {text.file: "it has changed since its mutants were made"}
 
 
@@ -282,7 +282,7 @@ def test_a_program_imported_too_early_is_told(tmp_path: Path) -> None:
     load(tmp_path / text.file)
     hook = SessionText(str(tmp_path), Instrumentation((text,)))
     hook.install()
-    hook.remove()
+    switch_off(hook)
     del sys.modules[Path(text.file).stem]
     assert list(hook.problems) == [text.file]
 

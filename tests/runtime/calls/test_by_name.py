@@ -8,6 +8,7 @@ import pytest
 
 from mutabot.config.vocabulary import load
 from tests.runtime.client import ClientStage
+from tests.runtime.stage import take_away
 
 VOCABULARY = """
 [[operation]]
@@ -129,7 +130,7 @@ def test_what_is_done_in_a_node_of_the_tests_is_the_oracles(stage: ClientStage) 
         module = stage.program(program(PUBLISH, RECEIVED))
         session, client = stage.session(module, oracle_nodes=nodes)
         module.run(client)
-        session.remove()
+        take_away(session)
         assert [(one.operation, one.oracle) for one in session.recorder.sites] == [
             ("receive /arm/pose", wanted),
             ("publish /arm/goal", wanted),

@@ -20,6 +20,7 @@ NODE = """
     from mutabot.runtime.processes import member
     from mutabot.operators.kinds._examples import CALL
     from tests.runtime.client import ClientStage
+    from tests.runtime.stage import take_away
 
     def told(line):
         print("tells", type(line).__name__, getattr(line, "in_call", None), flush=True)
@@ -28,7 +29,7 @@ NODE = """
     program = stage.program("def run(client):\\n    return client.call('/gripper/close', 'now')\\n")
     session, client = stage.session(program)
     program.run(client)
-    session.remove()
+    take_away(session)
     member._member = object()
     stage.pipe.send = told
     print("begins", flush=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 import mutabot
 from mutabot.model import Mutant, Role, Site
-from tests.runtime.stage import Make
+from tests.runtime.stage import Make, take_away
 
 ROBOT = "class Arm:\n    def move_by(self, dx):\n        return None\n"
 PROGRAM = "def run(arm):\n    arm.move_by(0.25)\n"
@@ -27,7 +27,7 @@ def test_a_mutated_call_goes_through_few_files(make_stage: Make) -> None:
     stage = make_stage(ROBOT, PROGRAM, VOCABULARY)
     recording = stage.session()
     stage.run(recording, "run", stage.load_robot().Arm())
-    recording.remove()
+    take_away(recording)
     sys.modules.pop(stage.program_name)
     (seen,) = stage.sites()
     site = Site(seen.span, "text", 1, Role.PROGRAM)

@@ -58,13 +58,12 @@ ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "len('äß') * sensor().x < 0.8": ("0.5 < 0.8", 0.3),
     "0.2 <= sensor().x <= 0.3": ("0.2 <= 0.25", 0.05),
     "sensor().x == pytest.approx(0.26, abs=0.05)": ("0.25 == approx(0.26)", 0.04),
-    "[sensor().x, 1.0] == pytest.approx([0.26, 1.0], abs=0.05)": ("[0.25, 1] == approx([0.26, 1])", 0.04),
+    "[sensor().x, 1.0] == pytest.approx([0.26, 1.0], abs=0.05)": ("[0.25, 1.0] == approx([0.26, 1.0])", 0.04),
     "{'x': sensor().x} == pytest.approx({'x': 0.26}, abs=0.05)": ("{'x': 0.25} == approx({'x': 0.26})", 0.04),
     "np.array([sensor().x]) == pytest.approx(np.array([0.26]), abs=0.05)": (None, 0.04),
     "abs(sensor().x - 0.26) <= 0.05": ("0.01 <= 0.05", 0.04),
-    "math.isclose(sensor().x, 0.26, abs_tol=0.05)": ("0.25 ≈ 0.26", 0.04),
-    "np.allclose([sensor().x], [0.26], rtol=0, atol=0.05)": ("[0.25] ≈ [0.26]", 0.04),
-    "is_near(sensor().x, 0.26, by=0.05)": ("is_near(0.25, 0.26, by=0.05)", None),
+    "math.isclose(sensor().x, 0.26, abs_tol=0.05)": ("", None),
+    "is_near(sensor().x, 0.26, by=0.05)": ("", None),
     "sensor().x == 0.25": ("0.25 == 0.25", None),
     "str(sensor().x) in ('0.25', 'a')": ("'0.25' in ('0.25', 'a')", None),
     "{'x': [sensor().x]} == {'x': [0.25]}": ("{'x': [0.25]} == {'x': [0.25]}", None),
@@ -73,12 +72,10 @@ ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "sensor() is not None": ("", None),
 }
 COMPARISONS: dict[str, tuple[str | None, float | None]] = {
-    "self.assertAlmostEqual(sensor().x, 0.26, delta=0.05)": ("0.25 ≈ 0.26", 0.04),
-    "self.assertAlmostEqual(sensor().x, 0.26, places=1)": ("0.25 ≈ 0.26", 0.04),
-    "self.assertLess(sensor().x, 0.3)": ("0.25 < 0.3", 0.05),
-    "self.assertEqual([1, 2], [1, 2])": ("[1, 2] == [1, 2]", None),
-    "self.assertTrue(sensor().x)": ("assertTrue(0.25)", None),
-    "np.testing.assert_allclose(sensor().x, 0.26, rtol=0, atol=0.05)": ("0.25 ≈ 0.26", 0.04),
+    "self.assertAlmostEqual(sensor().x, 0.26, delta=0.05)": ("", None),
+    "self.assertTrue(sensor().x)": ("", None),
+    "self.assertRaises(ValueError, int, 'a')": ("", None),
+    "np.testing.assert_allclose(sensor().x, 0.26, rtol=0, atol=0.05)": ("", None),
 }
 
 

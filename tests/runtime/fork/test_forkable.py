@@ -49,7 +49,7 @@ def test_graphics_library_is_noticed_however_it_was_loaded() -> None:
     assert "a graphics library is loaded" in asked(f"import ctypes; ctypes.CDLL({library!r})")
 
 
-def test_own_branches_are_no_reason() -> None:
+def test_own_forks_are_no_reason() -> None:
     pid = os.fork()
     if pid == 0:
         os.read(os.pipe()[0], 1)

@@ -185,34 +185,6 @@ def test_watching_a_class_changes_nothing_about_making_its_objects(make_stage: M
         robot.Arm(1, 2)
 
 
-@pytest.mark.parametrize(
-    ("current", "words"),
-    [
-        ("robot:Tracker.pose", "read from an object of Tracker, but the operation is called on Arm"),
-        ("robot:pose_of", "needs arm, but it is asked without arguments"),
-        ("robot:Arm.pose_in", "needs frame, but it is asked without arguments"),
-    ],
-)
-def test_a_current_that_cannot_be_asked_is_a_problem_of_its_key(
-    make_stage: Make, current: str, words: str
-) -> None:
-    robot = """
-        class Tracker:
-            def pose(self): return 1.0
-        def pose_of(arm): return arm.x
-        class Arm:
-            x = 1.0
-            def move_by(self, dx): self.x += dx
-            def pose_in(self, frame): return self.x
-    """
-    reading = '[[operation]]\ncall = "{}"\nresult = {{ kind = "position", axis = "x", unit = "m" }}\n'
-    moving = OPERATION.replace('unit = "m"', 'axis = "x", unit = "m"')
-    vocabulary = f'{moving}current = "{current}"\n{reading.format(current)}'
-    stage = make_stage(robot, "import robot\n\ndef run():\n    robot.Arm().move_by(1)\n", vocabulary)
-    assert words in problem_of(stage).text
-    assert problem_of(stage).key == "current"
-
-
 def test_a_current_of_the_same_object_can_be_asked(make_stage: Make) -> None:
     robot = "class Arm:\n    def move_by(self, dx): ...\n    def pose(self): return 1.0\n"
     reading = (

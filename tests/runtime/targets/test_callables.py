@@ -108,19 +108,6 @@ def test_names_taken_from_a_module_are_intercepted(make_stage: Make, program: st
     assert [seen.operation for seen in stage.sites()] == [f"{stage.robot_name}:move"]
 
 
-def test_what_was_wrapped_is_put_back(make_stage: Make) -> None:
-    stage = make_stage(
-        ROBOT, "from robot import move, Arm\n", operation("move") + "\n" + operation("Arm.inherited")
-    )
-    robot, program = stage.load_robot(), stage.load_program()
-    before = (robot.move, program.move, vars(robot.Arm).get("inherited"))
-    session = stage.session()
-    assert robot.move is not before[0]
-    assert program.move is not before[1]
-    session.remove()
-    assert (robot.move, program.move, vars(robot.Arm).get("inherited")) == before
-
-
 def test_an_intercepted_callable_keeps_its_face(make_stage: Make) -> None:
     stage = make_stage(ROBOT, "import robot\n", operation("move") + "\n" + operation("amove"))
     robot = stage.load_robot()

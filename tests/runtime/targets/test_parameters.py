@@ -137,7 +137,7 @@ def looked_at(stage: Stage) -> list[Remark]:
     stage.load_program()
     session = stage.session()
     for operation in session.job.vocabulary.operations:
-        session.inspection.check_target(operation, session.interception)
+        session.inspection.check_target(operation, session.targets)
     return remarks(stage)
 
 

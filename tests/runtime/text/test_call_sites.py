@@ -18,6 +18,7 @@ import pytest
 
 from mutabot.model import Role
 from mutabot.runtime.program_text.call_sites import CALLS, CallSite, CallSites
+from tests.runtime.stage import forget
 
 TEXT = """
     def chain(arm, *more, **named):
@@ -80,7 +81,7 @@ def sites() -> Iterator[Callable[..., CallSites]]:
     before = getattr(builtins, CALLS, None)
     yield make
     for one in made:
-        one.remove()
+        forget(one)
     if before is None and hasattr(builtins, CALLS):
         delattr(builtins, CALLS)
 

@@ -8,6 +8,7 @@ from unittest.mock import MagicMock, create_autospec
 import wrapt
 
 from mutabot.runtime.program_text.handing import Handing
+from tests.runtime.stage import mocks_as_ever
 
 
 def move(metres: float) -> None:
@@ -20,7 +21,7 @@ def handed_on(found: Any) -> Any:
     try:
         return handing._wrapped(cast(Any, None), cast(Any, None), None, found, found)
     finally:
-        handing.remove()
+        mocks_as_ever()
 
 
 def test_wrapt_gets_no_refusal_from_a_mock_made_after_a_wrapped_function() -> None:

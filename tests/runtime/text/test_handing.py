@@ -17,7 +17,7 @@ import pytest
 
 from mutabot.model import Mutant, Role, Site
 from mutabot.model.events import Remark
-from tests.runtime.stage import Make, Stage
+from tests.runtime.stage import Make, Stage, take_away
 
 ROBOT = """
     class Arm:
@@ -147,7 +147,7 @@ def test_a_mutant_changes_what_a_mock_is_told_in_a_thread(stage: Stage) -> None:
 
     session = stage.session()
     stage.run(session, "given", take, Mock())
-    session.remove()
+    take_away(session)
     (seen,) = stage.sites()
     site = Site(seen.span, "take", 1, Role.PROGRAM)
     mutant = Mutant(1, "robot", "reverse", site, seen.operation, None, "dx", "", "", None)

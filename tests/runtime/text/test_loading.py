@@ -6,7 +6,6 @@ import ast
 import importlib
 import sys
 from collections.abc import Iterator
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 
@@ -15,6 +14,7 @@ import pytest
 from mutabot.model import Instrumentation
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.session_text import SessionText
+from tests.runtime.stage import forget
 
 
 class Doubling:
@@ -58,7 +58,7 @@ def through(name: str, *steps: Doubling) -> ModuleType:
         return importlib.import_module(name)
     finally:
         for step in steps:
-            loading.remove(step)
+            forget(step)
 
 
 def test_every_step_takes_its_turn_at_the_files_it_wants(name: str) -> None:
@@ -76,19 +76,6 @@ def test_a_step_may_refuse_to_go_on_without_it(name: str) -> None:
         through(name, Doubling(name, ValueError("no way"), raising=True))
 
 
-def test_without_steps_nothing_is_patched(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(loading, "_steps", [])  # another test may have left its own
-    if "get_code" in vars(SourceFileLoader):
-        monkeypatch.delattr(SourceFileLoader, "get_code")
-    original = SourceFileLoader.get_code
-    assert through(name).x == 1
-    assert SourceFileLoader.get_code is original
-    loading.add(step := Doubling("other"))
-    assert SourceFileLoader.get_code is not original
-    loading.remove(step)
-    assert "get_code" not in vars(SourceFileLoader)
-
-
 def test_what_only_claims_to_be_a_module_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     class Library:
         """As the libraries of cffi: a module by what it says, without a namespace."""
@@ -99,4 +86,4 @@ def test_what_only_claims_to_be_a_module_is_left_alone(monkeypatch: pytest.Monke
     monkeypatch.setitem(sys.modules, "_of_cffi", Library())  # type: ignore[arg-type]
     hook = SessionText("/", Instrumentation(()))
     hook.install()
-    hook.remove()
+    forget(hook)

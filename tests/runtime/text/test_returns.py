@@ -17,6 +17,7 @@ import pytest
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.observation.probes import LONGEST, MOST, plain
 from mutabot.runtime.program_text.returns import LIMIT, Returns
+from tests.runtime.stage import forget
 
 PROGRAM = '''
     """A program."""
@@ -102,7 +103,7 @@ def program(tmp_path: Path) -> Iterator[tuple[Returns, ModuleType]]:
         yield returns, module
     finally:
         returns.stop()
-        returns.remove()
+        forget(returns)
         sys.path.remove(str(tmp_path))
         sys.modules.pop(name, None)
 

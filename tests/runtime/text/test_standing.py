@@ -11,7 +11,7 @@ import pytest
 from mutabot.model import Mutant, Role, Site
 from mutabot.model.events import Remark
 from mutabot.runtime.interception.dispatcher import is_coroutine_function
-from tests.runtime.stage import Make, Stage
+from tests.runtime.stage import Make, Stage, take_away
 
 ROBOT = """
     import sys
@@ -86,7 +86,7 @@ def _sites(stage: Stage, function: str, *args: Any) -> list[tuple[str, Any]]:
     found = [
         (sites[index].operation.partition(":")[2], written) for index, written, *_ in session.recorder.trace
     ]
-    session.remove()
+    take_away(session)
     del sys.modules[stage.program_name]
     return found
 
@@ -171,7 +171,7 @@ def test_patched_names_mean_the_operation_where_they_did_before(stage: Stage) ->
 def test_a_mutant_changes_what_a_mock_is_told_and_leaves_the_rest_as_written(stage: Stage) -> None:
     session, arm = stage.session(), Mock()
     stage.run(session, "run", arm)
-    session.remove()
+    take_away(session)
     (seen,) = stage.sites()
     site = Site(seen.span, "arm.move_by", 1, Role.PROGRAM)
     mutant = Mutant(1, "robot", "reverse", site, seen.operation, None, "dx", "", "", None)

@@ -8,17 +8,21 @@ of one place returned says what a mutant that leaves them out answers.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.baseline.site_names import Sources
+from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import Observation, TraceCall, as_steady
 from mutabot.errors import MutabotError
 from mutabot.execution.task import Result
 from mutabot.families import CALLS, CONTROL, MESSAGES
 from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
+from mutabot.languages.front_end import SiteName, front_end_of
+from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.languages.python import unused_calls
 from mutabot.model import (
     FATAL,
     IDENTITY,
@@ -28,13 +32,15 @@ from mutabot.model import (
     Operation,
     Pattern,
     ProgramText,
+    Role,
+    Site,
     Span,
     Vocabulary,
 )
 from mutabot.model.answer import is_plain
 from mutabot.model.events import Remark, SiteSeen, TestEnd
 from mutabot.model.job import Budget, Idle, InProcess, RefusedAt
-from mutabot.model.mutant import Place
+from mutabot.model.mutant import Extent, Place
 from mutabot.operators.command import Identity
 
 #: what a control is at a place of a fault that is put in place by its provider's own code
@@ -195,6 +201,54 @@ def _kept(note: Any) -> Any:
     if data is _MISSING:
         raise NoAnswerError(f"what it answers cannot be kept ({note['opaque']}); {_HINT}")
     return data
+
+
+@dataclass(slots=True)
+class Sources:
+    """The project's source files, read when first needed.
+
+    Attributes:
+        root: the project's root.
+    """
+
+    root: Path
+    _names: dict[str, Mapping[Extent, SiteName]] = field(default_factory=dict)
+    _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
+
+    def site(self, seen: SiteSeen) -> Site:
+        """The site at which something was seen."""
+        span = seen.span
+        if span.file not in self._names:
+            self._names[span.file] = self._in(span.file, front_end_of(span.file).names) or {}
+        text, occurrence = self._names[span.file].get(_extent(span), SiteName(f"line {span.line}", 1))
+        return Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
+
+    def is_written_through(self, span: Span) -> bool:
+        """Whether the file writes to what an expression of it gives, as far as its text says."""
+        return self._is_among(span, written_through)
+
+    def is_unused(self, seen: SiteSeen) -> bool:
+        """Whether nobody uses what the call returns: it is a statement by itself."""
+        return seen.direct and self._is_among(seen.span, unused_calls)
+
+    def _is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
+        """Whether an expression is one of those that are found in the text of its file, if that is Python."""
+        is_python = front_end_of(span.file) is PYTHON
+        return is_python and _extent(span) in (self._in(span.file, find) or ())
+
+    def _in(self, file: str, find: Callable[[str], Any]) -> Any:
+        """What is found in the text of a file; None for one that cannot be read."""
+        if (file, find) not in self._read:
+            try:
+                found = find((self.root / file).read_text(encoding="utf-8"))
+            except (OSError, SyntaxError, ValueError):
+                found = None
+            self._read[file, find] = found
+        return self._read[file, find]
+
+
+def _extent(span: Span) -> Extent:
+    return (span.line, span.column, span.end_line, span.end_column)
 
 
 #: operations and simulated seconds that a test may use beyond its multiple of the baseline

@@ -16,6 +16,7 @@ from mutabot.campaign.baseline.baseline import (
     Baseline,
     Hit,
     RecordedAnswers,
+    Sources,
     cost,
     observations_of,
     places_of,
@@ -33,8 +34,6 @@ from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIA
 from mutabot.model.events import Remark, TestEnd
 from mutabot.model.mutant import Place
 from mutabot.operators import load_all
-
-from .site_names import Sources
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance
 FAILS = "fails on the unmutated program"
@@ -117,7 +116,7 @@ class _Suite:
         """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
         for result in self.executor.events(tasks):
             if not isinstance(result, Result):
-                if isinstance(result[1], Remark):  # told when it is made, before the tests run if possible
+                if isinstance(result[1], Remark):
                     self.remarks.append(result[1])
                     self.progress.note(str(result[1]))
                 continue

@@ -13,13 +13,13 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate
 
-from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.request import REPLAY
+from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.journal.journal import Journal
-from mutabot.journal.records import CONFIRMATION, Confirmation, is_wrong, run_short
+from mutabot.journal.records import CONFIRMATION, is_wrong, run_short
 from mutabot.model import Mutant, Outcome
-from mutabot.model.codec import from_data, to_data
 
 from .engine import run_trials
 
@@ -30,15 +30,12 @@ LEAST = 30.0
 SURVIVORS = 1 / 3
 
 
-def earlier_decision(journal: Journal) -> Confirmation | None:
+def earlier_decision(journal: Journal) -> bool | None:
     """What was decided in the campaign that this one goes on with; None if that had come to its end."""
-    found = journal.meta().get(CONFIRMATION) if journal.finished != "complete" else None
-    return from_data(Confirmation, found) if found is not None else None
+    return journal.meta().get(CONFIRMATION) if journal.finished != "complete" else None
 
 
-def decide(
-    campaign: Campaign, mutants: Sequence[Mutant], journal: Journal, earlier: Confirmation | None
-) -> Campaign:
+def decide(campaign: Campaign, mutants: Sequence[Mutant], journal: Journal, earlier: bool | None) -> Campaign:
     """The campaign with or without the tests that are left out at first. The journal says which.
 
     This goes by what the tests took in the baseline, and by how many mutants are taken to survive.
@@ -54,10 +51,8 @@ def decide(
             reaching = sum(walls[number] for number in numbers)
             without += reaching
             rest += until[-1] - until[numbers[0]] - reaching
-    is_short = (
-        rest * SURVIVORS > max(without, LEAST) if earlier is None else earlier.is_short and short.is_short
-    )
-    journal.set_meta(CONFIRMATION, to_data(Confirmation(is_short, rest, without)))
+    is_short = rest * SURVIVORS > max(without, LEAST) if earlier is None else earlier and short.is_short
+    journal.set_meta(CONFIRMATION, is_short)
     return replace(campaign, is_short=is_short)
 
 

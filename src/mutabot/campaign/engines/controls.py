@@ -18,7 +18,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import REPLAY
-from mutabot.campaign.verdict import judge
+from mutabot.campaign.verdict import judge, run_of
 from mutabot.errors import ControlError
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
@@ -26,7 +26,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
 from mutabot.operators.command import Fatal, Identity
 
-from .isolated_run import MutantRun, run_of, task
+from .tasks import MutantRun, task
 
 IDENTITY, FATAL = Identity.name, Fatal.name
 #: what a control is run for that is forked before any test

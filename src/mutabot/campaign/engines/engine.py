@@ -1,26 +1,61 @@
 """The engines, which give mutants their outcomes, and what one leaves to the other.
 
-``branch`` runs the suite once as the original and forks it where a mutant differs. ``replay`` runs each
+``fork`` runs the suite once as the original and forks it where a mutant differs. ``replay`` runs each
 mutant in a process of its own: it is the reference, and it takes every mutant. With ``auto``, ``replay``
-judges what ``branch`` cannot.
+judges what ``fork`` cannot.
+
+There is one fork parent per round, or several where places share nothing. A fork parent is the second run of
+the original. What a fork tells counts only if all tests up to the one in which it was forked ended in its
+parent as in the baseline. Mutants that were forked later are left to replay, as are those that could not be
+forked, or got lost with their parent.
+
+A test that passed in the baseline and failed in a fork parent may be flaky, or something that a fork left
+behind made it fail. One more run without forks tells: a test that fails again is flaky and judges nothing. Of
+one that passes, that cannot be told apart, so its kills are repeated.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import replace
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
-from mutabot.campaign.campaign import Campaign, OutcomeWriter
-from mutabot.campaign.request import BRANCH, REPLAY
+from mutabot.campaign.baseline.baseline import observation, place_of
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.request import FORK, REPLAY
+from mutabot.campaign.reuse.keys import OutcomeWriter
+from mutabot.campaign.verdict import (
+    Death,
+    Run,
+    judged,
+    not_judged,
+    not_run,
+    refuse_others,
+    run_of,
+    without_tests,
+)
 from mutabot.errors import in_short
+from mutabot.execution.task import Result, Task, death, how_ended
+from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
-from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
+from mutabot.model.job import Forking
+from mutabot.model.mutant import Place
 
 from .controls import Control, controls_of, run_controls, settled
-from .fork_parent import ForkParents, Unhandled
-from .isolated_run import MutantRun, replay, run_alone
-from .rerun import clear_up
+from .tasks import MutantRun, job_of, startup_limit, task, wall_limits
+
+#: seconds for a test of the suite without any mutant
+_DEADLINE = 600.0
+#: seconds without any word from a fork parent, beyond what its tests and forks may take
+_PATIENCE = 60.0
+#: mutants under which a part costs more than it spreads, and parts for each place: they are not equally long
+_LEAST, _PARTS = 10, 16
+#: fewer do where the forks of a part would take less than so many times its own tests; but not fewer than
+_WORTH, _FEWEST = 4, 2
+#: seconds that a fork takes at least
+_FORK = 0.01
 
 
 def run_trials(
@@ -32,7 +67,7 @@ def run_trials(
 ) -> None:
     """Run these mutants in these rounds, with their controls. Each outcome is in the journal within a second.
 
-    An outcome that counts with the whole suite only goes to ``campaign.again`` instead.
+    An outcome that counts with the whole suite only goes to ``Campaign.again`` instead.
 
     Args:
         found: called with each outcome. Nothing else keeps them: a campaign may have a million.
@@ -45,9 +80,9 @@ def run_trials(
         runs, left = left.runs, Unhandled()
         if not runs:
             return
-        for one in _by_branch(campaign, runs, left) if engine == BRANCH else _by_replay(campaign, runs):
+        for one in _by_fork(campaign, runs, left) if engine == FORK else _by_replay(campaign, runs):
             if isinstance(one, ControlEnd):
-                writer.journal.add_control(one.test_file, one.control, one.ok, one.detail)
+                writer.journal.add_control(one)
                 continue
             mutant = mutants[one.mutant]
             if not _counts(campaign, mutant, one):
@@ -58,7 +93,7 @@ def run_trials(
             outcome = replace(one, confirmed=True) if is_confirmed else one
             _write(campaign, mutant, outcome, writer, found)
     for mutant, round in left.runs:
-        text = f"it could not be branched: {left.why(mutant) or 'its branch gave no answer'}"
+        text = f"it could not be forked: {left.why(mutant) or 'its fork gave no answer'}"
         error = Outcome(mutant.id, round, Verdict.ERROR, message=text, engine=campaign.request.engine)
         _write(campaign, mutant, error, writer, found)
 
@@ -98,7 +133,7 @@ def _by_replay(campaign: Campaign, runs: Sequence[MutantRun]) -> Iterator[Outcom
     yield from replay(campaign, runs)
 
 
-def _by_branch(
+def _by_fork(
     campaign: Campaign, runs: Sequence[MutantRun], left: Unhandled
 ) -> Iterator[Outcome | ControlEnd]:
     """Run one fork parent per round, with controls and mutants as its forks."""
@@ -109,7 +144,7 @@ def _by_branch(
     hindered: list[tuple[Mutant, Outcome]] = []
     for outcome in parents.run([*(one.run for one in controls.values()), *runs]):
         if outcome.mutant in controls:
-            yield from settled(campaign, BRANCH, controls[outcome.mutant], outcome)
+            yield from settled(campaign, FORK, controls[outcome.mutant], outcome)
         elif outcome.beside is not None:
             hindered.append((mutants[outcome.mutant], outcome))
         else:
@@ -123,21 +158,21 @@ def _by_branch(
 def _forked_controls(campaign: Campaign, mutants: Collection[Mutant]) -> dict[str, Control]:
     """The controls that are to be forked, by the ids of their mutants."""
     found = controls_of(campaign.baseline, mutants, forked=True)
-    return {one.mutant.id: one for one in found if (BRANCH, *one.way) not in campaign.proven}
+    return {one.mutant.id: one for one in found if (FORK, *one.way) not in campaign.proven}
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Unhandled]:
-    """Run the controls alone. Returns how many ended as they must, and what ``branch`` leaves.
+    """Run the controls alone. Returns how many ended as they must, and what ``fork`` leaves.
 
     Raises ControlError for a control that ends wrongly.
     """
     left, ended = Unhandled(), 0
     rest = mutants
-    if BRANCH in campaign.request.engines:
+    if FORK in campaign.request.engines:
         controls = _forked_controls(campaign, mutants)
         campaign.progress.stage("controls", len(controls))
         for outcome in ForkParents(campaign, left).run([one.run for one in controls.values()]):
-            ended += len(list(settled(campaign, BRANCH, controls[outcome.mutant], outcome, is_step=True)))
+            ended += len(list(settled(campaign, FORK, controls[outcome.mutant], outcome, is_step=True)))
         apart = [one for one in mutants if campaign.baseline.is_apart(one)]
         rest = mutants if left.runs else apart
     if REPLAY in campaign.request.engines and rest:
@@ -151,11 +186,405 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)
     for reason, names in tests.items():
-        during = "no branches while the program is imported"
-        where = f"no branches in {in_short(names, 1)}" if names[0] else during
+        during = "no forks while the program is imported"
+        where = f"no forks in {in_short(names, 1)}" if names[0] else during
         campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
     if left.apart:
         text = "each is in place from the start of each test, in a process of its own"
         campaign.progress.note(f"{len(left.apart)} mutants: {text}")
     for note in left.notes:
         campaign.progress.note(note)
+
+
+# Replay
+
+
+def replay(campaign: Campaign, runs: Iterable[MutantRun]) -> Iterator[Outcome]:
+    """Run mutants in rounds. Yields outcomes as they come.
+
+    What a limit of wall clock ended on a busy machine is run once more alone, see ``run_alone``.
+    """
+    hindered: list[tuple[Mutant, Outcome]] = []
+    for mutant, outcome in _run(campaign, runs):
+        if outcome.beside is None:
+            yield outcome
+        else:
+            hindered.append((mutant, outcome))
+    yield from run_alone(campaign, hindered)
+
+
+def run_alone(campaign: Campaign, hindered: Sequence[tuple[Mutant, Outcome]]) -> Iterator[Outcome]:
+    """Run what was hindered once more with nothing of ours beside it. That counts, however it ends."""
+    if not hindered:
+        return
+    first = {(one.mutant, one.round): one for _, one in hindered}
+    changed = 0
+    for _, outcome in _run(campaign, [(mutant, one.round) for mutant, one in hindered], alone=True):
+        before = first[outcome.mutant, outcome.round]
+        changed += outcome.verdict is not before.verdict
+        yield replace(outcome, beside=before.beside)
+    count = len(hindered)
+    campaign.progress.note(
+        f"{count} {'run' if count == 1 else 'runs'} that ended by the wall clock while the machine was busy "
+        f"{'was' if count == 1 else 'were'} run once more alone; {changed} of {count} ended otherwise"
+    )
+
+
+def _run(
+    campaign: Campaign, runs: Iterable[MutantRun], *, alone: bool = False
+) -> Iterator[tuple[Mutant, Outcome]]:
+    uncovered: list[MutantRun] = []
+
+    def tasks() -> Iterator[Task]:
+        for mutant, round in runs:
+            if campaign.baseline.tests_reaching(round, mutant):
+                made = task(campaign, mutant, round, campaign.baseline.suite(round))
+                yield replace(made, alone=alone or made.alone)
+            else:
+                uncovered.append((mutant, round))
+
+    for result in campaign.executor.run(tasks()):
+        mutant, round = result.task.key
+        try:
+            yield mutant, judged(campaign, run_of(result, campaign.sources))
+        except Exception as error:
+            yield mutant, not_judged(mutant, round, error, REPLAY)
+    for mutant, round in uncovered:
+        yield mutant, without_tests(campaign.baseline, mutant, round)
+
+
+# Forks
+
+
+@dataclass(slots=True)
+class Unhandled:
+    """What ``fork`` leaves to replay.
+
+    Attributes:
+        runs: mutants and rounds.
+        apart: ids of mutants that need a process of their own, whatever their tests.
+        reasons: test to why mutants cannot be forked in it.
+        notes: what else went wrong, in words.
+    """
+
+    runs: list[MutantRun] = field(default_factory=list)
+    apart: set[str] = field(default_factory=set)
+    reasons: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def why(self, mutant: Mutant) -> str:
+        """Why a mutant is left, in words."""
+        if mutant.id in self.apart:
+            return "it is in place from the start of each test"
+        return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
+
+
+class ForkParents:
+    """The fork parents of all rounds, cut into parts where places share nothing.
+
+    Args:
+        campaign: the campaign.
+        left: is filled with what is left to replay.
+
+    Attributes:
+        suspects: (round, test) that ended otherwise in a fork parent than in the baseline.
+    """
+
+    def __init__(self, campaign: Campaign, left: Unhandled) -> None:
+        self.campaign, self.left = campaign, left
+        self.suspects: list[tuple[int, str]] = []
+
+    def run(self, runs: Iterable[MutantRun]) -> Iterator[Outcome]:
+        """Run mutants in rounds. Yields outcomes as they come."""
+        baseline = self.campaign.baseline
+        parents: dict[int, _ForkParent] = {}
+        for mutant, round in runs:
+            # a control that may not have a test of its own is no mutant of any test
+            if mutant.family != CONTROL and not baseline.tests_reaching(round, mutant):
+                yield without_tests(baseline, mutant, round)
+                continue
+            if round not in parents:  # also if nothing is forked in it: it is the second run
+                parents[round] = _ForkParent(self, round)
+            if baseline.is_apart(mutant):
+                self.left.runs.append((mutant, round))
+                self.left.apart.add(mutant.id)
+            else:
+                parents[round].add(mutant)
+        # the text of all rounds alike, so that one fork server can serve them
+        text = baseline.faults.instrumentation(
+            {one.id: one for parent in parents.values() for one in parent.mutants}.values()
+        )
+        by_key = dict(enumerate(cut(list(parents.values()), self.campaign.executor.spread)))
+        tasks = (parent.task(key, text) for key, parent in by_key.items())
+        for event in self.campaign.executor.events(tasks):
+            if isinstance(event, Result):
+                yield from by_key[event.task.key].finish(event)
+            else:
+                yield from by_key[event[0].key].take(event[1])
+
+
+def cut(parents: list[_ForkParent], places: int) -> list[_ForkParent]:
+    """Cut fork parents into parts for so many places that share nothing. The longest come first."""
+    if places < 2 or not parents:
+        return parents
+    whole = sum(one.seconds for one in parents) or 1.0
+    parts = [part for one in parents for part in one.parts(places * one.seconds / whole)]
+    return sorted(parts, key=lambda part: -part.seconds)
+
+
+@dataclass(slots=True)
+class _ForkedRun:
+    """What is known of one mutant so far.
+
+    Attributes:
+        run: what the judge gets.
+        ends: its tests that have ended.
+        forked: number of the test in which it was forked, as far as it has told; -1: before any.
+    """
+
+    run: Run
+    ends: dict[str, events.TestEnd] = field(default_factory=dict)
+    forked: int | None = None
+
+
+class _ForkParent:
+    """The fork parent of one round and its forks."""
+
+    def __init__(self, parents: ForkParents, round: int) -> None:
+        self._parents, self._round = parents, round
+        self._campaign, self._left = parents.campaign, parents.left
+        self._baseline, self._sources = self._campaign.baseline, self._campaign.sources
+        self._open: dict[str, _ForkedRun] = {}
+        self._tests = self._baseline.suite(round)
+        self._numbers = {test: number for number, test in enumerate(self._tests)}
+        self._own_ends: list[events.TestEnd] = []
+        self._is_off = False
+        self._waiting: dict[int, set[str]] = {}
+        self._undiverged: dict[str, Mapping[str, int]] = {}
+        self._places: dict[int, Place] = {}
+
+    def add(self, mutant: Mutant) -> None:
+        """Add a mutant to fork."""
+        self._open[mutant.id] = _ForkedRun(Run(mutant, self._round, self._tests, engine=FORK))
+
+    @property
+    def mutants(self) -> tuple[Mutant, ...]:
+        """The mutants whose outcomes are not known yet."""
+        return tuple(fork.run.mutant for fork in self._open.values())
+
+    @property
+    def seconds(self) -> float:
+        """What its own tests and its forks take at most, by those of the baseline."""
+        own = sum(self._baseline.ends[self._round, test].wall for test in self._tests)
+        return own * (1 + len(self._open)) + _FORK * len(self._open)
+
+    def parts(self, places: float) -> list[_ForkParent]:
+        """Fork parents with a part of the mutants each. What equal tests reach is together."""
+        worth = max(_FEWEST * places, len(self._open) / _WORTH)
+        count = min(math.ceil(min(_PARTS * places, worth)), len(self._open) // _LEAST)
+        if count < 2:
+            return [self]
+        reaching = self._baseline.tests_reaching
+        mutants = sorted(self.mutants, key=lambda one: (reaching(self._round, one), one.id))
+        found = [_ForkParent(self._parents, self._round) for _ in range(count)]
+        for number, mutant in enumerate(mutants):
+            found[number * count // len(mutants)].add(mutant)
+        return found
+
+    def task(self, key: int, text: Instrumentation | None) -> Task:
+        """The task that runs the fork parent."""
+        campaign, baseline, mutants = self._campaign, self._baseline, self.mutants
+        walls = wall_limits(campaign, self._round, self._tests)
+        choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
+        at_start: dict[str, tuple[str, ...]] = {}  # where tests have processes below them
+        for mutant in mutants:
+            for test in baseline.tests_reaching(self._round, mutant):
+                if baseline.ends[self._round, test].processes:
+                    at_start[test] = (*at_start.get(test, ()), mutant.id)
+        forking = Forking(
+            mutants=mutants,
+            walls=walls,
+            wall=max(walls.values(), default=0.0),
+            startup=startup_limit(campaign),
+            choices={mutant: found for mutant, found in choices.items() if found},
+            every_test=campaign.request.every_test,
+            serial=baseline.is_exclusive(self._round),
+            at_start=at_start,
+        )
+        job = job_of(campaign, self._round, self._tests, mutants, forking=forking, instrumentation=text)
+        for fork in self._open.values():
+            fork.run.left_out = job.left_out(fork.run.mutant.id)
+        # it waits for forks that go to the end
+        patience = 2.0 * sum(walls.values()) + forking.startup + _PATIENCE
+        may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
+        return Task(
+            key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=forking.serial
+        )
+
+    def take(self, event: events.Event) -> Iterator[Outcome]:
+        """Sort in an event. Yields the outcomes that it settles.
+
+        What goes wrong with it is an error of its mutant, or leaves its test to replay.
+        """
+        try:
+            yield from self._take(event)
+        except Exception as error:
+            refuse_others(error)
+            fork = (
+                self._open.get(event.mutant)
+                if isinstance(event, events.ForkTestEnd | events.ForkDied)
+                else None
+            )
+            if fork is not None:
+                del self._open[fork.run.mutant.id]
+                yield not_judged(fork.run.mutant, self._round, error, FORK)
+                return
+            text = f"a report of the fork parent cannot be used: {type(error).__name__}: {error}"
+            self._left.notes.append(text)
+            self._is_off = self._is_off or isinstance(event, events.TestEnd)
+
+    def _take(self, event: events.Event) -> Iterator[Outcome]:
+        match event:
+            case events.ForkTestEnd() if event.mutant in self._open:
+                yield from self._fork_ended(event)
+            case events.ForkDied() if event.mutant in self._open:
+                self._open[event.mutant].run.death = _death_of(event)
+                yield from self._settle(event.mutant)
+            case events.ForkSessionEnd():
+                for mutant in self._open.keys() & set(event.mutants):
+                    run = self._open[mutant].run
+                    run.exit_code = event.exit_code
+                    run.death = Death("; ".join(event.errors)) if event.errors else run.death
+                    yield from self._settle(mutant)
+            case events.Unforked():
+                self._left.reasons.setdefault(event.test, event.reason)
+                self._leave(self._open.keys() & set(event.mutants))
+            case events.Undiverged():
+                self._undiverged[event.test] = event.hits
+            case events.SiteSeen():
+                self._places[event.index] = place_of(event, self._sources)
+            case events.TestEnd():
+                yield from self._test_ended(event)
+            case events.Untrusted():  # forks have files of their own: what is settled is not concerned
+                self._left.notes.append(
+                    f"round {self._round + 1}: {event.reason}; mutants that may have to do with it run in "
+                    "processes of their own"
+                )
+                self._leave(list(self._open))
+
+    def _leave(self, mutants: Iterable[str]) -> None:
+        self._left.runs += [(self._open.pop(mutant).run.mutant, self._round) for mutant in mutants]
+
+    def finish(self, result: Result) -> Iterator[Outcome]:
+        """The process is gone: settle what can be settled, and leave the rest to replay."""
+        if result.end is None:
+            self._left.notes.append(f"the fork parent of round {self._round + 1} died: {death(result)}")
+        is_whole = len(self._own_ends) == len(self._tests) and not self._is_off
+        simulated = [end.simulated for end in self._own_ends if end.simulated is not None]
+        for fork in list(self._open.values()):
+            # nothing differed: it was the mutant's run as well
+            if is_whole and fork.ends and fork.forked is None and fork.run.death is None:
+                fork.run.exit_code = self._baseline.exits[self._round]
+                fork.run.shared = sum(simulated) if simulated else None
+                yield self._judged(fork, len(self._tests))
+        self._leave(list(self._open))
+
+    def _fork_ended(self, event: events.ForkTestEnd) -> Iterator[Outcome]:
+        fork, test = self._open[event.mutant], event.end.test
+        if fork.forked is None:
+            fork.forked = -1 if event.is_early else self._numbers[test]
+        fork.ends[test] = event.end
+        if event.shared is not None:
+            fork.run.shared = (fork.run.shared or 0.0) + event.shared
+        if event.end.outcome != "failed":
+            places = {seen.index: place_of(seen, self._sources) for seen in event.sites}
+            fork.run.observations[test] = observation(event.end, places)
+        yield from self._settle(event.mutant)
+
+    def _test_ended(self, end: events.TestEnd) -> Iterator[Outcome]:
+        """The parent has run a test: the second opinion on the original."""
+        undiverged = self._undiverged.pop(end.test, {})
+        if end.lasting != self._baseline.ends[self._round, end.test].lasting:
+            self._is_off = True
+            self._parents.suspects.append((self._round, end.test))
+        if self._is_off:
+            return
+        found = observation(end, self._places)
+        self._baseline.compare_runs(self._round, end, found, self._campaign.request.vocabulary)
+        if self._campaign.evidence is not None:
+            self._campaign.evidence.add_again(self._round, end)
+        own = replace(end, hits=0, acted=0, wall=0.0, cpu=0.0, trace=(), recording=None)
+        self._own_ends.append(own)
+        for mutant in undiverged.keys() & self._open.keys():
+            self._open[mutant].ends.setdefault(end.test, replace(own, hits=undiverged[mutant]))
+            self._open[mutant].run.observations.setdefault(end.test, found)
+        for mutant in self._waiting.pop(len(self._own_ends) - 1, set()) & self._open.keys():
+            yield from self._settle(mutant)
+
+    def _settle(self, mutant: str) -> Iterator[Outcome]:
+        """Yield the mutant's outcome if all that it depends on is known."""
+        fork = self._open[mutant]
+        is_dead = fork.run.death is not None
+        is_decided = any(end.is_decided for end in fork.ends.values())
+        is_over = is_dead or fork.run.exit_code is not None
+        if not is_over and (not is_decided or self._campaign.request.every_test):
+            return
+        died_in = fork.run.death.test if fork.run.death is not None else None
+        forked = fork.forked if fork.forked is not None else self._numbers.get(died_in or "", -1)
+        # a survivor is compared with the original in all tests: those that the parent runs later, too
+        last = forked if is_decided or is_dead else len(self._tests) - 1
+        if last < len(self._own_ends):
+            yield self._judged(fork, max(0, forked))
+        else:
+            self._waiting.setdefault(last, set()).add(mutant)
+
+    def _judged(self, fork: _ForkedRun, shared: int) -> Outcome:
+        """The outcome of a mutant that has so many tests from its parent."""
+        run = fork.run
+        ends = {end.test: end for end in self._own_ends[:shared]} | fork.ends
+        run.ends = [ends[test] for test in self._tests if test in ends]
+        run.wall = sum(end.wall for end in run.ends)
+        if run.exit_code is not None:
+            text = not_run({*self._tests} - run.left_out, run.ends, run.exit_code)
+            run.death = Death(text) if text is not None else run.death
+        outcome = judged(self._campaign, run)
+        del self._open[run.mutant.id]
+        return outcome
+
+
+def _death_of(event: events.ForkDied) -> Death:
+    during = f" during {event.test}" if event.test else ""
+    return Death(
+        text=f"{event.overdue or how_ended(event.exit_code)}{during}",
+        test=event.test or None,
+        signal=-event.exit_code if event.exit_code < 0 and event.overdue is None else None,
+        overdue=event.overdue is not None,
+        acted=event.acted,
+        in_mutated_call=event.in_mutated_call,
+        hindered=event.hindered,
+        is_starved=event.is_starved,
+    )
+
+
+def clear_up(campaign: Campaign, suspects: Iterable[tuple[int, str]]) -> None:
+    """Run the suite once more in each round that has suspects, and note in the baseline what they are."""
+    baseline, progress = campaign.baseline, campaign.progress
+    by_round: dict[int, list[str]] = {}
+    for round, test in suspects:
+        by_round.setdefault(round, []).append(test)
+    jobs = {round: campaign.request.job(round, tests=baseline.suite(round)) for round in by_round}
+    for result in campaign.executor.run(Task(round, job, deadline=_DEADLINE) for round, job in jobs.items()):
+        round = result.task.key
+        ends = ((end, baseline.ends[round, end.test]) for end in result.ends)
+        passed = {end.test for end, first in ends if end.lasting == first.lasting}
+        for test in by_round[round]:
+            if test not in passed:
+                baseline.set_aside(round, test, "passed in the baseline, but not in equal runs")
+                progress.note(f"set aside as flaky in round {round + 1}: {test}")
+            else:
+                baseline.doubt(test)
+                progress.note(
+                    f"{test} failed once while mutants were forked in round {round + 1}, and passes "
+                    "without: by chance, or by what a fork left behind; mutants of this test and of later "
+                    "ones run in processes of their own"
+                )

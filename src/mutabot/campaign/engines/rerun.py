@@ -9,10 +9,6 @@ operator leaves to chance what happens.
 A kill that does not come out again becomes ``unstable``, and all other kills of its test are in doubt as
 well. Kills in doubt are repeated cheapest first, within a small share of the campaign's time, and a larger
 one as soon as one does not come out again. How many were left is told.
-
-A test that passed in the baseline and failed in a fork parent may be flaky, or something that a fork left
-behind made it fail. One more run without forks tells: a test that fails again is flaky and judges nothing. Of
-one that passes, that cannot be told apart, so its kills are repeated.
 """
 
 from __future__ import annotations
@@ -25,11 +21,11 @@ from itertools import takewhile
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import FAILS
-from mutabot.campaign.campaign import Campaign, OutcomeWriter
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import Request
+from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.errors import UnstableError
-from mutabot.execution.task import Task
 from mutabot.journal.records import (
     FLAKY,
     REPEATS,
@@ -44,7 +40,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.codec import to_data
 from mutabot.model.outcome import in_words, same_end
 
-from .isolated_run import replay
+from .engine import replay
 
 #: a mutant's id and a round
 Key = tuple[str, int]
@@ -56,8 +52,6 @@ SHARE, SECONDS = 0.05, 1.0
 MOST_SHARE, MOST_SECONDS = 0.1, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
 RACES = 3
-#: seconds for a test of the suite without any mutant
-_DEADLINE = 600.0
 
 
 @dataclass(slots=True)
@@ -302,27 +296,3 @@ def refuse_flaky(request: Request, baseline: Baseline) -> None:
     flaky, limit = flaky_of(baseline), request.configuration.unstable_limit
     if flaky.share > limit:
         raise UnstableError(flaky.text(limit))
-
-
-def clear_up(campaign: Campaign, suspects: Iterable[tuple[int, str]]) -> None:
-    """Run the suite once more in each round that has suspects, and note in the baseline what they are."""
-    baseline, progress = campaign.baseline, campaign.progress
-    by_round: dict[int, list[str]] = {}
-    for round, test in suspects:
-        by_round.setdefault(round, []).append(test)
-    jobs = {round: campaign.request.job(round, tests=baseline.suite(round)) for round in by_round}
-    for result in campaign.executor.run(Task(round, job, deadline=_DEADLINE) for round, job in jobs.items()):
-        round = result.task.key
-        ends = ((end, baseline.ends[round, end.test]) for end in result.ends)
-        passed = {end.test for end, first in ends if end.lasting == first.lasting}
-        for test in by_round[round]:
-            if test not in passed:
-                baseline.set_aside(round, test, "passed in the baseline, but not in equal runs")
-                progress.note(f"set aside as flaky in round {round + 1}: {test}")
-            else:
-                baseline.doubt(test)
-                progress.note(
-                    f"{test} failed once while mutants were branched off in round {round + 1}, and passes "
-                    "without: by chance, or by what a branch left behind; mutants of this test and of later "
-                    "ones run in processes of their own"
-                )

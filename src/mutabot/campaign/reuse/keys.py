@@ -18,6 +18,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from importlib.metadata import distributions
 from itertools import islice
@@ -28,6 +29,7 @@ import mutabot
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.request import Request
 from mutabot.frozen import frozen
+from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Outcome, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
@@ -404,6 +406,38 @@ class Dependencies:
         digest = _digest(parts)
         self.parts[digest] = parts
         return digest
+
+
+class OutcomeWriter:
+    """Writes outcomes into the journal of a campaign, each with the key of what it depends on.
+
+    Args:
+        dependencies: None where files change meanwhile: then nobody knows, and nothing is to be reused.
+        mutants: those of the plan.
+
+    Attributes:
+        journal: where they go.
+    """
+
+    def __init__(
+        self, journal: Journal, dependencies: Dependencies | None = None, mutants: Iterable[Mutant] = ()
+    ) -> None:
+        self.journal, self._dependencies = journal, dependencies
+        self._mutants = {mutant.id: mutant for mutant in mutants}
+
+    def add_outcome(self, outcome: Outcome) -> None:
+        """Add one outcome; a later one of the same mutant and round takes its place."""
+        key = self._key_of(outcome, self._dependencies) if self._dependencies is not None else ""
+        self.journal.add_outcome(replace(outcome, executed=None), key=key)
+
+    def _key_of(self, outcome: Outcome, dependencies: Dependencies) -> str:
+        executed = dependencies.stored(outcome.executed)
+        if outcome.repeats and outcome.executed is None:  # it is in the journal, and was run once more
+            before = self.journal.row(outcome.mutant, outcome.round)
+            executed = before.key.split()[-1] if before is not None and before.key else executed
+        key = dependencies.key_of(outcome, self._mutants[outcome.mutant], executed)
+        self.journal.add_parts(dependencies.new_parts())
+        return key
 
 
 def _function_of(test: str) -> str:

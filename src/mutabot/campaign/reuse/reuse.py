@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import in_short
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import MovedOutcome
+from mutabot.journal.records import Kept
 from mutabot.model import Mutant, Verdict
 
 from .keys import Dependencies, Parts, Tree, Was
@@ -48,7 +48,7 @@ class Earlier:
         names = self._now.why(self.was(self.kept[pair].key), mutant, pair[1], is_known=is_known)
         return in_short(names) if names else None
 
-    def row(self, pair: Pair, mutant: Mutant) -> MovedOutcome | None:
+    def row(self, pair: Pair, mutant: Mutant) -> Kept | None:
         """An outcome as it is now; None if it names a line that nobody can find, or is none at all."""
         row = self._journal.row(*pair)
         if row is None:
@@ -59,7 +59,7 @@ class Earlier:
             return None
         return replace(row, data=data, key=self._now.renewed(row.key, was, mutant, row.round))
 
-    def is_unasked(self, row: MovedOutcome, mutant: Mutant) -> bool:
+    def is_unasked(self, row: Kept, mutant: Mutant) -> bool:
         """Whether it is a survivor that some tests do not reach, and only these could notice what changed."""
         some, all = (self._now.tests(mutant, row.round, whole=whole) for whole in (False, True))
         if row.verdict != Verdict.SURVIVED or len(some) == len(all):
@@ -137,7 +137,7 @@ def reuse(
     return found
 
 
-def _taken(found: Reused, mutant: Mutant, round: int) -> MovedOutcome | None:
+def _taken(found: Reused, mutant: Mutant, round: int) -> Kept | None:
     """One outcome from the first source in which it holds; else why it does not in the first that has it."""
     pair = (mutant.id, round)
     first: str | None = None

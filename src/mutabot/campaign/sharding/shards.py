@@ -1,4 +1,6 @@
-"""Which shard takes what: disjoint, together whole, balanced, and stable under small changes.
+"""Shards: which takes what of a plan, and one journal of their journals, as if one campaign had run.
+
+Parts are disjoint, together whole, balanced, and stable under small changes.
 
 Every shard finds out by itself, so all that counts is the same on every machine: ids, and costs that no clock
 has measured. Each mutant, or all magnitudes of a ladder, goes to the shard that its id likes best (rendezvous
@@ -8,19 +10,26 @@ hashing), if there is room (bounded loads).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from hashlib import blake2b
+from pathlib import Path
+from typing import Any
 
 from mutabot.campaign.baseline.baseline import Baseline, cost
-from mutabot.campaign.plan import Plan
+from mutabot.campaign.plan import Plan, renumbered
 from mutabot.campaign.request import Request
-from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.campaign.reuse.keys import Dependencies, changes
 from mutabot.config.options import Shard
-from mutabot.journal.journal import Journal
-from mutabot.journal.records import SHARD, ShardOf
+from mutabot.errors import MergeError
+from mutabot.frozen import frozen
+from mutabot.journal import records
+from mutabot.journal.files import HOME, JOURNAL, is_written, refuse_tracked
+from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.recordings import Recordings
 from mutabot.model import Mutant
-from mutabot.model.codec import to_data
+from mutabot.model.codec import from_data, to_data
 
 #: how much more than its part a shard takes before a piece goes elsewhere
 _SLACK = 1.05
@@ -72,8 +81,8 @@ def write_shard(
     """
     if shard is not None:
         depends = {**dependencies.everything, **_asked(dependencies.request)} if dependencies else None
-        said = ShardOf(shard.number, shard.of, tuple(one.number for one in part.mutants), depends)
-        journal.set_meta(SHARD, to_data(said))
+        said = records.ShardOf(shard.number, shard.of, tuple(one.number for one in part.mutants), depends)
+        journal.set_meta(records.SHARD, to_data(said))
 
 
 def _asked(request: Request) -> dict[str, str]:
@@ -96,3 +105,220 @@ def _cost(mutant: Mutant, baseline: Baseline) -> float:
             simulated, operations = cost(baseline.ends[round, test])
             total += simulated + _OPERATION * operations
     return total
+
+
+# One journal of all
+
+
+#: differences that are told; the rest is counted
+_SHOWN = 5
+#: how a campaign ends that lacks something
+_INCOMPLETE = "not all shards are there"
+
+
+@frozen
+class ShardJournal:
+    """The journal of a shard, opened.
+
+    Attributes:
+        path: as the user named it.
+        journal: to be read.
+        meta: what its campaign said about itself.
+        shard: which part it is.
+        mutants: the whole plan.
+    """
+
+    path: Path
+    journal: JournalReader
+    meta: Mapping[str, Any]
+    shard: records.ShardOf
+    mutants: tuple[Mutant, ...]
+
+    @classmethod
+    def of(cls, path: Path, journal: JournalReader) -> ShardJournal:
+        """What is in the journal. Raises MergeError if that is no shard."""
+        meta = journal.meta()
+        if records.SHARD not in meta:
+            raise MergeError(
+                f"{path} holds a whole campaign, not a shard: shards come from `mutabot run --shard 1/8`"
+            )
+        return cls(
+            path, journal, meta, from_data(records.ShardOf, meta[records.SHARD]), tuple(journal.mutants())
+        )
+
+    @property
+    def words(self) -> str:
+        """``shard 2 of 8 (b.sqlite)``."""
+        return f"{self.shard.words} ({self.path})"
+
+
+def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
+    """Raise MergeError if these are not different shards of one plan, and say what differs."""
+    first, *others = parts
+    by_number: dict[int, ShardJournal] = {}
+    for part in parts:
+        other = by_number.setdefault(part.shard.number, part)
+        if other is not part:
+            raise MergeError(f"{part.shard.words} is there twice: {other.path} and {part.path}")
+        if part.shard.depends is None:
+            raise MergeError(
+                f"{part.words} ended in its baseline, or files changed meanwhile, so that nobody knows what "
+                f"it was about: run it again with --shard {part.shard.number}/{part.shard.of} or leave it out"
+            )
+    for part in others:
+        differing = _differing(first, part)
+        if differing:
+            more = f"; and {len(differing) - _SHOWN} more" if len(differing) > _SHOWN else ""
+            raise MergeError(
+                f"{part.words} and {first.words} are not of one plan: {'; '.join(differing[:_SHOWN])}{more}. "
+                "Run all shards of one commit with the same options, packages and kind of machine"
+            )
+
+
+def _differing(old: ShardJournal, new: ShardJournal) -> list[str]:
+    if old.shard.of != new.shard.of:
+        return [f"one is of {new.shard.of} shards, the other of {old.shard.of}"]
+    told = changes(old.shard.depends or {}, new.shard.depends or {})
+    before, now = ({(one.id, one.number) for one in part.mutants} for part in (old, new))
+    others = sorted(before ^ now)
+    if others and not told:  # else they differ for that reason
+        told = [f"{len(others)} mutants are planned in one of them alone, such as {others[0][0]}"]
+    return told
+
+
+def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list[str]:
+    """Write one journal of the shards' journals and recordings. Returns what is missing, a line each.
+
+    What was in ``target`` before is kept as by any new campaign.
+
+    Args:
+        paths: journals, or folders with one.
+        target: where the journal is written.
+        root: the project.
+        room: bytes that recordings may take.
+
+    Raises MergeError if these are not shards of one plan, JournalError for a file that cannot be used.
+    """
+    with ExitStack() as stack:
+        parts = [_opened(stack, found_in(path)) for path in paths]
+        if not parts:
+            raise MergeError("there is nothing to merge: name the journals of the shards")
+        parts.sort(key=lambda part: part.shard.number)
+        refuse_strangers(parts)
+        missing = list(_missing(parts))
+        meta = {**_meta(parts), "root": str(root)}
+        with Journal.create(target, meta=meta) as journal:
+            journal.take_plan(parts[0].journal)
+            for part in parts:
+                journal.take_outcomes(part.journal)
+            known = _known(journal, parts)
+            journal.set_known(known)
+            _merge_recordings(stack, parts, target, room, {one.id for one, _ in known})
+            journal.finish(_INCOMPLETE if missing else "complete")
+    return missing
+
+
+def found_in(path: Path) -> Path:
+    """The journal that is meant: a file, or that in a folder. Raises MergeError if there is none."""
+    places = (path, path / JOURNAL, path / HOME / JOURNAL)
+    found = next((place for place in places if place.is_file()), None)
+    if found is None:
+        raise MergeError(f"there is no journal {path}" + (f", nor {JOURNAL} in it" if path.is_dir() else ""))
+    return found
+
+
+def _opened(stack: ExitStack, path: Path) -> ShardJournal:
+    refuse_tracked(path)
+    if is_written(path):
+        raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
+    return ShardJournal.of(path, stack.enter_context(JournalReader.open(path)))
+
+
+def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
+    """What a whole campaign would have beyond these."""
+    first = parts[0]
+    of, rounds = first.shard.of, int(first.meta.get("rounds") or 1)
+    there = {part.shard.number for part in parts}
+    claimed = [number for part in parts for number in part.shard.mutants]
+    free = len({one.number for one in first.mutants} - set(claimed))
+    absent = [number for number in range(1, of + 1) if number not in there]
+    if absent:
+        names = ", ".join(map(str, absent))
+        again = ", ".join(f"`mutabot run --shard {number}/{of}`" for number in absent[:3])
+        more = " …" if len(absent) > 3 else ""
+        yield (
+            f"{'shard' if len(absent) == 1 else 'shards'} {names} of {of} missing, {free} of "
+            f"{len(first.mutants)} mutants, {free * rounds} outcomes: run {again}{more} and merge again"
+        )
+    elif free:
+        yield (
+            f"{free} mutants are in no shard, since the baselines of the shards differ: `mutabot run` with "
+            "the merged journal runs them alone"
+        )
+    for part in parts:
+        again = f"run it again with `mutabot run --shard {part.shard.number}/{of}`"
+        if part.journal.set_aside:
+            row = part.journal.set_aside[0]
+            yield f"{part.words} holds what mutabot has not written, or what is damaged ({row}): {again}"
+        ended = part.journal.finished or "killed"
+        if ended != "complete":
+            own = set(part.shard.mutants)
+            alone = {one.id for one in part.mutants if one.number in own and not one.ladder}
+            lacking = len(alone) * rounds - sum(one.mutant in alone for one in part.journal.outcomes())
+            yield (
+                f"{part.words} is not complete ({ended}), {lacking} outcomes are missing: {again} and its "
+                "journal, and merge again"
+            )
+
+
+def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
+    """What the campaign says about itself: that of the first shard, and sums of what was counted."""
+    metas = [part.meta for part in parts]
+    found = {key: value for key, value in metas[0].items() if key != records.SHARD}
+    found["shards"] = parts[0].shard.of
+    for key, together in (("started", min), ("seconds", max)):
+        values = [meta[key] for meta in metas if meta.get(key) is not None]
+        if values:
+            found[key] = together(values)
+    for key in (records.ALTERED, records.FLAKY, records.VERIFICATION, records.REPEATS):
+        said = [from_data(records.FACTS[key], meta[key]) for meta in metas if key in meta]
+        if said:
+            found[key] = (
+                to_data(_flaky(said)) if key == records.FLAKY else _summed([to_data(one) for one in said])
+            )
+    return found
+
+
+def _flaky(said: Sequence[records.Flaky]) -> records.Flaky:
+    tests = dict.fromkeys(test for one in said for test in one.tests)
+    return records.Flaky(tuple(tests), max(one.known for one in said))
+
+
+def _summed(said: Sequence[Any]) -> Any:
+    """Data of one form: numbers are added, lists put one behind the other."""
+    first = said[0]
+    if isinstance(first, dict):
+        return {key: _summed([one[key] for one in said]) for key in first}
+    return [item for one in said for item in one] if isinstance(first, list) else sum(said)
+
+
+def _known(journal: Journal, parts: Sequence[ShardJournal]) -> list[tuple[Mutant, bool]]:
+    """Mutants of earlier campaigns beside the plan: what the last shard says of them counts."""
+    planned = parts[0].mutants
+    readers = [journal, *(part.journal for part in parts)]
+    found = {one.id: (one, outdated) for part in readers for one, outdated in part.known()}
+    for one in planned:
+        found.pop(one.id, None)
+    return [(one, found[one.id][1]) for one in renumbered([one for one, _ in found.values()], planned)]
+
+
+def _merge_recordings(
+    stack: ExitStack, parts: Sequence[ShardJournal], target: Path, room: int, known: set[str]
+) -> None:
+    is_there = target.exists()  # a shard may lie where the whole is to lie
+    found = [Recordings.to_read(part.path, copied=is_there and part.path.samefile(target)) for part in parts]
+    opened = [stack.enter_context(one) for one in found if one is not None]
+    if opened:
+        mutants = known | {one.id for one in parts[0].mutants}
+        with Recordings.to_write(target, room) as recordings:
+            recordings.take(opened, mutants)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import copy
 import inspect
 import sys
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Awaitable, Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from inspect import Parameter, Signature
@@ -28,7 +28,6 @@ from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
-from mutabot.runtime.observation.clock import ProgramTime
 from mutabot.runtime.targets.target import NOWHERE, Handler, Where, resolve
 
 #: containers that a program may change after it got them
@@ -165,7 +164,7 @@ class Adapter:
         on_problem: told about each path or argument that does not fit: (key, error).
         lately: values that last came by under the names of a middleware, by target; adapters share it.
         handles: classes that are part of the robot API: their objects are never copied.
-        time: the program's time.
+        now, wait: tell the program's time, s, and let so much of it pass.
         handler: what stands around the operation.
         commands: how often the robot was made to do this, if it does anything.
     """
@@ -175,7 +174,8 @@ class Adapter:
     on_problem: Callable[[str, PathError], None]
     lately: dict[str, Mapping[str, Value]]
     handles: Collection[str]
-    time: ProgramTime
+    now: Callable[[], float]
+    wait: Callable[[float], Awaitable[None]]
     handler: Handler = field(init=False)
     commands: int = 0
     _message: Path | None = None
@@ -216,7 +216,7 @@ class Adapter:
         return Call(
             self.operation, pattern, values, current=partial(self._where_is, invocation, pattern),
             payload=invocation, cannot=partial(why_not, means), previous=lambda: before,
-            time=self.time.now, wait=self.time.wait if means is None else means.sleep,
+            time=self.now, wait=self.wait if means is None else means.sleep,
         )  # fmt: skip
 
     def _read_message(self, invocation: Invocation, path: Path) -> None:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import copy
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
+from types import SimpleNamespace
 from typing import Any
 
 from mutabot.errors import PathError
@@ -19,6 +20,8 @@ from mutabot.model.path import Path, Step
 #: copies that are looked at after each call
 _LAST = 8
 _MISSING = object()
+#: the first item of a list, as if a vocabulary described it
+_FIRST: Any = SimpleNamespace(path=Path(None, (Step(item=0),)))
 #: values that nobody can write to
 _FIXED = (int, float, complex, str, bytes, bool, type(None), frozenset, range)
 
@@ -38,7 +41,7 @@ def is_live(answer: Any, quantities: Iterable[Quantity]) -> bool:
     """
     try:
         return _is_held(answer, _OF_ANSWER) or any(
-            _is_held(part, _OF_PART) for quantity in quantities for part in _parts(answer, quantity.path)
+            _is_held(part, _OF_PART) for one in quantities for part in _parts(answer, one.path)
         )
     except Exception:  # objects of the user's may do anything when they are looked at: then it may be
         return True
@@ -70,29 +73,15 @@ def _parts(answer: Any, path: Path) -> Iterator[Any]:
         yield value
 
 
-def _references(ask: Callable[[Any, int], bool], of_part: bool) -> int:
-    """The most references that do not make a new list, or a new list in one, live."""
-    known = 0
-    while True:
-        new: list[Any] = [[]] if of_part else []
-        if not ask(new, known):
-            return known
-        known += 1
-
-
-def _answer_is_held(answer: Any, known: int) -> bool:
-    return _is_held(answer, known)
-
-
-def _part_is_held(answer: Any, known: int) -> bool:
-    return any(_is_held(part, known) for _ in (None,) for part in _parts(answer, _FIRST))
-
-
-_FIRST = Path(None, (Step(item=0),))
-# Counted and not written down, for what a call adds differs between versions of Python. Both functions have
-# the shape of ``is_live``.
-_OF_ANSWER = _references(_answer_is_held, of_part=False)
-_OF_PART = _references(_part_is_held, of_part=True)
+#: the references to an answer, and to a part of it, that make no new list live. They are counted, since what
+#: a call adds differs between versions of Python
+_OF_ANSWER = _OF_PART = 0
+_NEW: list[Any] = []
+while is_live(_NEW, ()):
+    _OF_ANSWER += 1
+_NEW = [[]]
+while is_live(_NEW, (_FIRST,)):
+    _OF_PART += 1
 
 
 class HandedCopies:

@@ -67,6 +67,8 @@ class PrivateFiles:
     _own: str = ""
     _is_privileged: bool = False
     _covered: list[str] = field(default_factory=list)
+    _below: list[str] | None = None
+    _bare: int = -1
 
     def __post_init__(self) -> None:
         self._own = self.home
@@ -80,6 +82,9 @@ class PrivateFiles:
         try:
             self._is_privileged = _enter_namespace()
             _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
+            # forks begin where nothing is covered: to uncover it again takes as long as to cover it
+            self._bare = os.open("/proc/self/ns/mnt", os.O_RDONLY | os.O_CLOEXEC)
+            _leave_namespace()
             self._lay()
         except OSError as error:
             self._uncover()
@@ -102,17 +107,20 @@ class PrivateFiles:
                     copied = os.path.join(folder, _LAYERS, number)
                     os.makedirs(copied)
                     copy_tree(upper, os.path.join(copied, _UPPER))
-        if _libc().unshare(_CLONE_NEWNS) != 0:
-            raise _last_error("this system allows no private mounts")
+        if _libc().setns(self._bare, _CLONE_NEWNS) != 0:
+            raise _last_error("there is no way back to the files on disk")
+        _leave_namespace()
+        _mount("proc", "/proc", None, 0, kind="proc")  # that of its process namespace
         self._own = folder
-        self._uncover()
         self._lay()
         os.chdir(place)
 
     def _lay(self) -> None:
         """Lay an overlay over each private folder."""
         folders = [folder for folder in private_folders(self.root) if not is_below(folder, self.shared)]
-        below = _mounts_below(folders, self.shared)
+        if self._below is None:  # the same in all forks, and the list is long
+            self._below = _mounts_below(folders, self.shared)
+        below = self._below
         numbers = [n for n, folder in enumerate(folders) if not _is_part(folder, folders, below)]
         beside = os.path.dirname(self.home)
         in_memory = self._has_memory()
@@ -222,6 +230,12 @@ def _copy_status(source: str, target: str, status: os.stat_result) -> None:
     os.utime(target, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
+def _leave_namespace() -> None:
+    """Go on in a copy of the mount namespace."""
+    if _libc().unshare(_CLONE_NEWNS) != 0:
+        raise _last_error("this system allows no private mounts")
+
+
 def _enter_namespace() -> bool:
     """Enter a mount namespace; True if that needed no user namespace."""
     user, group = os.geteuid(), os.getegid()
@@ -258,8 +272,9 @@ def _layers(own: int, number: int, *, in_memory: bool) -> str:
 
 def _lay_over(folder: str, lower: int, layers: str) -> None:
     """Cover a folder by an overlay with these layers."""
-    for name in (_UPPER, "work"):
-        os.makedirs(f"{layers}/{name}", exist_ok=True)
+    os.makedirs(f"{layers}/work")
+    with suppress(FileExistsError):  # it was copied
+        os.mkdir(f"{layers}/{_UPPER}")
     status = os.fstat(lower)
     os.chmod(f"{layers}/upper", status.st_mode & 0o7777)
     with _opened([f"{layers}/upper", f"{layers}/work"]) as (upper, work):
@@ -436,7 +451,11 @@ def isolate_files(log: tuple[int, int], instead: int | None = None) -> None:
 
 def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) -> None:
     """Let a descriptor lead to the same file, but to an opening of it that is this process's own."""
-    position, flags = os.lseek(descriptor, 0, os.SEEK_CUR), fcntl.fcntl(descriptor, fcntl.F_GETFL)
+    try:
+        position = os.lseek(descriptor, 0, os.SEEK_CUR)
+    except OSError:  # a namespace, which has no positions
+        return
+    flags = fcntl.fcntl(descriptor, fcntl.F_GETFL)
     shared = (status.st_dev, status.st_ino, position, flags)
     if shared not in copies:
         is_deleted = status.st_nlink == 0

@@ -22,13 +22,14 @@ from dataclasses import dataclass, field
 from time import monotonic  # tests may replace that of the module
 
 from mutabot.model import Call, Mutant, Span
-from mutabot.model.events import BranchDied, ForkEnded, TokensHeld, Unbranched, Undiverged
-from mutabot.model.job import Branching
+from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Unforked
+from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import Isolation, StateBeforeFork
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
-from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent
+from mutabot.runtime.isolation.namespaces import ForkedPids, end_first, fork, leave_out
+from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
 from mutabot.runtime.plugins import alarm_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are
@@ -57,18 +58,18 @@ class Child:
     Attributes:
         mutant: id of its mutant.
         fork: its number among those that were forked here.
-        pid, pidfd: its process.
+        pids, pidfd: its process, and what keeps its namespace.
         test: the number of the test that it was in when its time began.
         limit: the seconds it was given for that test.
         used: how much of them it has used.
         until: moment (``time.monotonic``) at which its time is up.
         overdue: whether its time was up.
-        hindered, is_starved: as in ``BranchDied``.
+        hindered, is_starved: as in ``ForkDied``.
     """
 
     mutant: str
     fork: int
-    pid: int
+    pids: ForkedPids
     pidfd: int
     test: int
     limit: float
@@ -82,11 +83,11 @@ class Child:
         """Whether it is to be ended. If the clock has run out, but not its time, it gets what is left."""
         if now < self.until or self.overdue:
             return False
-        left = self.used.left(self.limit, [self.pid])
+        left = self.used.left(self.limit, [self.pids.fork])
         if left > 0:
             self.until = now + max(left, _LEAST)
             return False
-        self.hindered = self.used.hindrance([self.pid])
+        self.hindered = self.used.hindrance([self.pids.fork])
         self.is_starved = now >= self.used.began + MOST * self.limit
         return True
 
@@ -96,7 +97,7 @@ class ForkParent:
     """Forks a child for each mutant.
 
     Attributes:
-        branching: the mutants, and what children may use.
+        forking: the mutants, and what children may use.
         tests: the tests of the session, in their order.
         pipe: the file of events.
         isolation: how a child is kept apart from this process.
@@ -107,7 +108,7 @@ class ForkParent:
             running test.
     """
 
-    branching: Branching
+    forking: Forking
     tests: tuple[str, ...]
     pipe: EventFile
     isolation: Isolation
@@ -133,15 +134,15 @@ class ForkParent:
 
     def __post_init__(self) -> None:
         os.register_at_fork(before=self._note_copy)
-        self._slots = {mutant.id: slot for slot, mutant in enumerate(self.branching.mutants)}
+        self._slots = {mutant.id: slot for slot, mutant in enumerate(self.forking.mutants)}
         # the board, which children write: whether each has gone to the end, and the number of its test
         count = max(1, len(self._slots))
         board = memoryview(mmap.mmap(-1, 2 * count * _NUMBER_BYTES)).cast("i")
         self._finished, self._tests = board[:count], board[count:]
         self._known = open_now()
-        for mutant in self.branching.mutants:
+        for mutant in self.forking.mutants:
             keys: list[Key] = [(mutant.site.span, mutant.operation, mutant.pattern)]
-            keys += [choice.place for choice in self.branching.choices.get(mutant.id, ())]
+            keys += [choice.place for choice in self.forking.choices.get(mutant.id, ())]
             for key in keys:
                 self._live.setdefault(key, []).append(mutant)
 
@@ -150,12 +151,12 @@ class ForkParent:
         self._is_overtaken()  # also if no place is reached before
         self._test, self._number = test, self.tests.index(test)
         self._copied = False
-        due = set(self.branching.at_start.get(test, ())) - self._gone
+        due = set(self.forking.at_start.get(test, ())) - self._gone
         if due and self.has_nodes:
             self._gone |= due
-            self.pipe.send(Unbranched(test, tuple(sorted(due)), _NODES))
+            self.pipe.send(Unforked(test, tuple(sorted(due)), _NODES))
         elif due:
-            self._fork([one for one in self.branching.mutants if one.id in due])
+            self._fork([one for one in self.forking.mutants if one.id in due])
 
     def fork_at(self, span: Span, call: Call, number: int) -> None:
         """Fork for each mutant that acts at this call and has no process yet.
@@ -201,7 +202,7 @@ class ForkParent:
 
     def _index(self, mutant: Mutant) -> int:
         """Which alternative the mutant is; negative if it cannot wait until that changes something."""
-        return self.branching.choices[mutant.id][0].index
+        return self.forking.choices[mutant.id][0].index
 
     def _fork(self, mutants: Iterable[Mutant]) -> None:
         due = [mutant for mutant in mutants if mutant.id not in self._gone]
@@ -212,10 +213,10 @@ class ForkParent:
             self._places = None
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
-            own = (child.pid for child in self._children.values())
+            own = (pid for child in self._children.values() for pid in child.pids)
             reason = STARTED if self._is_overtaken() else self.isolation.reason() or why_not(own, self._known)
             if reason is not None:
-                self.pipe.send(Unbranched(self._test, tuple(mutant.id for mutant in due), reason))
+                self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
                 self._fork_each(due)
 
@@ -226,54 +227,75 @@ class ForkParent:
         return self._overtaken
 
     def _fork_each(self, mutants: Sequence[Mutant]) -> None:
+        began = monotonic()
         for mutant in mutants:
-            pid = self._fork_one(mutant)
-            if pid == 0:
+            try:
+                pids = self._fork_one(mutant, began)
+            except OSError as error:
+                self._tell_unforked(mutant, error)
+                continue
+            if pids is None:
                 return
             limit, used = self._limit(self._number), TimeUsed.from_now()
             child = Child(
-                mutant.id, self.pipe.forks, pid, os.pidfd_open(pid), self._number, limit, used,
+                mutant.id, self.pipe.forks, pids, os.pidfd_open(pids.fork), self._number, limit, used,
                 until=used.began + limit,
             )  # fmt: skip
             self._children[child.pidfd] = child
             self._take_token()
+        if not self._children:  # else a test of the original may notice, which the campaign will see
+            with suppress(OSError):
+                leave_out(monotonic() - began)
 
-    def _fork_one(self, mutant: Mutant) -> int:
-        """Fork; 0 in the child, which is this mutant then."""
+    def _fork_one(self, mutant: Mutant, began: float) -> ForkedPids | None:
+        """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
         slot = self._slots[mutant.id]
         self._finished[slot], self._tests[slot] = 0, self._number
         before = StateBeforeFork()
         self.pipe.forks += 1
         reading, writing = os.pipe()
         self._forking = True
-        pid = os.fork()
-        self._forking = False
-        if pid == 0:
+        try:
+            pids = fork()
+        except OSError:
             os.close(reading)
-            self._begin_child(mutant, before)
             os.close(writing)
-            return pid
+            raise
+        finally:
+            self._forking = False
+        if pids is None:
+            os.close(reading)
+            die_with_parent()
+            if nobody_listens(writing):  # the parent died before the kernel was asked
+                os._exit(ALONE)
+            self._begin_child(mutant, before, began)
+            os.close(writing)
+            return None
         os.close(writing)
         with open(reading, "rb") as ready:  # what it inherits must not change before it has its own
             ready.read()
-        return pid
+        return pids
 
-    def _begin_child(self, mutant: Mutant, before: StateBeforeFork) -> None:
+    def _begin_child(self, mutant: Mutant, before: StateBeforeFork, began: float) -> None:
         """Let go of what is the parent's, and become the mutant."""
-        die_with_parent(self._pid)
+        os.setsid()  # it leads its group and session, as a test process does
         self.pipe.go_on_apart()
-        for descriptor in (*self._children, *self.branching.tokens):
+        for descriptor in (*self._children, *self.forking.tokens):
             os.close(descriptor)
         try:
             folder = self.isolation.enter(self.pipe.name)
+            leave_out(monotonic() - began)
         except OSError as error:
-            why = f"a fork cannot have files of its own: {error.strerror or error}"
             try:
-                self.pipe.send(Unbranched(self._test, (mutant.id,), why))
+                self._tell_unforked(mutant, error)
             finally:
                 os._exit(STOPPED)
         before.restore()
         self.become(mutant, folder)
+
+    def _tell_unforked(self, mutant: Mutant, error: OSError) -> None:
+        why = f"a fork cannot be kept apart: {error.strerror or error}"
+        self.pipe.send(Unforked(self._test, (mutant.id,), why))
 
     def _note_copy(self) -> None:
         """This process is about to be forked, by whomever."""
@@ -297,8 +319,8 @@ class ForkParent:
     def _limit(self, test: int) -> float:
         """Seconds for a test, by its number; -1 before any."""
         if test < 0:
-            return self.branching.startup
-        return self.branching.walls.get(self._name_of(test), self.branching.wall)
+            return self.forking.startup
+        return self.forking.walls.get(self._name_of(test), self.forking.wall)
 
     def _name_of(self, test: int) -> str:
         """The node id of a test, by its number: empty before any, the last one while the session ends."""
@@ -306,9 +328,9 @@ class ForkParent:
 
     def _take_token(self) -> None:
         """The parent's token went to the child: wait for another, from the pool or from a child's end."""
-        reading = self.branching.tokens[0]
-        while self.branching.serial or not self._take_free(reading):
-            if self._reap(self._wait(None if self.branching.serial else reading)):
+        reading = self.forking.tokens[0]
+        while self.forking.serial or not self._take_free(reading):
+            if self._reap(self._wait(None if self.forking.serial else reading)):
                 return
 
     def _take_free(self, reading: int) -> bool:
@@ -324,7 +346,7 @@ class ForkParent:
         """Put one token back into the pool."""
         self._hold(self._held - 1)
         with suppress(BlockingIOError):  # it is full, of what no parent has put there
-            os.write(self.branching.tokens[1], _TOKEN)
+            os.write(self.forking.tokens[1], _TOKEN)
 
     def _hold(self, count: int) -> None:
         self._held = count
@@ -351,7 +373,7 @@ class ForkParent:
             self._note_progress(child, now)
             if child.is_out_of_time(now):
                 child.overdue = True
-                os.kill(child.pid, signal.SIGKILL)
+                os.kill(child.pids.fork, signal.SIGKILL)
         for descriptor in ready:
             ended = self._children.pop(descriptor, None)
             if ended is not None:
@@ -363,13 +385,14 @@ class ForkParent:
         """A child whose time seems to be up may have begun another test meanwhile."""
         test = self._tests[self._slots[child.mutant]] if now >= child.until else child.test
         if test != child.test:
-            child.test, child.used = test, TimeUsed.from_now([child.pid])
+            child.test, child.used = test, TimeUsed.from_now([child.pids.fork])
             child.limit = self._limit(test)
             child.until = now + child.limit
 
     def _bury(self, child: Child) -> None:
         """Tell how a child has ended."""
-        _, status = os.waitpid(child.pid, 0)
+        _, status = os.waitpid(child.pids.fork, 0)
+        end_first(child.pids.first)
         os.close(child.pidfd)
         slot, code = self._slots[child.mutant], os.waitstatus_to_exitcode(status)
         # at the end of the session the exit code is the suite's own
@@ -377,7 +400,7 @@ class ForkParent:
         died = None
         if not is_told or child.overdue:
             test = self._name_of(self._tests[slot])
-            died = BranchDied(
+            died = ForkDied(
                 child.mutant, test, code, overdue(child.limit, test) if child.overdue else None,
                 hindered=child.hindered, is_starved=child.is_starved,
             )  # fmt: skip

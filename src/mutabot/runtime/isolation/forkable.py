@@ -104,7 +104,7 @@ def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> s
     """Why forking is not safe, in words; None if it is.
 
     Args:
-        own_children: processes that this one forked as branches.
+        own_children: processes that this one forked for mutants.
         known: what was open before the user's code ran, as ``open_now`` gives it.
     """
     checks: tuple[Callable[[], str | None], ...] = (

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import gc
 import os
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Mutant
-from mutabot.model.events import BranchEnd, BranchFinished, TestEnd
+from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd
 from mutabot.model.job import write_job
 from mutabot.runtime import test_end
+from mutabot.runtime.audit import listen
 from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
@@ -38,7 +38,7 @@ class ForkedRun:
 
     def __init__(self, session: Session, parent: ForkParent, mutant: Mutant, folder: str) -> None:
         self.mutant = mutant
-        self.choices = parent.branching.choices.get(mutant.id, ())
+        self.choices = parent.forking.choices.get(mutant.id, ())
         self.members: Members | None = None
         self._session, self._parent, self._folder = session, parent, folder
         self._pid = os.getpid()
@@ -46,7 +46,7 @@ class ForkedRun:
         self._is_early = not session.test
         self._has_acted = False
         gc.freeze()  # what is never looked at stays shared with the parent
-        sys.addaudithook(self._hear)
+        listen(_PROCESSES, self._hear)
 
     def start_test(self) -> None:
         """A test begins, its second at least."""
@@ -56,7 +56,7 @@ class ForkedRun:
     def end_test(self, end: TestEnd) -> None:
         """A test is over: tell how it ended, and leave if it decides about the mutant."""
         self._has_acted |= end.acted > 0
-        if not end.is_decided or self._parent.branching.every_test:
+        if not end.is_decided or self._parent.forking.every_test:
             self._report(end)
             return
         try:
@@ -68,17 +68,17 @@ class ForkedRun:
         """The session is over: what its exit code is, the parent will tell."""
         self._parent.note_next_test(self.mutant.id)
         self._parent.note_finished(self.mutant.id)
-        self._session.pipe.send(BranchFinished((self.mutant.id,), errors=tuple(errors)))
+        self._session.pipe.send(ForkSessionEnd((self.mutant.id,), errors=tuple(errors)))
 
     def _report(self, end: TestEnd) -> None:
         sites = self._session.recorder.sites_of(end.trace) if end.outcome != test_end.FAILED else ()
         if end.outcome == test_end.FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
-        self._session.pipe.send(BranchEnd(self.mutant.id, end, sites, self._shared, self._is_early))
+        self._session.pipe.send(ForkTestEnd(self.mutant.id, end, sites, self._shared, self._is_early))
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """The program is about to start its first process, which is to be the mutant as well."""
-        if event in _PROCESSES and self.members is None and os.getpid() == self._pid:
+        if self.members is None and os.getpid() == self._pid:
             self.members = self._own_processes()
 
     def _own_processes(self) -> Members:
@@ -86,9 +86,9 @@ class ForkedRun:
         text = job.instrumentation
         if text is not None:
             text = text.only(tuple(self.choices))
-        job = replace(job, mutant=self.mutant, branching=None, instrumentation=text)
+        job = replace(job, mutant=self.mutant, forking=None, instrumentation=text)
         write_job(self._folder, replace(job, reaching={}))
-        session.job = replace(job, branching=session.job.branching)
+        session.job = replace(job, forking=session.job.forking)
         members = Members(self._folder, session, has_acted=self._has_acted)
         members.start_test(session.test)
         watch_forks(members.folder, session)

@@ -10,6 +10,7 @@ import signal
 import sys
 import threading
 from contextlib import suppress
+from functools import cache
 from typing import Any, NoReturn
 
 #: exit code of a process that found nobody to work for
@@ -19,10 +20,14 @@ _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
 def die_with_parent(parent: int | None = None) -> None:
     """Ask the kernel to end this process when its parent dies; end it now if ``parent`` is already gone."""
-    libc = ctypes.CDLL(None, use_errno=True)
-    libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     if parent is not None and os.getppid() != parent:  # it died before the kernel was asked
         os._exit(ALONE)
+
+
+@cache  # ctypes makes a class for each
+def _libc() -> ctypes.CDLL:
+    return ctypes.CDLL(None, use_errno=True)
 
 
 def nobody_listens(descriptor: int) -> bool:

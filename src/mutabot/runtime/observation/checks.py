@@ -1,55 +1,37 @@
 """Note the checks of the running test: what each compared, and by how much it held.
 
-Pytest works out each part of an assertion once and keeps it in a variable. After a comparison, and after a
-call that decides, an inserted line hands on these variables: nothing of the assertion is evaluated again, and
-pytest's message about one that fails stays the same. The comparisons of unittest and numpy.testing are
-wrapped, and noted when they have held.
+Pytest works out each part of an assertion once and keeps it in a variable. After a comparison an inserted
+line hands on these variables: nothing of the assertion is evaluated again, and pytest's message about one
+that fails stays the same. A call that decides, and a statement such as ``self.assertEqual(a, b)``, is noted
+by its text when it has returned.
 """
 
 from __future__ import annotations
 
 import ast
-import functools
-import inspect
-import linecache
+import builtins
 import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from types import ModuleType
 from typing import Any
 
-import wrapt
-
 from mutabot.model.outcome import Check
+from mutabot.runtime.program_text import loading
 
-#: this file, which is nobody's in tracebacks
-FILE = __file__
 #: checks of a test that are told; of others only how many there are
 MOST = 40
 #: elements of containers beyond which they are not looked at
 _MOST_ITEMS = 1000
 _LONGEST, _LONGEST_VALUE = 160, 100
 _PLAIN = (str, bytes, int, float, bool, complex, range, type(None))
-#: names in pytest's module of rewriting, which rewritten files know as ``@pytest_ar``
-_COMPARED, _CALLED = "_mutabot_compared", "_mutabot_called"
-_REWRITING = "_pytest.assertion.rewrite"
+#: the built-in name by which test files note their checks
+CHECKED = "__mutabot_checked__"
 _OPERATORS: dict[type[ast.cmpop], str] = {
     ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
     ast.In: "in", ast.NotIn: "not in", ast.Is: "is", ast.IsNot: "is not",
 }  # fmt: skip
-#: functions that compare their first two arguments, and how
-_COMPARING = {
-    "assertGreater": ">", "assertGreaterEqual": ">=", "assertLess": "<", "assertLessEqual": "<=",
-    "assertEqual": "==", "assertNotEqual": "!=", "assertIn": "in", "assertNotIn": "not in",
-    "assert_equal": "==", "assert_array_equal": "==", "assert_array_less": "<",
-    "assertAlmostEqual": "≈", "assert_allclose": "≈", "assert_almost_equal": "≈",
-    "assert_array_almost_equal": "≈", "isclose": "≈", "allclose": "≈",
-}  # fmt: skip
-_LIBRARIES = frozenset({"math", "numpy", "unittest"})
-#: assertions with these words in their names run what they are given
-_RUNS_SOMETHING = ("raises", "warn", "logs", "gc_cycles")
 
 
 class Looks:
@@ -74,31 +56,13 @@ class Looks:
         """Those of the test until now."""
         return tuple(self._noted.values())
 
-    def compared(self, place: str, text: str, left: Any, operator: str, right: Any) -> None:
-        """``left operator right`` was evaluated."""
+    def checked(self, place: str, text: str, *compared: Any) -> None:
+        """Note a check that has held; ``compared``: left side, operator and right side of a comparison."""
         with suppress(Exception):  # whatever the user's values do when they are examined, the test goes on
-            self._note(place, text, margin(left, operator, right), lambda: _words(left, operator, right))
-
-    def called(
-        self, place: str, text: str, function: Any, args: tuple[Any, ...], named: Any, first: int = 0
-    ) -> None:
-        """A function that decides about a check has returned; ``first``: how many arguments are ``self``."""
-        with suppress(Exception):  # as above
-            self._called(place, text, function, args, named, first)
-
-    def _called(
-        self, place: str, text: str, function: Any, args: tuple[Any, ...], named: Any, first: int
-    ) -> None:
-        name = getattr(function, "__name__", "")
-        library = (getattr(function, "__module__", None) or "").partition(".")[0]
-        operator = _COMPARING.get(name) if library in _LIBRARIES else None
-        given = _given(function, args, named) if operator is not None else {}
-        if operator is None or len(given) < 2:
-            self._note(place, text, None, lambda: _call_words(name, args[first:], named))
-            return
-        left, right = list(given.values())[:2]
-        spare = within(left, right, *_tolerance(given)) if operator == "≈" else margin(left, operator, right)
-        self._note(place, text, spare, lambda: _words(left, operator, right))
+            if compared:
+                self._note(place, text, margin(*compared), lambda: _words(*compared))
+            else:
+                self._note(place, text, None, lambda: "")
 
     def _note(self, place: str, text: str, spare: float | None, words: Callable[[], str]) -> None:
         key = place, text
@@ -111,32 +75,6 @@ class Looks:
             is_nearer = spare is not None and (before.spare is None or spare < before.spare)
             seen, least = (words(), spare) if is_nearer else (before.seen, before.spare)
             self._noted[key] = Check(place, before.text, seen, least, before.times + 1)
-
-
-#: few functions are asked for theirs, and those often
-_signature = functools.lru_cache(maxsize=256)(inspect.signature)
-
-
-def _given(function: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments of a call by name, defaults included; none if they cannot be told."""
-    try:
-        bound = _signature(function).bind(*args, **named)
-    except (TypeError, ValueError):
-        return {}
-    bound.apply_defaults()
-    return {name: value for name, value in bound.arguments.items() if name != "self"}
-
-
-def _tolerance(given: Mapping[str, Any]) -> tuple[Any, Any]:
-    """The absolute and relative tolerance of a comparison, as the libraries document it."""
-    if given.get("delta") is not None:
-        return given["delta"], 0.0
-    if "places" in given:  # |first - second| rounds to 0
-        return 0.5 * 10.0 ** -(7 if given["places"] is None else given["places"]), 0.0
-    if "decimal" in given:  # |actual - desired| < 1.5 * 10**(-decimal)
-        return 1.5 * 10.0 ** -given["decimal"], 0.0
-    absolute, relative = given.get("atol", given.get("abs_tol")), given.get("rtol", given.get("rel_tol"))
-    return absolute or 0.0, relative or 0.0
 
 
 def margin(left: Any, operator: str, right: Any) -> float | None:
@@ -152,14 +90,6 @@ def margin(left: Any, operator: str, right: Any) -> float | None:
     if operator not in ("<", "<=", ">", ">="):
         return None
     return _least(abs(other - value) for value, other in _pairs(left, right))
-
-
-def within(value: Any, expected: Any, absolute: Any, relative: Any) -> float | None:
-    """How far the sides of ``|value - expected| <= absolute + relative * |expected|`` are apart."""
-    if not {type(absolute), type(relative)} <= {int, float}:
-        return None
-    pairs = _pairs(value, expected)
-    return _least(abs(absolute + relative * abs(wanted) - abs(one - wanted)) for one, wanted in pairs)
 
 
 def _is_approximate(value: Any) -> bool:
@@ -211,44 +141,32 @@ def _without_numpy(value: Any) -> Any:
     return value.tolist() if value.dtype.kind in "biuf" and value.size <= _MOST_ITEMS else value
 
 
-def in_words(value: Any) -> str | None:
+def _in_words(value: Any) -> str | None:
     """Return a plain value as people read it; None for others, whose ``repr`` may have effects."""
     value = _without_numpy(value)
-    kind = type(value)
-    text = None
     if _is_approximate(value):
-        inner = in_words(value.expected)
-        text = None if inner is None else f"approx({inner})"
-    elif kind is float:
-        text = f"{value:.6g}"
-    elif kind in _PLAIN:
-        text = repr(value)
-    elif kind in (list, tuple) and len(value) <= _MOST_ITEMS:
-        text = _joined("[]" if kind is list else "()", [("", one) for one in value])
-    elif kind is dict and len(value) <= _MOST_ITEMS and all(type(key) in _PLAIN for key in value):
-        text = _joined("{}", [(f"{key!r}: ", one) for key, one in value.items()])
-    return text if text is None or len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"
-
-
-def _joined(brackets: str, parts: list[tuple[str, Any]]) -> str | None:
-    texts = [(name, in_words(one)) for name, one in parts]
-    if any(text is None for _, text in texts):
+        inner = _in_words(value.expected)
+        return None if inner is None else f"approx({inner})"
+    if not _is_plain(value):
         return None
-    return f"{brackets[:-1]}{', '.join(f'{name}{text}' for name, text in texts)}{brackets[-1]}"
+    text = f"{value:.6g}" if type(value) is float else repr(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"
+
+
+def _is_plain(value: Any) -> bool:
+    kind = type(value)
+    if kind in (list, tuple, dict) and len(value) <= _MOST_ITEMS:
+        return all(map(_is_plain, value)) and (kind is not dict or all(map(_is_plain, value.values())))
+    return kind in _PLAIN
 
 
 def _words(left: Any, operator: str, right: Any) -> str:
-    sides = in_words(left), in_words(right)
+    sides = _in_words(left), _in_words(right)
     return f"{sides[0]} {operator} {sides[1]}" if None not in sides else ""
 
 
-def _call_words(name: str, args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
-    parts = [("", one) for one in args] + [(f"{key}=", one) for key, one in named.items()]
-    return (_joined(f"{name}()", parts) or "") if name else ""
-
-
 class Checks:
-    """Puts the noting of checks into test files, and around comparisons of unittest and numpy.testing.
+    """Puts the noting of checks into test files.
 
     Args:
         root: absolute path of the project.
@@ -261,86 +179,46 @@ class Checks:
         self._wants = wants
         self._looks = looks
         self._told: list[tuple[str, str]] = []
-        self._names: dict[str, str] = {}
-        self._is_inside = False
+        self._found: dict[_Position, int] = {}
 
     def install(self) -> None:
-        """Look at all test files, and the two libraries, that are imported from now on."""
-        wrapt.register_post_import_hook(lambda module: self._wrap(module.TestCase, 1), "unittest.case")
-        wrapt.register_post_import_hook(self._wrap_module, "numpy.testing")
-        rewriting: Any = sys.modules.get(_REWRITING)
-        if rewriting is None:
-            return
-        rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
-
-        def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
-            found = self._conditions(tree, source, path) if path is not None and self._wants(path) else {}
-            rewrite(tree, source, path, *rest)
-            if found:
-                _Inserter(found).visit(tree)
-
-        def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
-            # what pytest compiled in earlier sessions tells nothing
-            return None if self._wants(str(source)) else read(source, *rest, **named)
-
-        rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
+        """Look at all test files that pytest rewrites from now on."""
         looks, told = self._looks, self._told
-        setattr(rewriting, _COMPARED, lambda number, *parts: looks.compared(*told[number], *parts))
-        setattr(rewriting, _CALLED, lambda number, *parts: looks.called(*told[number], *parts))
+        setattr(builtins, CHECKED, lambda number, *compared: looks.checked(*told[number], *compared))
+        loading.hook_pytest(self._wants, self._insert, self._look)
 
-    def _conditions(self, tree: ast.Module, source: bytes, path: str) -> dict[_Position, int]:
-        """Numbers of the comparisons and calls that decide about assertions, by where they stand."""
+    def _look(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Number the comparisons and calls that decide about assertions, by where they stand."""
         lines = source.splitlines(keepends=True)  # ``ast.get_source_segment`` splits all of it for each part
-        found: dict[_Position, int] = {}
+        name = os.path.relpath(os.path.realpath(path), self._root)
+        self._found = {}
         for node in ast.walk(tree):
-            for part in _deciding(node.test) if isinstance(node, ast.Assert) else ():
+            for part in _deciding(_decides(node)):
                 words = " ".join(_segment(lines, part).decode("utf-8", "replace").split())
-                found[_position(part)] = len(self._told)
-                self._told.append((self._place(path, part.lineno), words))
-        return found
+                self._found[_position(part)] = len(self._told)
+                self._told.append((f"{name}:{part.lineno}", words))
 
-    def _place(self, file: str, line: int) -> str:
-        name = self._names.get(file)
-        if name is None:
-            name = self._names[file] = os.path.relpath(os.path.realpath(file), self._root)
-        return f"{name}:{line}"
-
-    def _wrap_module(self, module: ModuleType) -> None:
-        self._wrap(module, 0)
-
-    def _wrap(self, owner: Any, first: int) -> None:
-        """Wrap the comparisons of a module or class; ``first``: how many arguments are none of them."""
-        for name in dir(owner):
-            function = getattr(owner, name)
-            runs = any(one in name.lower() for one in _RUNS_SOMETHING)
-            if name.startswith("assert") and callable(function) and not runs:
-                setattr(owner, name, self._noting(function, first))
-
-    def _noting(self, function: Callable[..., Any], first: int) -> Callable[..., Any]:
-        @functools.wraps(function)
-        def compare(*arguments: Any, **named: Any) -> Any:
-            if self._is_inside:  # they use each other
-                return function(*arguments, **named)
-            self._is_inside = True
-            try:
-                result = function(*arguments, **named)
-            finally:
-                self._is_inside = False
-            frame = sys._getframe(1)
-            file, line = frame.f_code.co_filename, frame.f_lineno
-            text = " ".join(linecache.getline(file, line).split()) or function.__name__
-            self._looks.called(self._place(file, line), text, function, arguments, named, first)
-            return result
-
-        return compare
+    def _insert(self, tree: ast.Module, source: bytes, path: str) -> None:
+        if self._found:
+            _Inserter(self._found).visit(tree)
 
 
 #: where an expression stands: line and column, from and to
 _Position = tuple[int, int, int | None, int | None]
 
 
-def _deciding(test: ast.expr) -> Iterator[ast.Compare | ast.Call]:
-    """The comparisons and calls of which an assertion is made up."""
+def _decides(node: ast.AST) -> ast.expr | None:
+    """What a statement checks: the condition of an assertion, or a call whose name says that it asserts."""
+    match node:
+        case ast.Assert(test=test):
+            return test
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name) | ast.Name(id=name)) as call):
+            return call if name.startswith("assert") else None
+    return None
+
+
+def _deciding(test: ast.expr | None) -> Iterator[ast.Compare | ast.Call]:
+    """The comparisons and calls of which a condition is made up."""
     if isinstance(test, ast.BoolOp):
         for value in test.values:
             yield from _deciding(value)
@@ -363,40 +241,28 @@ def _segment(lines: Sequence[bytes], node: ast.expr) -> bytes:
 
 
 class _Inserter(ast.NodeTransformer):
-    """Puts lines after those that work out the conditions of assertions."""
+    """Puts lines after those that work out the conditions of assertions, and after calls that assert."""
 
     def __init__(self, found: dict[_Position, int]) -> None:
         self._found = found
 
     def visit_Assign(self, node: ast.Assign) -> Any:  # the name that ast looks for
-        value, target = node.value, node.targets[0]
-        is_pytests = isinstance(target, ast.Name) and target.id.startswith("@py_")
-        if not isinstance(value, ast.Compare | ast.Call) or not is_pytests:
+        target = node.targets[0]
+        return self._noted(node) if isinstance(target, ast.Name) and target.id.startswith("@py_") else node
+
+    def visit_Expr(self, node: ast.Expr) -> Any:  # as above
+        return self._noted(node) if isinstance(node.value, ast.Call) else node
+
+    def _noted(self, node: ast.Assign | ast.Expr) -> Any:
+        value = node.value
+        number = self._found.get(_position(value)) if isinstance(value, ast.Compare | ast.Call) else None
+        if number is None:
             return node
-        number = self._found.get(_position(value))
-        if number is None or not all(isinstance(one, ast.Name | ast.Constant) for one in _parts(value)):
-            return node  # what is no variable would be evaluated twice
-        return [node, ast.fix_missing_locations(ast.copy_location(_line(number, value), node))]
-
-
-def _parts(value: ast.Compare | ast.Call) -> list[ast.expr]:
-    """What a comparison or call is made of."""
-    if isinstance(value, ast.Compare):
-        return [value.left, *value.comparators]
-    given = [one.value if isinstance(one, ast.Starred) else one for one in value.args]
-    return [value.func, *given, *(one.value for one in value.keywords)]
-
-
-def _line(number: int, value: ast.Compare | ast.Call) -> ast.Expr:
-    """The inserted line, which hands on the variables."""
-    if isinstance(value, ast.Compare):
-        operator = ast.Constant(_OPERATORS[type(value.ops[0])])
-        name, parts = _COMPARED, [value.left, operator, value.comparators[0]]
-    else:
-        keys: list[ast.expr | None] = [
-            None if one.arg is None else ast.Constant(one.arg) for one in value.keywords
-        ]
-        named = ast.Dict(keys, [one.value for one in value.keywords])
-        name, parts = _CALLED, [value.func, ast.Tuple(list(value.args), ast.Load()), named]
-    function = ast.Attribute(ast.Name("@pytest_ar", ast.Load()), name, ast.Load())
-    return ast.Expr(ast.Call(function, [ast.Constant(number), *parts], []))
+        given: list[ast.expr] = [ast.Constant(number)]
+        if isinstance(value, ast.Compare):
+            sides = [value.left, *value.comparators]
+            if not all(isinstance(one, ast.Name | ast.Constant) for one in sides):
+                return node  # what is no variable would be evaluated twice
+            given += [sides[0], ast.Constant(_OPERATORS[type(value.ops[0])]), sides[1]]
+        line = ast.Expr(ast.Call(ast.Name(CHECKED, ast.Load()), given, []))
+        return [node, ast.fix_missing_locations(ast.copy_location(line, node))]

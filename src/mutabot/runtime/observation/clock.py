@@ -14,8 +14,10 @@ from typing import Any
 from mutabot.errors import PathError
 from mutabot.model import Clock, Vocabulary
 from mutabot.model.path import Path
+from mutabot.model.signature import ANYTHING, signature_of
 from mutabot.model.units import convert
 from mutabot.runtime.evidence import Meter
+from mutabot.runtime.interception.adapter import Invocation
 from mutabot.runtime.observation.instances import Instances
 from mutabot.runtime.targets.target import Handler, resolve
 
@@ -80,18 +82,10 @@ class ClockReader:
         if time is not None:
             meter.tick(time)
 
-    def _time(
-        self,
-        result: Any,
-        wrapped: Callable[..., Any],
-        instance: Any,
-        args: tuple[Any, ...],
-        kwargs: dict[str, Any],
-    ) -> float | None:
+    def _time(self, result: Any, *call: Any) -> float | None:
         """Simulated time in s after the call; None, and a problem, if there is none."""
         try:
-            rooted = self._path.root is not None
-            value = self._path.get(self._start(wrapped, instance, args, kwargs) if rooted else result)
+            value = self._path.get(self._start(*call) if self._path.root is not None else result)
         except PathError as error:
             self._wrong(str(error))
             return None
@@ -105,27 +99,17 @@ class ClockReader:
             return None
         return convert(number, self.clock.unit, "s")
 
-    def _start(
-        self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
-    ) -> Any:
+    def _start(self, *call: Any) -> Any:
         """The object or argument at which the path begins. Raises PathError if the call has none."""
-        root, tick = self._path.root or "", self.clock.tick
-        known: tuple[str, ...] = ()
-        if root == "self" and instance is not None:
-            return instance
-        if root == "self":
-            why = f"{tick} is no method, so it has no self"
-        else:
-            try:
-                bound = inspect.signature(wrapped).bind(*args, **kwargs)
-                bound.apply_defaults()
-                if root in bound.arguments:
-                    return bound.arguments[root]
-                known = tuple(bound.arguments)
-                why = f"{tick} has no argument {root!r}; it has {', '.join(known)}"
-            except (TypeError, ValueError):
-                why = f"{tick} does not tell its arguments"
-        raise PathError(why, step=root, known=known)
+        invocation = Invocation(*call)
+        invocation.bind(signature_of(invocation.wrapped) or ANYTHING)
+        start, known = invocation.start_of(self._path), tuple(invocation.values or ())
+        root = self._path.root or ""
+        if start is None and root not in known:
+            of_call = f"has no argument {root!r}; it has {', '.join(known)}"
+            why = "is no method, so it has no self" if root == "self" else of_call
+            raise PathError(f"{self.clock.tick} {why}", step=root, known=known)
+        return start
 
     def _wrong(self, text: str) -> None:
         self.on_problem(

@@ -29,7 +29,6 @@ from mutabot.errors import nearest_name
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.recording import Told, to_text
 from mutabot.evidence.tape import FilmWriter, Tape
-from mutabot.frozen import frozen
 from mutabot.model import Probe
 from mutabot.model.job import Pictures
 from mutabot.model.path import class_name
@@ -54,10 +53,15 @@ class Reading:
         values: flat, ``target.part`` to number, text or truth value; a probe of the second object of its
             class is ``target#2``.
         unread: target to why it could not be read, for the others.
+        seconds: of processor time that it takes to read them once more; None if they cannot be read along the
+            way.
+        not_along: why not, or None.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
     unread: dict[str, str] = field(default_factory=dict)
+    seconds: float | None = None
+    not_along: str | None = None
 
 
 def take(probes: tuple[Probe, ...], instances: Instances) -> Reading:
@@ -256,24 +260,11 @@ class Along:
             self.step *= 2
 
 
-@frozen
-class Rehearsal:
-    """What is known of reading the probes once more.
-
-    Attributes:
-        seconds: of processor time; None if they cannot be read along the way.
-        why_not: why not, or None.
-    """
-
-    seconds: float | None = None
-    why_not: str | None = None
-
-
-def rehearse(read: Callable[[], Reading]) -> tuple[Reading, Rehearsal]:
-    """The probes, and whether they could be read along the way as well: reading them must change nothing."""
+def rehearse(read: Callable[[], Reading]) -> Reading:
+    """Read the probes, and see whether reading them along the way as well would change nothing."""
     first = read()
     if not first.values:
-        return first, Rehearsal()
+        return first
     drawn, walls, used = _random_state(), [], []
     for _ in range(_TIMED):  # the system may do other things meanwhile: the least counts
         began = perf_counter(), time.thread_time()
@@ -282,14 +273,21 @@ def rehearse(read: Callable[[], Reading]) -> tuple[Reading, Rehearsal]:
         used.append(time.thread_time() - began[1])
         if walls[-1] > _SLOW and len(walls) > 1:
             break
+    # NaN is as good as NaN
+    differing = (
+        key
+        for key in first.values.keys() | again.values.keys()
+        if repr(first.values.get(key)) != repr(again.values.get(key))
+    )
     if min(walls) > _SLOW:
-        return first, Rehearsal(None, f"reading them takes {1e3 * min(walls):.0f} ms")
-    if drawn != _random_state():
-        return first, Rehearsal(None, "reading them draws random numbers")
-    for key in first.values.keys() | again.values.keys():
-        if repr(first.values.get(key)) != repr(again.values.get(key)):  # NaN is as good as NaN
-            return first, Rehearsal(None, f"{key} changes when it is read twice")
-    return first, Rehearsal(min(used))
+        first.not_along = f"reading them takes {1e3 * min(walls):.0f} ms"
+    elif drawn != _random_state():
+        first.not_along = "reading them draws random numbers"
+    elif (key := next(differing, None)) is not None:
+        first.not_along = f"{key} changes when it is read twice"
+    else:
+        first.seconds = min(used)
+    return first
 
 
 def _random_state() -> Any:

@@ -20,6 +20,7 @@ from itertools import takewhile
 from typing import Any
 
 from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
+from mutabot.runtime.audit import listen
 
 #: the folder of the start-up module
 STARTUP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "startup")
@@ -169,6 +170,8 @@ _KILLERS = {
 #: programs that run a command that they are given
 _RUNNERS = {"sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "nice", "nohup", "setsid", "xargs"}
 _KILLER_IN_TEXT = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(_KILLERS))})(?![\w.-])")
+#: audit events of the start of a program, see ``starts_a_killer``
+STARTS = ("os.system", "subprocess.Popen", "os.posix_spawn", "os.exec")
 #: options of Python by which it leaves out the environment, or what is loaded at its start
 _APART = {"-I", "-E", "-S"}
 
@@ -180,7 +183,7 @@ def starts_a_killer(event: str, arguments: tuple[Any, ...]) -> bool:
     """
     if event == "os.system":
         name, words = "sh", _words(None, arguments[0])
-    elif event in ("subprocess.Popen", "os.posix_spawn", "os.exec"):
+    elif event in STARTS:
         words = _words(None, arguments[1])
         name = os.path.basename(words[0]) if words else ""
     else:
@@ -214,7 +217,7 @@ class ProcessWatch:
         self.signalled: set[int] = set()
         self._tell_unseen = tell_unseen
         self._watch_ends()
-        sys.addaudithook(self._hear)
+        listen(("os.kill", "os.killpg", *STARTS), self._hear)
 
     def _watch_ends(self) -> None:
         kind: Any = subprocess.Popen

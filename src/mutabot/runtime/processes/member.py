@@ -13,7 +13,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +25,6 @@ from mutabot.model.events import (
     Did,
     Event,
     Found,
-    Noted,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -39,9 +38,10 @@ from mutabot.model.events import (
 )
 from mutabot.model.job import Budget, Job, read_job
 from mutabot.runtime import FOLDER as OURS
+from mutabot.runtime.audit import listen
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves, together
-from mutabot.runtime.processes.environment import Now, carry, starts_a_killer
+from mutabot.runtime.processes.environment import STARTS, Now, carry, starts_a_killer
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.session_text import SessionText
 
@@ -57,12 +57,28 @@ def is_of_text_alone(job: Job) -> bool:
     return not (job.vocabulary.operations or job.vocabulary.clock or job.faults)
 
 
+@dataclass(frozen=True, slots=True)
+class Begun:
+    """What a process has told and done that waited before it became a member.
+
+    Attributes:
+        name: the name of its file of events.
+        number: of the last event in it.
+        loaded: program files that were loaded with the mutant in them, and their text.
+    """
+
+    name: str
+    number: int
+    loaded: Mapping[str, bytes]
+
+
 class TextOnly:
     """What ``runtime.session.Session`` is of a job that has nothing to do with calls.
 
     Args:
         job: what to do.
         pipe: where reports go.
+        loaded: program files that this process has loaded with their alternatives, and their text.
 
     Attributes:
         text: the program text, if it is instrumented.
@@ -75,15 +91,15 @@ class TextOnly:
     sites: tuple[SiteSeen, ...] = ()
     is_fork = False
 
-    def __init__(self, job: Job, pipe: Sink) -> None:
-        self.job, self.pipe = job, pipe
+    def __init__(self, job: Job, pipe: Sink, loaded: Mapping[str, bytes]) -> None:
+        self.job, self.pipe, self._loaded = job, pipe, loaded
         self.text: SessionText | None = None
         self.test = ""
         self.meter = Meter(Budget())
 
     def install(self) -> None:
         """Instrument the program from now on, and the mutant with it."""
-        self.text = SessionText.of(self.job, self.pipe, self._acted)
+        self.text = SessionText.of(self.job, self.pipe, self._acted, self._loaded)
 
     def start_test(self, test: str) -> None:
         """A test begins."""
@@ -108,12 +124,12 @@ class TextOnly:
 _member: Member | None = None
 
 
-def join(folder: str) -> None:
-    """Be a member of the campaign whose processes have this folder."""
+def join(folder: str, begun: Begun | None = None) -> None:
+    """Be a member of the campaign whose processes have this folder; ``begun``: what it did as it waited."""
     global _member  # noqa: PLW0603  # one process, one member
     if _member is None:
         job = read_job(os.path.dirname(folder))
-        _member = Member(folder, job)
+        _member = Member(folder, job, begun=begun)
         _member.begin()
 
 
@@ -135,18 +151,27 @@ class Member:
         folder: the folder of the campaign's processes.
         job: the job of the test process.
         session: the session that goes on, in a process that was forked; None to make one.
+        begun: what this process has done before it was a member; None if nothing.
     """
 
-    def __init__(self, folder: str, job: Job, session: Session | TextOnly | None = None) -> None:
+    def __init__(
+        self,
+        folder: str,
+        job: Job,
+        session: Session | TextOnly | None = None,
+        begun: Begun | None = None,
+    ) -> None:
         self._folder = folder
         self._now = Now(folder)
         self._test = self._now.number
         now = time.monotonic()
-        name = f"{os.getpid()}-{int(now * 1e6)}"
-        self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
-        command = tuple(getattr(sys, "orig_argv", sys.argv))
-        self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
-        self.session = session or _session(job, self)
+        name = f"{os.getpid()}-{int(now * 1e6)}" if begun is None else begun.name
+        number = begun.number if begun is not None else 0
+        self.file = EventFile(folder, name, job.key, self._now.note_unwritten, number=number)
+        if begun is None:
+            self.file.send(Began(os.getpid(), os.getpgrp(), tuple(sys.orig_argv), now, self._test))
+        self.session = session or _session(job, self, begun)
+        self._has_begun = begun is not None
         self._targets: set[str] = set()
         self._told = Evidence()
         self._places: set[int] = set()
@@ -157,7 +182,8 @@ class Member:
         """Put the session in place."""
         carry(self._folder)
         self.session.install()
-        hook_script()
+        if not self._has_begun:
+            hook_script()
         self._attend()
         self.session.start_test(self._now.name_of(self._test))
         self._watch_text()
@@ -198,11 +224,10 @@ class Member:
                 self.poll()
 
         session.recorder.on_hit, session.passing.on_end, session.passing.turn = hit, is_over, self.turn
-        session.on_refused = lambda site, number: self.file.send(Noted(site, number))
-        session.on_live = lambda site: self.file.send(Noted(site))
-        for targets in session.interception.kinds:
-            if targets.on_heard is not None:
-                targets.on_heard = partial(heard, targets.on_heard)
+        session.on_noted = self.file.send
+        messages = session.messages
+        if messages is not None and messages.on_heard is not None:
+            messages.on_heard = partial(heard, messages.on_heard)
 
     def turn(self) -> None:
         """Look whether another test has begun."""
@@ -245,13 +270,13 @@ class Member:
 
     def _tell_found(self, session: Session) -> None:
         """Tell of targets that were found since the last time."""
-        targets = session.interception.found - self._targets
+        targets = {name for kind in session.targets for name in kind.here()} - self._targets
         if not targets:
             return
         self._targets |= targets
         for operation in session.job.vocabulary.operations:
             if operation.target in targets:
-                session.inspection.check_target(operation, session.interception)
+                session.inspection.check_target(operation, session.targets)
         self.file.send(Found(targets=tuple(sorted(targets))))
 
     def _did(self, before: Evidence, now: Evidence) -> Did:
@@ -263,7 +288,6 @@ class Member:
             acted=now.acted - before.acted,
             away={why: count for why, count in away.items() if count},
             example=now.example if before.example is None else None,
-            invalid=now.invalid and not before.invalid,
             failure=now.failure if before.failure is None else None,
             refused=now.refusal if is_refused and not now.is_of_text else None,
             is_final=now.said is not None,
@@ -330,7 +354,7 @@ class Member:
 
         sys.excepthook, threading.excepthook = in_main, in_thread
         os._exit = leave_at_once  # type: ignore[assignment]
-        sys.addaudithook(self._hear)
+        listen(("os.kill", "os.killpg", *STARTS), self._hear)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in ("os.kill", "os.killpg") and _member is self:
@@ -358,13 +382,13 @@ class Member:
         )
 
 
-def _session(job: Job, pipe: Member) -> Session | TextOnly:
+def _session(job: Job, pipe: Member, begun: Begun | None) -> Session | TextOnly:
     text = job.instrumentation
     if text is not None and not (text.active or text.record):
         text = None  # those below a fork parent are the original, and fork for nobody
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
     if is_of_text_alone(job):
-        return TextOnly(job, pipe)
+        return TextOnly(job, pipe, begun.loaded if begun is not None else {})
     from mutabot import extensions  # noqa: PLC0415  # see above
     from mutabot.runtime.interception.trace import Locator  # noqa: PLC0415
     from mutabot.runtime.session import Session  # noqa: PLC0415

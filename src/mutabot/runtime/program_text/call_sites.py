@@ -166,7 +166,6 @@ class CallSites:
         self._hands = hands
         self._are_read = are_read
         self.loaded: list[str] = []
-        self._is_on = True
         self._numbers: dict[tuple[str, Extent, str], int] = {}
 
     def install(self) -> None:
@@ -174,13 +173,6 @@ class CallSites:
         if self._names:
             setattr(builtins, CALLS, _entries)
             loading.add(self)
-
-    def remove(self) -> None:
-        """Ask no more: what is called is what stands there."""
-        if self._names:
-            loading.remove(self)
-        self._names = frozenset()
-        self._is_on = False
 
     def hook_pytest(self) -> None:
         """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
@@ -220,7 +212,7 @@ class CallSites:
 
     def _decide(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         decide = self._hands if site.is_handed else self._stands
-        return found if decide is None or not self._is_on else decide(site, found, receiver, frame)
+        return found if decide is None else decide(site, found, receiver, frame)
 
     def _attribute(self, site: CallSite) -> Callable[[Any], Any]:
         name, left_alone, seen, frame_of = site.name, site.left_alone, self._sees_itself, sys._getframe
@@ -270,8 +262,7 @@ class CallSites:
         sites: dict[str, CallSite] = {}
 
         def read(function: Any) -> Any:
-            is_ours = function is getattr and self._is_on
-            return partial(self._got, site, sites, sys._getframe(1)) if is_ours else function
+            return partial(self._got, site, sites, sys._getframe(1)) if function is getattr else function
 
         return read
 

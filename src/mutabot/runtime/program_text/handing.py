@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import copy
 import sys
-from collections.abc import Callable
 from functools import partial
 from pkgutil import resolve_name
 from types import FrameType, MethodType, ModuleType
@@ -68,15 +67,7 @@ class Handing:
     def __init__(self, standing: Standing, given: dict[Adapter, tuple[Span, Role] | None]) -> None:
         self._standing = standing
         self._given = given
-        self._undo: Callable[[], None] | None = None
-        self._is_on = True
         wrapt.register_post_import_hook(self._watch, "unittest.mock")
-
-    def remove(self) -> None:
-        """Hand on what there is, and leave all mocks alone."""
-        self._is_on = False
-        if self._undo is not None:
-            self._undo()
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is handed on at a site: ``found``, or what is equal to it."""
@@ -139,8 +130,6 @@ class Handing:
 
     def _watch(self, mock: ModuleType) -> None:
         """See the calls of all mocks."""
-        if not self._is_on:
-            return
         kind: Any = mock.CallableMixin
         original = kind.__call__
 
@@ -151,7 +140,6 @@ class Handing:
         seen = self._seen
         call.__name__, call.__qualname__ = original.__name__, original.__qualname__
         kind.__call__ = call
-        self._undo = partial(setattr, kind, "__call__", original)
 
     def _seen(
         self, original: Any, mock: Any, frame: FrameType, args: tuple[Any, ...], kwargs: dict[str, Any]

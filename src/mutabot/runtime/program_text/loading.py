@@ -56,13 +56,6 @@ def add(step: SourceStep) -> None:
     SourceFileLoader.get_code = _get_code  # type: ignore[method-assign, assignment]
 
 
-def remove(step: SourceStep) -> None:
-    """Import without a step from now on."""
-    _steps.remove(step)
-    if not _steps and "get_code" in vars(SourceFileLoader):
-        del SourceFileLoader.get_code
-
-
 def is_wanted(path: str) -> bool:
     """Whether any step has anything to do with a file."""
     return any(step.wants(path) for step in _steps)
@@ -91,19 +84,27 @@ def _get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
     return _original(self, fullname)
 
 
-def hook_pytest(wants: Callable[[str], bool], change: Callable[[ast.Module, bytes, str], None]) -> None:
-    """Let ``change`` have the files that pytest rewrites and ``wants`` names, after pytest."""
+#: told the tree of a file, its source and its path
+Change = Callable[[ast.Module, bytes, str], None]
+
+
+def hook_pytest(wants: Callable[[str], bool], change: Change, look: Change | None = None) -> None:
+    """Show wanted files that pytest rewrites to ``look`` before pytest, and to ``change`` after it."""
     rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
     if rewriting is None:
         return
     rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
 
     def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
+        wanted = path if path is not None and wants(path) else None
+        if wanted is not None and look is not None:
+            look(tree, source, wanted)
         rewrite(tree, source, path, *rest)
-        if path is not None and wants(path):
-            change(tree, source, path)
+        if wanted is not None:
+            change(tree, source, wanted)
 
     def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
+        # what pytest compiled in earlier sessions tells nothing
         return None if wants(str(source)) else read(source, *rest, **named)
 
     rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc

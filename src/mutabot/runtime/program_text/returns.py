@@ -61,10 +61,6 @@ class Returns:
         setattr(builtins, RAISED, self._raised)
         loading.add(self)
 
-    def remove(self) -> None:
-        """Compile program files without notes from now on."""
-        loading.remove(self)
-
     def wants(self, path: str) -> bool:
         """Whether a file is one of the program's: these get notes."""
         if path.startswith(sys.base_prefix) or any(part in path for part in _LIBRARIES):

@@ -22,7 +22,7 @@ from mutabot.runtime.program_text.instrument import MismatchError, forms_of, ins
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:  # not every process makes calls, or forks
-    from mutabot.model import Call, Choice
+    from mutabot.model import Call
 
 
 class _ChangedError(MismatchError):
@@ -78,28 +78,30 @@ class SessionText:
         self._unknown = False
 
     @classmethod
-    def of(cls, job: Job, pipe: Sink, on_act: Callable[[], None]) -> SessionText | None:
+    def of(
+        cls, job: Job, pipe: Sink, on_act: Callable[[], None], loaded: Mapping[str, bytes] | None = None
+    ) -> SessionText | None:
         """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None
         text = cls(job.root, job.instrumentation, pipe, on_act)
-        text.install()
+        text.install(loaded)
         return text
 
-    def install(self) -> None:
-        """Instrument the program's files from now on; files imported before are told as problems."""
+    def install(self, loaded: Mapping[str, bytes] | None = None) -> None:
+        """Instrument the program's files from now on; files imported before are told as problems.
+
+        ``loaded``: those that have been loaded with their alternatives, by real path, and their text.
+        """
         (self.sightings or self.alternatives).install()
+        for path, source in (loaded or {}).items():
+            self.change(ast.parse(source), source, path)
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
-            if text is not None:
+            if text is not None and text.file not in self.imported:
                 self._refuse(text, "it was imported before mutabot could look at it")
         loading.add(self)
         loading.hook_runpy()
-
-    def remove(self) -> None:
-        """Import as ever from now on; text that is instrumented goes on as the original."""
-        loading.remove(self)
-        (self.sightings or self.alternatives).remove()
 
     def wants(self, path: str) -> bool:
         """Whether there are alternatives for a file."""
@@ -173,11 +175,6 @@ class SessionText:
             imported = dict.fromkeys([*self.imported, *(file for one in others for file in one.imported)])
             seen = [*self.sightings.seen(), *(seen for one in others for seen in one.sightings)]
             self._send(TextsSeen(tuple(imported), tuple(seen)))
-
-    def become(self, choices: Iterable[Choice]) -> None:
-        """In a process that was just forked: let these alternatives stand in the text, and watch none."""
-        self.alternatives.on_place = None
-        self.alternatives.activate(*choices)
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""

@@ -123,11 +123,6 @@ class Alternatives:
         """Let instrumented program text find its switches."""
         setattr(builtins, RUNTIME, self.switches)
 
-    def remove(self) -> None:
-        """Switch everything off; program text that is already instrumented goes on as the original."""
-        self.active = {}
-        self._set({})
-
     def keep(self) -> None:
         """Count what was counted so far in every test."""
         self._kept = (self.hits, self.idle, self.examples)
@@ -345,10 +340,6 @@ class Sightings:
     def install(self) -> None:
         """Let instrumented program text find its switches."""
         setattr(builtins, RUNTIME, self.switches)
-
-    def remove(self) -> None:
-        """Look no more."""
-        self.switches[1:] = [hand_through] * len(self._witnesses)
 
     def start(self) -> None:
         """A new test begins: look at every place anew."""

@@ -11,7 +11,6 @@ import functools
 import inspect
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -21,7 +20,7 @@ import wrapt
 from mutabot.model import Operation
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, signature_of, takes_anything
-from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Targets, Tell, resolve
+from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Tell, resolve
 
 _ONLY_READ = "only its reading is seen; describe the method that its setter calls"
 
@@ -64,15 +63,15 @@ def _advice(operation: Operation, is_native: bool) -> str:
     return f"{why}: only those that a call gives by keyword can be told apart; {proposal}"
 
 
-Undo = Callable[[], None]
-
-
 class NotCallableError(TypeError):
     """A target names something that cannot be wrapped."""
 
 
-class Callables(Targets):
-    """Wrappers put in place, and how to take them away again.
+class Callables:
+    """The wrappers in place.
+
+    Args:
+        tell: told about a target that turns out wrong when it is found.
 
     Attributes:
         pending: targets whose module has not been imported yet.
@@ -81,14 +80,10 @@ class Callables(Targets):
     """
 
     def __init__(self, tell: Tell) -> None:
-        super().__init__(tell)
+        self._tell = tell
         self.pending: set[str] = set()
         self.found: dict[str, Any] = {}
         self.owners: dict[str, type] = {}
-        self._undo: list[Undo] = []
-        self._wrappers: list[tuple[Any, Any]] = []
-        self._removed = False
-        self._before = set(sys.modules)
 
     def wrap(self, target: str, handler: Handler) -> None:
         """Wrap a callable now, or as soon as its module is imported."""
@@ -97,8 +92,6 @@ class Callables(Targets):
         late = module_name in sys.modules
 
         def imported(module: ModuleType) -> None:
-            if self._removed:
-                return
             self.pending.discard(target)
             try:
                 self._install(target, module, qualname, handler, late=late)
@@ -133,23 +126,11 @@ class Callables(Targets):
         original = self.found.get(operation.target)
         return look_at(operation, original) if original is not None else iter(())
 
-    def remove(self) -> None:
-        """Take all wrappers away, last one first. Hooks of modules not yet imported become idle."""
-        self._removed = True
-        while self._undo:
-            with suppress(AttributeError, TypeError):  # a test has taken it away itself, or made it read-only
-                self._undo.pop()()
-        loaded = [module for name, module in list(sys.modules.items()) if name not in self._before]
-        for original, wrapper in self._wrappers:
-            for _ in _rebind(loaded, wrapper, original):  # names that were taken while it was in place
-                pass
-
     def _install(
         self, target: str, module: ModuleType, qualname: str, handler: Handler, *, late: bool
     ) -> None:
         owner, name, original = resolve(module, qualname)
         wrapper = _wrapper(owner, name, original, handler)
-        own = name in vars(owner)
         try:
             setattr(owner, name, wrapper)
         except (AttributeError, TypeError) as error:
@@ -159,14 +140,11 @@ class Callables(Targets):
             text = f"{target} cannot be wrapped ({error}): only calls that are written as such are seen"
             self._tell(target, Finding("call", text, is_remark=True))
             return
-        undo = functools.partial(setattr, owner, name, original) if own else None
-        self._undo.append(undo or functools.partial(delattr, owner, name))
         self.found[target] = original
         if isinstance(owner, type):
             self.owners[target] = owner
-        self._wrappers.append((original, wrapper))
         if late:
-            self._undo.extend(_rebind(list(sys.modules.values()), original, wrapper))
+            _rebind(original, wrapper)
 
 
 def not_imported(module: str, error: Exception, key: str = "call") -> Finding:
@@ -199,18 +177,13 @@ def _as_getter(handler: Handler) -> Handler:
     return get
 
 
-def _rebind(modules: Iterable[Any], original: Any, wrapper: Any) -> Iterator[Undo]:
-    """Put the wrapper wherever names of the modules mean the original."""
+def _rebind(original: Any, wrapper: Any) -> None:
+    """Put the wrapper wherever names of modules mean the original."""
     if isinstance(original, property | classmethod | staticmethod | functools.cached_property):
         return
-    for module in modules:
+    for module in list(sys.modules.values()):
         if not isinstance(module, ModuleType) or module.__name__.startswith("mutabot"):
             continue
         for name, value in list(vars(module).items()):
             if value is original:
                 setattr(module, name, wrapper)
-                yield functools.partial(setattr, module, name, original)
-
-
-#: what this file is, to ``interception``
-KIND = Callables

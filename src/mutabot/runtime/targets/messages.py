@@ -33,7 +33,6 @@ from mutabot.runtime.targets.target import (
     Handler,
     Means,
     Middleware,
-    Targets,
     Tell,
     TypedMiddleware,
     Where,
@@ -56,15 +55,20 @@ _LISTENING = (Form.RECEIVE, Form.SUBSCRIBE, Form.GOAL, Form.CLIENT, Form.RESULT)
 _MOST = 4
 
 
-class Messages(Targets):
+class Messages:
     """The handlers of all operations that have a name.
+
+    Args:
+        tell: told about a target that turns out wrong when it is found.
 
     Attributes:
         used: what was done under which names, in this process and those below the tests.
+        on_heard: told of each message that passes under a name; None if nobody asks.
     """
 
     def __init__(self, tell: Tell) -> None:
-        super().__init__(tell)
+        self._tell = tell
+        self.on_heard: Callable[[str, Any], None] | None = None
         self._handlers: list[tuple[Named, Handler]] = []
         self._found: dict[tuple[Form, str, str | None], Handler | None] = {}
         self._undo: list[Callable[[], None]] = []
@@ -124,7 +128,7 @@ class Messages(Targets):
 
     def check(self, operation: Operation) -> Iterator[Finding]:
         """What of an operation does not fit the installed definition of its type."""
-        for part in brought("middlewares").values():
+        for part in brought("middlewares").values() if operation.named is not None else ():
             middleware = part.load() if part.name in sys.modules else None
             if isinstance(middleware, TypedMiddleware):
                 yield from middleware.check(operation)
@@ -182,10 +186,6 @@ def _instead(named: Named, used: Collection[Named]) -> str:
     targets = [alike[name] for name in sorted(alike, key=lambda name: (-likeness[name], name))]
     more = f" and {len(targets) - _MOST} more" if len(targets) > _MOST else ""
     return f"seen: {', '.join(targets[:_MOST])}{more}"
-
-
-#: what this file is, to ``interception``
-KIND = Messages
 
 
 #: seconds of wall clock: a topic that keeps its last message gives it at once to who asks again and again

@@ -1,10 +1,9 @@
-"""How an operation is found at run time: the contract of a kind of target.
+"""How an operation is found at run time, and what a handler around it is told.
 
-A target is what an operation of the vocabulary names. One object looks after all targets of a kind: it
-finds them in the running program, lets a handler stand around each, takes it away again, and says what
-does not fit. A kind is one file in this folder, whose ``KIND`` is a class that keeps the contract. The
-operation names that file in ``Operation.kind``, and ``Interception`` chooses by it; an operation that
-names none is a Python callable (``callables``).
+A target is what an operation of the vocabulary names: a Python callable (``callables``), or a name on a
+middleware (``messages``). Each of the two finds its targets in the running program, lets a handler stand
+around each, takes it away again, and says what does not fit. Of methods of whatever object has them nothing
+is wrapped: their calls are seen where they are written (``program_text``).
 
 Whatever the kind, a handler sees each use of its target as a call: the callable that does what the target
 stands for, the object it belongs to or None, and the arguments by position and name.
@@ -42,7 +41,6 @@ import sys
 import threading
 import time
 from collections.abc import Awaitable, Callable, Iterable, Iterator
-from importlib import import_module
 from inspect import Signature
 from types import CodeType, FrameType, ModuleType
 from typing import Any, Protocol, runtime_checkable
@@ -155,47 +153,6 @@ class Finding:
 Tell = Callable[[str, Finding], None]
 
 
-class Targets:
-    """All targets of one kind in this process. Of methods of whatever object has them, nothing is wrapped.
-
-    Args:
-        tell: told about a target that turns out wrong when it is found.
-
-    Attributes:
-        on_heard: told of each message that passes under a name, where there are such; None if nobody asks.
-    """
-
-    on_heard: Callable[[str, Any], None] | None = None
-
-    def __init__(self, tell: Tell) -> None:
-        self._tell = tell
-
-    def wrap(self, target: str, handler: Handler) -> None:
-        """Let a handler stand around a target, now or as soon as the program has it."""
-
-    def remove(self) -> None:
-        """Take all handlers away; none comes any more."""
-
-    def seek(self) -> Iterator[tuple[str, Finding]]:
-        """Find what the program has not come to by itself; yields what cannot be found."""
-        return iter(())
-
-    def check(self, operation: Operation) -> Iterator[Finding]:
-        """Say what of an operation does not fit its target, once that is found."""
-        return iter(())
-
-    def unheard(self, operation: Operation) -> Iterator[Finding]:
-        """Say where the vocabulary expects the operation's refusals to be told, and nothing listens."""
-        return iter(())
-
-    def here(self) -> Iterable[str]:
-        """Return the targets that this process has."""
-        return ()
-
-    def found_elsewhere(self, targets: Iterable[str]) -> None:
-        """A process below the tests has these: nobody needs to seek them here."""
-
-
 class NotFoundError(LookupError):
     """A target names something that its module does not have.
 
@@ -259,54 +216,6 @@ def named_class(name: str) -> Any:
         return getattr(owner, attribute)
     except Exception:  # a module of the tests may answer in any way
         return None
-
-
-#: the kind of a target that says nothing else, and of methods, whose calls are seen where they are written
-_DEFAULT, METHODS = "callables", "methods"
-
-
-class Interception:
-    """The targets of one process, by their kinds.
-
-    Args:
-        tell: told about a target that turns out wrong when it is found.
-    """
-
-    def __init__(self, tell: Tell) -> None:
-        self._tell = tell
-        self._kinds: dict[str, Targets] = {}
-
-    def of(self, kind: str | None = None) -> Targets:
-        """All targets of a kind; by default Python callables."""
-        name = kind or _DEFAULT
-        if name not in self._kinds:
-            made = Targets if name == METHODS else import_module(f"{__package__}.{name}").KIND
-            self._kinds[name] = made(self._tell)
-        return self._kinds[name]
-
-    def wrap(self, operation: Operation, handler: Handler) -> None:
-        """Let a handler stand around an operation; see ``Targets.wrap``."""
-        self.of(operation.kind).wrap(operation.target, handler)
-
-    @property
-    def kinds(self) -> Iterable[Targets]:
-        """All kinds that are in use."""
-        return self._kinds.values()
-
-    @property
-    def found(self) -> frozenset[str]:
-        """The targets that this process has."""
-        return frozenset(name for targets in self._kinds.values() for name in targets.here())
-
-    def found_elsewhere(self, names: Iterable[str]) -> None:
-        """A process below the tests has these targets: nobody needs to seek them here."""
-        for targets in self._kinds.values():
-            targets.found_elsewhere(names)
-
-    def remove(self) -> None:
-        """Take all handlers away."""
-        for targets in self._kinds.values():
-            targets.remove()
 
 
 class Names(Protocol):

@@ -122,7 +122,8 @@ def function_of(found: Any, spelt: str = "") -> Callee | None:
     """A function by the name it has where it is defined, or as it is spelt."""
     if isinstance(found, MethodType):
         return method_of(found.__self__, found.__name__)
-    if not isinstance(found, FunctionType | BuiltinFunctionType) and not hasattr(found, "__wrapped__"):
+    is_wrapper = "__wrapped__" in getattr(found, "__dict__", {})  # hasattr is true of all names of mock.call
+    if not isinstance(found, FunctionType | BuiltinFunctionType) and not is_wrapper:
         return None
     holder = found.__self__ if isinstance(found, BuiltinFunctionType) else None
     is_bound = not isinstance(holder, ModuleType | None)

@@ -1,7 +1,4 @@
-"""Watching goes on in the processes that the tests start; each writes what it saw.
-
-It does so now and then and at its end: it may be killed.
-"""
+"""Watching goes on in the processes that the tests start; each writes what it saw when it ends."""
 
 from __future__ import annotations
 
@@ -10,10 +7,7 @@ import json
 import os
 import signal
 import sys
-import threading
-import time
 from collections.abc import Mapping
-from contextlib import suppress
 from types import FrameType
 from typing import Any
 
@@ -26,8 +20,6 @@ from mutabot.runtime.watching.watch import Watch
 
 _ORDER = "order.json"
 _SEEN = ".seen.json"
-#: least seconds between two writings of what was seen so far, for processes that are killed
-_PAUSE = 0.5
 
 
 def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
@@ -49,19 +41,7 @@ def join(folder: str) -> None:
     """Watch this process, which turned out to be of interest."""
     order = read(os.path.join(folder, _ORDER))
     extensions.use(order["extensions"])
-    written = [time.monotonic()]
-    writing = threading.Lock()
-
-    def pulse() -> None:
-        if time.monotonic() - written[0] > _PAUSE and writing.acquire(blocking=False):
-            try:
-                written[0] = time.monotonic()
-                with suppress(RuntimeError):  # another thread sees something new in the midst of it
-                    write_all()
-            finally:
-                writing.release()
-
-    watch = Watch.of(order, pulse)
+    watch = Watch.of(order)
     watch.install()
     hook_script()
     leave = os._exit

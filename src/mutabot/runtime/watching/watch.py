@@ -80,16 +80,14 @@ class NamesSeen(Messages):
     Args:
         locator: tells whose file is whose.
         passed: told of each use: calls that are under way lead to it.
-        pulse: called now and then, while nothing is held.
     """
 
     def __init__(
         self,
         locator: Locator,
         passed: Callable[[], None],
-        pulse: Callable[[], None],
     ) -> None:
-        self._locator, self._passed, self._pulse = locator, passed, pulse
+        self._locator, self._passed = locator, passed
         self.uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
         super().__init__(lambda target, finding: None)
@@ -131,7 +129,6 @@ class NamesSeen(Messages):
         """The use that a place is one of, if its message is to be looked at."""
         if place is None:
             return None
-        self._pulse()
         span, role = place
         with self._lock:
             key = (form, name, role is Role.ORACLE, is_called_back)
@@ -168,16 +165,14 @@ class Watch:
         locator: tells whose file is whose.
         libraries: client libraries of middlewares, with ``*`` for any text: what is done through them has a
             name of its own.
-        pulse: called whenever something is seen, while nothing is held.
     """
 
     def __init__(
         self,
         locator: Locator,
         libraries: Iterable[str] = (),
-        pulse: Callable[[], None] = lambda: None,
     ) -> None:
-        self._locator, self._libraries, self._pulse = locator, tuple(libraries), pulse
+        self._locator, self._libraries = locator, tuple(libraries)
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._method_of = cache(method_of)
         self._only_class = cache(_only_class)
@@ -185,14 +180,14 @@ class Watch:
         self.sites = CallSites(_Public(), locator.role, self.called, hands=self.read, are_read=True)
 
     @classmethod
-    def of(cls, order: Mapping[str, Any], pulse: Callable[[], None] = lambda: None) -> Watch:
+    def of(cls, order: Mapping[str, Any]) -> Watch:
         """Return the watch of a process; ``order`` is what ``mutabot init`` asks for."""
         program, tests = (tuple(order[kind].values()) for kind in ("program", "tests"))
-        return cls(Locator(order["root"], program, tests), order["libraries"], pulse)
+        return cls(Locator(order["root"], program, tests), order["libraries"])
 
     def install(self) -> None:
         """Watch what is imported from now on."""
-        self._names = NamesSeen(self._locator, self._leads, self._pulse)
+        self._names = NamesSeen(self._locator, self._leads)
         self.sites.install()
         loading.hook_runpy()
 
@@ -305,7 +300,6 @@ class Watch:
         """Count a call; whether its values are to be looked at."""
         if seen.call.of_tests and (seen.call.own or self._is_of_tests(seen.callee)):
             return False
-        self._pulse()
         file, line = self._place(site)
         where = f"{file}:{line}"
         seen.call.sites[where] = seen.call.sites.get(where, 0) + 1

@@ -128,7 +128,7 @@ def test_the_example_runs_unmodified(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("plugins")
-@pytest.mark.parametrize("engine", ["branch", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_mutants_end_over_the_simulation_as_over_real_ros(tmp_path: Path, engine: str) -> None:
     folder = example_over_the_simulation(tmp_path)
     found = run(folder, rounds=1, baseline=1, only=tuple(EXPECTED), engine=engine)
@@ -146,7 +146,7 @@ def test_nodes_in_processes_of_their_own_are_killed_and_begin_anew(tmp_path: Pat
         # the box is in the gripper, and the second start opens it
         "mission.py:run:arm.home#2:call:restart-node": Verdict.KILLED,
     }
-    found = run(folder, rounds=1, baseline=1, families=("middleware",), only=tuple(expected), engine="branch")
+    found = run(folder, rounds=1, baseline=1, families=("middleware",), only=tuple(expected), engine="fork")
     assert {mutant: outcome.verdict for mutant, outcome in found.items()} == expected, found
 
 
@@ -185,7 +185,7 @@ def test_a_mutant_that_meets_what_is_not_simulated_is_an_error_and_no_kill(
     plugin = 'pytest_args = ["-o", "pythonpath=.", "-p", "mutabot_ros.simulation.plugin"]'
     settings = f'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n{plugin}\n'
     folder = write_project(tmp_path, mission, tests, configuration=settings)
-    for engine in ("branch", "replay"):
+    for engine in ("fork", "replay"):
         (found,) = run(folder, rounds=1, fresh=True, only=("*:reverse",), engine=engine).values()
         assert found.verdict is Verdict.ERROR
         assert "needs real ROS: multiprocessing.Pool is not simulated" in (found.message or "")

@@ -1,4 +1,4 @@
-"""The branch engine agrees with replay on all kinds of tests, falls back where it must, leaves nothing."""
+"""The fork engine agrees with replay on all kinds of tests, falls back where it must, leaves nothing."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def facts(outcome: Outcome) -> dict[str, object]:
 
 
 def both_engines(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
-    """Outcomes of the branch engine, after comparing each with replay's."""
+    """Outcomes of the fork engine, after comparing each with replay's."""
     found = {}
     for engine in ("auto", "replay"):
         path = run_campaign(request_for(folder, engine=engine, **changes), Quiet())
@@ -50,7 +50,7 @@ def both_engines(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]
     assert found["auto"].keys() == found["replay"].keys()
     for key, outcome in found["auto"].items():
         assert facts(outcome) == facts(found["replay"][key]), key
-    assert {outcome.engine for outcome in found["auto"].values()} <= {"branch", "replay"}
+    assert {outcome.engine for outcome in found["auto"].values()} <= {"fork", "replay"}
     return found["auto"]
 
 
@@ -203,7 +203,7 @@ WHOLE = pytest.mark.whole
 def test_both_engines_agree(tmp_path: Path, suite: str) -> None:
     write_project(tmp_path, MISSION, SUITES[suite])
     found = both_engines(tmp_path)
-    assert {outcome.engine for outcome in found.values()} == {"branch"}
+    assert {outcome.engine for outcome in found.values()} == {"fork"}
     assert {outcome.verdict for outcome in found.values()} & {Verdict.KILLED, Verdict.SURVIVED}
 
 
@@ -264,7 +264,7 @@ def test_where_forking_is_unsafe_the_test_falls_back_to_replay(
     progress = Quiet()
     request = request_for(tmp_path, engine="auto", only=("*:reverse",))
     engines = {one.mutant.split(":")[1]: one.engine for one in outcomes(run_campaign(request, progress))}
-    assert engines == {"safe": "branch", **{f"unsafe_{number}": "replay" for number in range(len(reasons))}}
+    assert engines == {"safe": "fork", **{f"unsafe_{number}": "replay" for number in range(len(reasons))}}
     told = dict(enumerate(reasons))
     for number, reason in told.items():
         assert any(f"test_unsafe_{number}" in line and reason in line for line in progress.lines)
@@ -274,7 +274,7 @@ def test_where_forking_is_unsafe_the_test_falls_back_to_replay(
         assert told[number] in line
 
 
-def test_asked_for_branches_alone_an_unsafe_test_is_an_error_and_no_kill(tmp_path: Path) -> None:
+def test_asked_for_forks_alone_an_unsafe_test_is_an_error_and_no_kill(tmp_path: Path) -> None:
     tests = """
         import subprocess
         import mission
@@ -286,7 +286,7 @@ def test_asked_for_branches_alone_an_unsafe_test_is_an_error_and_no_kill(tmp_pat
             child.wait()
     """
     write_project(tmp_path, MISSION, tests)
-    path = run_campaign(request_for(tmp_path, engine="branch"), Quiet())
+    path = run_campaign(request_for(tmp_path, engine="fork"), Quiet())
     assert {outcome.verdict for outcome in outcomes(path)} == {Verdict.ERROR}
 
 
@@ -303,10 +303,11 @@ TWO_TESTS = """
 """
 
 
-def test_a_trunk_that_dies_leaves_its_mutants_to_replay(tmp_path: Path, script: Script) -> None:
-    # the baseline is the first run, the trunk the second
+def test_a_fork_parent_that_dies_leaves_its_mutants_to_replay(tmp_path: Path, script: Script) -> None:
+    # the baseline is the first run, the fork parent the second
     script.original = lambda run: Died(3) if run.test.endswith("test_b") and run.before == 1 else {}
-    script.kill(":back_off:")  # before the trunk dies; what survives has not come to the end of the session
+    # before the fork parent dies; what survives has not come to the end of the session
+    script.kill(":back_off:")
     write_project(tmp_path, MISSION, TWO_TESTS)
     progress = Quiet()
     path = run_campaign(request_for(tmp_path, engine="auto"), progress)
@@ -315,12 +316,12 @@ def test_a_trunk_that_dies_leaves_its_mutants_to_replay(tmp_path: Path, script: 
         "fork parent of round 1 died: the process ended with exit code 3" in one for one in progress.lines
     )
     assert {name: one.engine for name, one in found.items()} == {
-        "back_off": "branch", "approach": "replay", "look": "replay",
+        "back_off": "fork", "approach": "replay", "look": "replay",
     }  # fmt: skip
     assert Verdict.ERROR not in {outcome.verdict for outcome in found.values()}
 
 
-def test_a_test_that_fails_in_the_trunk_judges_no_mutant(tmp_path: Path, script: Script) -> None:
+def test_a_test_that_fails_in_the_fork_parent_judges_no_mutant(tmp_path: Path, script: Script) -> None:
     script.original = lambda run: CHECKED if run.test.endswith("test_b") and run.before else {}
     script.mutated = lambda run: CHECKED
     write_project(tmp_path, MISSION, TWO_TESTS)
@@ -359,7 +360,7 @@ BUSY = """
 
 def test_never_more_processes_compute_than_asked_for(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, BUSY, configuration=CONFIGURATION + "    rounds = 3\n")
-    path = run_campaign(request_for(tmp_path, engine="branch", jobs=2), Quiet())
+    path = run_campaign(request_for(tmp_path, engine="fork", jobs=2), Quiet())
     found = outcomes(path)
     assert len(found) > 20
     assert not [outcome for outcome in found if "at once" in (outcome.message or "")]
@@ -372,9 +373,9 @@ def children() -> set[str]:
 
 def test_nothing_is_left_running_or_open_or_on_disk(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, SUITES["parametrised"], robot=ROBOT)
-    run_campaign(request_for(tmp_path, engine="branch"), Quiet())
+    run_campaign(request_for(tmp_path, engine="fork"), Quiet())
     descriptors, before = set(Path("/proc/self/fd").iterdir()), children()
-    run_campaign(request_for(tmp_path, engine="branch"), Quiet())
+    run_campaign(request_for(tmp_path, engine="fork"), Quiet())
     assert set(Path("/proc/self/fd").iterdir()) == descriptors
     assert children() == before
     assert not [path for path in (tmp_path / ".mutabot").iterdir() if path.name.startswith("work-")]

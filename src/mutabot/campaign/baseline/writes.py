@@ -1,4 +1,4 @@
-"""Name the sites at spans, and find the expressions of a file through which something is written.
+"""Find the expressions of a file through which something is written.
 
 What a name stands for is taken from all assignments of its function, whichever comes first; of an attribute,
 from those of the file. So more may be found than is written, never less of what stands in one file.
@@ -7,16 +7,9 @@ from those of the file. So more may be found than is written, never less of what
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator
 
-from mutabot.languages.front_end import SiteName, front_end_of
-from mutabot.languages.python import FRONT_END as PYTHON
-from mutabot.languages.python import extent_of, unused_calls
-from mutabot.model import Role, Site, Span
-from mutabot.model.events import SiteSeen
+from mutabot.languages.python import extent_of
 from mutabot.model.mutant import Extent
 
 #: methods of arrays and containers that change them
@@ -152,49 +145,3 @@ def _name_of(function: ast.expr) -> str:
     if isinstance(function, ast.Attribute):
         return function.attr
     return function.id if isinstance(function, ast.Name) else ""
-
-
-@dataclass(slots=True)
-class Sources:
-    """The project's source files, read when first needed.
-
-    Attributes:
-        root: the project's root.
-    """
-
-    root: Path
-    _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
-
-    def site(self, seen: SiteSeen) -> Site:
-        """The site at which something was seen."""
-        span = seen.span
-        names: Mapping[Extent, SiteName] = self._in(span.file, front_end_of(span.file).names) or {}
-        text, occurrence = names.get(_extent(span), SiteName(f"line {span.line}", 1))
-        return Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
-
-    def is_written_through(self, span: Span) -> bool:
-        """Whether the file writes to what an expression of it gives, as far as its text says."""
-        return self._is_among(span, written_through)
-
-    def is_unused(self, seen: SiteSeen) -> bool:
-        """Whether nobody uses what the call returns: it is a statement by itself."""
-        return seen.direct and self._is_among(seen.span, unused_calls)
-
-    def _is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
-        """Whether an expression is one of those that are found in the text of its file, if that is Python."""
-        is_python = front_end_of(span.file) is PYTHON
-        return is_python and _extent(span) in (self._in(span.file, find) or ())
-
-    def _in(self, file: str, find: Callable[[str], Any]) -> Any:
-        """What is found in the text of a file; None for one that cannot be read."""
-        if (file, find) not in self._read:
-            try:
-                found = find((self.root / file).read_text(encoding="utf-8"))
-            except (OSError, SyntaxError, ValueError):
-                found = None
-            self._read[file, find] = found
-        return self._read[file, find]
-
-
-def _extent(span: Span) -> Extent:
-    return (span.line, span.column, span.end_line, span.end_column)

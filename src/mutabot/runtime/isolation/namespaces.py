@@ -1,0 +1,136 @@
+"""Fork a process that has its parent's process id, and set the clock of a process back.
+
+Both keep what a program can notice of a fork from it. The id takes a process namespace, whose first process
+must outlive the others: here one that sleeps, and shares the parent's memory and files, so that it costs next
+to nothing. Clone flags and ``clone_args``: <linux/sched.h>.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import os
+import signal
+from functools import cache
+from typing import Any, NamedTuple
+
+_CLONE_VM, _CLONE_FILES, _CLONE_NEWTIME, _CLONE_NEWPID = 0x00000100, 0x00000400, 0x00000080, 0x20000000
+#: number of this system call on all architectures
+_CLONE3 = 435
+#: waits for a process whose end raises no signal, so that tests that wait for their own do not see it
+_WCLONE = -(1 << 31)
+_STACK_BYTES = 1 << 14
+
+_left_out = 0.0
+
+
+class ForkedPids(NamedTuple):
+    """A fork as its parent sees it: its process, and the first one of its namespace."""
+
+    fork: int
+    first: int
+
+
+def left_out() -> float:
+    """Seconds by which the monotonic clock of this process is behind the system's."""
+    return _left_out
+
+
+def leave_out(seconds: float) -> None:
+    """Set the monotonic clock back, here and in all processes that start from now on.
+
+    Raises OSError if that is not possible. To be called while no first process shares this one's memory.
+    """
+    global _left_out  # noqa: PLW0603  # a process has one clock
+    if len(os.listdir("/proc/self/task")) > 1:  # the kernel would refuse when it is too late
+        raise OSError(errno.EUSERS, "there are other threads")
+    _call("unshare", _CLONE_NEWTIME)
+    whole, rest = divmod(-round((_left_out + seconds) * 1e9), 10**9)
+    with open("/proc/self/timens_offsets", "w", encoding="ascii") as file:
+        file.write(f"monotonic {whole} {rest}\nboottime {whole} {rest}\n")
+    _enter("/proc/self/ns/time_for_children", _CLONE_NEWTIME)
+    _left_out += seconds
+
+
+def fork() -> ForkedPids | None:
+    """Fork a process with the id of this one; None in that process.
+
+    Raises OSError if that is not possible.
+    """
+    first = _start_first()
+    try:
+        _enter(f"/proc/{first}/ns/pid", _CLONE_NEWPID)
+        try:
+            pid = _fork_as(os.getpid())
+        finally:
+            _enter("/proc/self/ns/pid", _CLONE_NEWPID)
+    except OSError:
+        end_first(first)
+        raise
+    return ForkedPids(pid, first) if pid else None
+
+
+def end_first(first: int) -> None:
+    """End the first process of a namespace, and with it whatever a fork has left there."""
+    os.kill(first, signal.SIGKILL)
+    os.waitpid(first, _WCLONE)
+
+
+def _start_first() -> int:
+    """Start the first process of a namespace. It wakes up for no signal, and keeps no file open by itself."""
+    flags = _CLONE_VM | _CLONE_FILES | _CLONE_NEWPID
+    function = ctypes.cast(_libc().pause, ctypes.c_void_p)
+    top = (ctypes.addressof(_stack()) + _STACK_BYTES) & ~15
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+    try:
+        return _call("clone", function, ctypes.c_void_p(top), flags, None)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+def _fork_as(pid: int) -> int:
+    """Fork, as ``os.fork`` does, a process with this id in its namespace; 0 in it.
+
+    The C library needs to do nothing: this is the only thread, and has the same id there.
+    """
+    wanted = ctypes.c_int(pid)
+    # flags, pidfd, child_tid, parent_tid, exit_signal, stack, stack_size, tls, set_tid, set_tid_size, cgroup
+    arguments = (ctypes.c_uint64 * 11)(0, 0, 0, 0, signal.SIGCHLD, 0, 0, 0, ctypes.addressof(wanted), 1, 0)
+    ctypes.pythonapi.PyOS_BeforeFork()
+    try:
+        found = _call("syscall", _CLONE3, arguments, ctypes.sizeof(arguments))
+    except OSError:
+        ctypes.pythonapi.PyOS_AfterFork_Parent()
+        raise
+    if found:
+        ctypes.pythonapi.PyOS_AfterFork_Parent()
+    else:
+        ctypes.pythonapi.PyOS_AfterFork_Child()
+    return found
+
+
+def _enter(path: str, kind: int) -> None:
+    descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        _call("setns", descriptor, kind)
+    finally:
+        os.close(descriptor)
+
+
+def _call(name: str, *arguments: Any) -> int:
+    result: int = getattr(_libc(), name)(*arguments)
+    if result < 0:
+        number = ctypes.get_errno()
+        raise OSError(number, f"{name}: {os.strerror(number)}")
+    return result
+
+
+@cache
+def _libc() -> ctypes.PyDLL:
+    return ctypes.PyDLL(None, use_errno=True)  # it keeps Python's lock, as what forks must
+
+
+@cache
+def _stack() -> ctypes.Array[ctypes.c_char]:
+    """What all first processes sleep on: none writes to it again once it sleeps."""
+    return ctypes.create_string_buffer(_STACK_BYTES)

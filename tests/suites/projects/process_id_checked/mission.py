@@ -1,0 +1,4 @@
+def pick(arm):
+    arm.lift(0.2)
+    arm.turn(30.0)
+    arm.lift(-0.05)
