@@ -93,6 +93,7 @@ bench: $(READY)
 	$(RUN) benchmarks/interception.py
 	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
+	$(RUN) benchmarks/cell_physics.py
 	$(RUN) benchmarks/paper_seeds.py
 	$(RUN) benchmarks/suggested_checks.py
 	$(RUN) benchmarks/engines.py --output benchmarks/engines.json --page docs/engines.md

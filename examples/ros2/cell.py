@@ -29,7 +29,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float64, Header, Int32
 from std_srvs.srv import SetBool, Trigger
 
-from mutabot_cell import Cell, CellError, MotionRefused, Pose, Position
+from mutabot_cell import Cell, CellError, MotionRefused, Pose, Position, SensorError
 
 #: how often `/clock` speaks while time passes, in simulated seconds
 CLOCK_PERIOD = 0.5
@@ -139,8 +139,11 @@ class Tracker(Node):
         return response
 
     def _measure_box(self, request: Any, response: Trigger.Response) -> Trigger.Response:
-        self._box.publish(self._point(self._cell.sensors.box_position(), "world"))
-        response.success = True
+        try:
+            self._box.publish(self._point(self._cell.sensors.box_position(), "world"))
+            response.success = True
+        except SensorError as error:
+            response.message = str(error)
         return response
 
     def _point(self, place: Position, frame: str) -> PointStamped:

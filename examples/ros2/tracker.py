@@ -56,6 +56,8 @@ def _measured(what: str) -> Point:
     rclpy.spin_until_future_complete(node, future, timeout_sec=PATIENCE)
     if not future.done():
         raise TimeoutError(f"{client.srv_name}: no answer in {PATIENCE} s")
+    if not future.result().success:
+        raise LookupError(future.result().message)
     return _latched(f"/tracker/{what}", PointStamped).point
 
 

@@ -16,13 +16,17 @@ from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
 from .errors import BadArgument, MotionRefused, ProtectiveStop
 from .geometry import Array, Pose, pose_of, rotation_from_euler
-from .simulation import STEPS_PER_TICK, Simulation
+from .simulation import STEPS_PER_TICK, TICK, Simulation
 
 EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
 """External torque on a joint that stops the arm when it lasts two ticks, Nm."""
 FOLLOWING_ERROR_LIMIT = 0.03
 """Distance between setpoint and joint that stops the arm, rad."""
 
+WARMING_TIME = 30.0
+"""In this time a joint warms up by two thirds of what its torque makes of it in the end, s (our choice)."""
+
+_WARMING_TICKS = 10
 _LOWEST_TORQUE_LIMIT = min(EXTERNAL_TORQUE_LIMIT)
 _RELAXING_TICKS = 20
 _SETTLED = 0.001
@@ -35,11 +39,14 @@ class Arm:
     Poses are in the base frame: m, and Euler angles x, y, z in degrees (R = Rz·Ry·Rx). Joint angles are in
     degrees.
     Every move returns when it has been carried out.
+
+    Attributes:
+        kinematics: the controller's model of the arm; it also turns encoder readings into a tool pose.
     """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._kinematics = Kinematics()
+        self.kinematics = Kinematics()
         self._setpoint: Array = np.array(kinova.HOME)
         self._stream: Array | None = None
         self._streamed = 0
@@ -48,9 +55,14 @@ class Arm:
         self._stop: ProtectiveStop | None = None
         self._lag = np.array(kinova.SERVO_LAG)
         self._torque_limit = np.array(EXTERNAL_TORQUE_LIMIT)
+        self._payload = 0.0
+        self._payload_body = simulation.id_of("body", "payload")
+        self._heat = np.zeros(kinova.JOINT_COUNT)
+        self._continuous = np.array([joint.torque for joint in kinova.JOINTS])
         # views of the physics' own memory
-        self._joints = simulation.data.qpos[: kinova.JOINT_COUNT]
-        self._external = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
+        self._constraints: Array = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
+        self._motors = simulation.data.qfrc_actuator[: kinova.JOINT_COUNT]
+        self.set_payload(0.0)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
 
@@ -60,7 +72,7 @@ class Arm:
 
     def commanded_pose(self) -> Pose:
         """Tool pose that the setpoints stand for: relative moves start here."""
-        position, rotation = self._kinematics.tool(self._setpoint)
+        position, rotation = self.kinematics.tool(self._setpoint)
         return pose_of(position, rotation)
 
     def home(self) -> None:
@@ -118,12 +130,12 @@ class Arm:
         _check_numbers("pose", values, 6)
         _check_speed(speed)
         self._check_ready()
-        start, rotation = self._kinematics.tool(self._setpoint)
+        start, rotation = self.kinematics.tool(self._setpoint)
         end_rotation = rotation_from_euler(*values[3:])
         line = Line.between(start, rotation, np.array(values[:3]), end_rotation)
         if line.length < 1e-7 and line.angle < 1e-7:
             return
-        knots = self._kinematics.follow(self._setpoint, line)
+        knots = self.kinematics.follow(self._setpoint, line)
         self._run(line_motion(knots, line.length, line.angle, PHYSICS_STEP, speed))
 
     def move_by(
@@ -152,12 +164,31 @@ class Arm:
             speed=speed,
         )
 
+    def set_payload(self, mass: float, centre: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        """Tell the controller what the gripper holds, so that it carries the weight and expects the forces.
+
+        Without it a part is carried by the servos' stiffness alone, and a heavy one looks like a collision.
+
+        Args:
+            mass: of the part, kg.
+            centre: of mass, in the tool frame, m.
+
+        Raises:
+            BadArgument: not numbers, or more than the arm is rated for (`kinova.PAYLOAD`).
+        """
+        _check_numbers("payload", (mass, *centre), 4)
+        if not 0.0 <= mass <= kinova.PAYLOAD:
+            raise BadArgument(f"Expected 0 <= payload <= {kinova.PAYLOAD} kg but got mass={mass!r}")
+        self._payload = float(mass)
+        self._simulation.model.body_gravcomp[self._payload_body] = kinova.compensation_of(self._payload)
+        self._simulation.model.body_ipos[self._payload_body] = centre
+
     def acknowledge_stop(self) -> None:
         """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
         if self._stop is None:
             return
         for _ in range(_RELAXING_TICKS):
-            self._setpoint = self._simulation.data.qpos[: kinova.JOINT_COUNT].copy()
+            self._setpoint = self._simulation.encoders()
             self._simulation.tick()
         self._stop = None
         self._pressed_ticks = 0
@@ -185,26 +216,30 @@ class Arm:
             self._simulation.tick()
 
     def _drive(self) -> None:
-        setpoints = self._simulation.setpoints
+        setpoints = self._simulation.setpoints[:, : kinova.JOINT_COUNT]
+        # a servo brings its encoder to the setpoint, so the joint to where the encoder reads that
+        error = self._simulation.encoder_error
         if self._stream is None:
-            setpoints[:, : kinova.JOINT_COUNT] = self._setpoint
+            setpoints[:] = self._setpoint - error
             return
         end = self._streamed + STEPS_PER_TICK
-        setpoints[:, : kinova.JOINT_COUNT] = self._stream[self._streamed : end]
+        np.subtract(self._stream[self._streamed : end], error, out=setpoints)
         self._setpoint = self._motion_joints[end - 1]
         self._streamed = end
         if end >= len(self._stream):
             self._stream = None
 
     def _following_error(self) -> Array:
-        error: Array = self._setpoint - self._joints
+        error: Array = self._setpoint - self._simulation.encoders()
         return error
 
     def _guard(self) -> None:
         """Protective stop: the check that the arm's controller makes at every tick."""
+        if self._simulation.ticks % _WARMING_TICKS == 0:
+            self._warm()
         if self._stop is not None:
             return
-        external, error = self._external, self._following_error()
+        external, error = self._external(), self._following_error()
         # this runs at every tick, and nearly always the lengths are below the lowest limits of their parts
         if external.dot(external) <= _LOWEST_TORQUE_LIMIT**2 and error.dot(error) <= FOLLOWING_ERROR_LIMIT**2:
             self._pressed_ticks = 0
@@ -221,18 +256,74 @@ class Arm:
         if pressed:
             contacts.append(self._first_contact)
         first, second, force = max(contacts, key=lambda contact: contact[2])
-        self._stop = ProtectiveStop(
-            time=self._simulation.time,
-            first=first,
-            second=second,
-            force=force,
-            joint=joint + 1,
-            torque=float(external[joint]),
-            following_error=float(error[joint]),
+        raise self._stopped(
+            ProtectiveStop(
+                time=self._simulation.time,
+                first=first,
+                second=second,
+                force=force,
+                joint=joint + 1,
+                torque=float(external[joint]),
+                following_error=float(error[joint]),
+            )
         )
+
+    def _stopped(self, stop: ProtectiveStop) -> ProtectiveStop:
+        self._stop = stop
         self._stream = None
-        self._setpoint = self._simulation.data.qpos[: kinova.JOINT_COUNT].copy()
-        raise self._stop
+        self._setpoint = self._simulation.encoders()
+        return stop
+
+    def _external(self) -> Array:
+        """Torque on each joint that motors, friction, the arm and its declared payload do not explain, Nm."""
+        torque = self._constraints
+        if self._simulation.data.nf:
+            torque = torque - self._friction()
+        if self._payload:
+            torque = torque - self._payload_torque()
+        return torque
+
+    def _friction(self) -> Array:
+        """Torque on each joint from dry friction in it, which MuJoCo counts among the constraints, Nm."""
+        data = self._simulation.data
+        torque = np.zeros(kinova.JOINT_COUNT)
+        for row in range(data.ne, data.ne + data.nf):  # rows of friction follow those of equalities
+            joint = int(data.efc_id[row])
+            if data.efc_type[row] == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF and joint < kinova.JOINT_COUNT:
+                torque[joint] = data.efc_force[row]
+        return torque
+
+    def _payload_torque(self) -> Array:
+        """Torque on each joint from the payload's weight and inertia, Nm."""
+        cell_model, data = self._simulation.model, self._simulation.data
+        mujoco.mj_rnePostConstraint(cell_model, data)
+        # acceleration minus gravity of the payload's centre of mass, as an accelerometer there would read it
+        felt = np.zeros(6)
+        mujoco.mj_objectAcceleration(cell_model, data, mujoco.mjtObj.mjOBJ_BODY, self._payload_body, felt, 0)
+        moves = np.zeros((3, cell_model.nv))
+        mujoco.mj_jacBodyCom(cell_model, data, moves, None, self._payload_body)
+        torque: Array = np.dot(-self._payload * felt[3:], moves[:, : kinova.JOINT_COUNT])
+        return torque
+
+    def _warm(self) -> None:
+        """Let the motors warm up with the square of their torque; stop when one is too warm."""
+        share = _WARMING_TICKS * TICK / WARMING_TIME
+        self._heat += share * ((self._motors / self._continuous) ** 2 - self._heat)
+        if self._stop is not None or float(self._heat.max()) <= 1.0:
+            return
+        joint = int(np.argmax(self._heat))
+        raise self._stopped(
+            ProtectiveStop(
+                time=self._simulation.time,
+                first="",
+                second="",
+                force=0.0,
+                joint=joint + 1,
+                torque=float(self._motors[joint]),
+                following_error=float(self._following_error()[joint]),
+                overload=kinova.JOINTS[joint].torque,
+            )
+        )
 
 
 def strongest_contact(simulation: Simulation) -> tuple[str, str, float]:

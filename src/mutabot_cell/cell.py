@@ -114,7 +114,9 @@ class Cell:
         self.simulation = Simulation(placed, grip_force)
         self.arm = Arm(self.simulation)
         self.gripper = Gripper(self.simulation, draws, grip_force, finger_speed)
-        self.sensors = Sensors(self.simulation, draws, placed.boxes, numbers)
+        self.sensors = Sensors(
+            self.simulation, self.arm.kinematics, draws, placed.boxes, numbers, placed.camera
+        )
         self.truth = Truth(self.simulation, placed.boxes)
         self.feed = tell_of(self.simulation, placed)
         self.monitors = Monitors(self.simulation, self.truth.world)

@@ -76,8 +76,9 @@ class ProtectiveStop(CellError):
         second: name of the part it touched; "" when nothing touches.
         force: normal force of the strongest contact, N.
         joint: joint that noticed, 1..7.
-        torque: external torque on that joint, Nm.
+        torque: external torque on that joint, Nm; of its motor if it was overloaded.
         following_error: commanded minus actual angle of that joint, rad.
+        overload: torque that the joint could give without end, Nm; 0 if it was not overloaded.
     """
 
     def __init__(
@@ -90,12 +91,14 @@ class ProtectiveStop(CellError):
         joint: int,
         torque: float,
         following_error: float,
+        overload: float = 0.0,
     ) -> None:
         what = f"{first} touched {second} with {force:.0f} N" if first else "resistance without a contact"
-        super().__init__(
-            f"protective stop at t={time:.2f} s: {what} "
-            f"(joint {joint}: external torque {torque:.1f} Nm, following error {following_error:.4f} rad)"
-        )
+        details = f"external torque {torque:.1f} Nm, following error {following_error:.4f} rad"
+        if overload:
+            what = f"joint {joint} is overloaded"
+            details = f"{torque:.1f} Nm, {overload:.0f} Nm is what it can give without end"
+        super().__init__(f"protective stop at t={time:.2f} s: {what} (joint {joint}: {details})")
         self.time = time
         self.first = first
         self.second = second
@@ -103,6 +106,7 @@ class ProtectiveStop(CellError):
         self.joint = joint
         self.torque = torque
         self.following_error = following_error
+        self.overload = overload
 
 
 class SensorError(CellError):

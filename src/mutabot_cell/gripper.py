@@ -14,6 +14,8 @@ _BLOCKED = 0.003
 _STANDING = 0.004
 _SERVO = "fingers"
 _LONGEST_TICKS = 600
+_SURE_TICKS = 3
+"""How long the fingers must be blocked, or free, until the gripper reports it."""
 
 
 class Gripper:
@@ -26,9 +28,13 @@ class Gripper:
         self._tendon = simulation.model.tendon("closing").id
         self._target = 0.0
         self._setpoint = 0.0
+        self._holding = False
+        self._other_ticks = 0
+        self._read: tuple[int, float] = (-1, 0.0)
         self.set_force(force)
         self.set_speed(speed)
         simulation.before_tick.append(self._drive)
+        simulation.after_tick.append(self._detect)
 
     def set_force(self, newtons: float) -> None:
         """Grip force at each pad, 20..235 N.
@@ -82,17 +88,30 @@ class Gripper:
         return self._target / robotiq.STROKE
 
     def opening(self) -> float:
-        """Measured distance between the pads, m, with noise."""
-        return self._noise.add("opening", robotiq.STROKE - self._closed())
+        """Measured distance between the pads, m, with noise; one reading per tick."""
+        ticks, reading = self._read
+        if ticks != self._simulation.ticks:
+            reading = self._noise.add("opening", robotiq.STROKE - self._closed())
+            self._read = self._simulation.ticks, reading
+        return reading
 
     def holding(self) -> bool:
         """Whether the fingers press and are blocked before the commanded opening: something is between them.
 
-        Like the real gripper's object detection, it knows only its own position, speed and motor current.
+        Like the real gripper's object detection, it knows only its own position, speed and motor current, and
+        changes its report when the new state has lasted for 30 ms.
         """
+        return self._holding
+
+    def _detect(self) -> None:
         blocked = abs(self._target - self._closed()) > _BLOCKED
         pressing = abs(float(self._simulation.data.actuator_force[self._servo])) > 0.9 * self._force
-        return blocked and pressing and self._stands()
+        if (blocked and pressing and self._stands()) == self._holding:
+            self._other_ticks = 0
+            return
+        self._other_ticks += 1
+        if self._other_ticks == _SURE_TICKS:
+            self._holding, self._other_ticks = not self._holding, 0
 
     def _closed(self) -> float:
         return float(self._simulation.data.ten_length[self._tendon])

@@ -1,4 +1,4 @@
-"""What the robot program can read, each with its own noise."""
+"""What the robot program can read: each with its own noise, rate and delay."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from mutabot_cell.models import kinova
 from mutabot_cell.models.noise import SeededNoise
+from mutabot_cell.motion.kinematics import Kinematics
 
 from .errors import SensorError
 from .geometry import Pose, Position, pose_of
@@ -18,6 +19,10 @@ from .simulation import Simulation
 DISTANCE_RANGE = (0.02, 2.0)
 """Range of the distance sensor, m; further away it reads its upper end."""
 _DISTANCE_START = 0.085
+_SOLID = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
+"""Groups of shapes that hide what is behind them: all but those that are only there to look at."""
+_LOOKED_AT = 0.9 * np.array([(0, 0, 0), *((x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1))])
+"""Points of a box of edge 2: its middle, and near its corners."""
 _BASE = np.array(BASE_POSITION)
 """The distance sensor sits in the gripper's palm, this far beyond the interface, m."""
 
@@ -26,37 +31,81 @@ class Sensors:
     """Readings of the cell. World frame unless said otherwise."""
 
     def __init__(
-        self, simulation: Simulation, noise: SeededNoise, boxes: tuple[Box, ...], numbers: dict[str, int]
+        self,
+        simulation: Simulation,
+        kinematics: Kinematics,
+        noise: SeededNoise,
+        boxes: tuple[Box, ...],
+        numbers: dict[str, int],
+        camera: tuple[float, float, float],
     ) -> None:
         self._simulation = simulation
+        self._kinematics = kinematics
         self._noise = noise
         self._boxes = {box.name: box for box in boxes}
         self._numbers = numbers
         self._tool = simulation.model.site("tool").id
         self._geom = np.zeros(1, dtype=np.int32)
+        self._read: tuple[int, tuple[float, ...]] = (-1, ())
+        self._seen_at = -1
+        self._seen: dict[str, Position | None] = {}
+        self._picture = mujoco.MjData(simulation.model)
+        self._camera = np.array(camera)
+        self._ranged: tuple[int, float] = (-1, 0.0)
 
     def tool_pose(self) -> Pose:
-        """Measured tool pose in the base frame, from the joint encoders."""
-        exact = true_tool_pose(self._simulation)
-        add = self._noise.add
-        return Pose(
-            *(add("tool position", value) for value in (exact.x, exact.y, exact.z)),
-            *(add("tool orientation", value) for value in (exact.theta_x, exact.theta_y, exact.theta_z)),
-        )
+        """Tool pose in the base frame, computed from the joint encoders.
+
+        Like a real controller's, it knows nothing of a wrong calibration, a bent link or a moved base.
+        """
+        return pose_of(*self._kinematics.tool(np.radians(self._encoders())))
 
     def joint_angles(self) -> tuple[float, ...]:
         """Measured joint angles, degrees, each in (-180, 180]."""
-        angles = np.degrees(self._simulation.data.qpos[: kinova.JOINT_COUNT]).tolist()
-        return tuple(180.0 - (180.0 - self._noise.add("joint angle", angle)) % 360.0 for angle in angles)
+        return tuple(180.0 - (180.0 - angle) % 360.0 for angle in self._encoders())
 
     def box_position(self, name: str | None = None) -> Position:
-        """Measured middle of the bottom face of a box; without a name, of the first box.
+        """Middle of the bottom face of a box as the camera sees it; without a name, of the first box.
+
+        The camera takes 25 pictures a second. Each can be read 40 ms later, and until the next one can.
 
         Raises:
-            SensorError: there is no such box.
+            SensorError: there is no such box, or something hides it from the camera.
         """
-        exact = true_box_position(self._simulation, self._box(name))
-        return Position(*(self._noise.add("box position", value) for value in (exact.x, exact.y, exact.z)))
+        box = self._box(name)
+        tick, places = self._simulation.frame()
+        if tick != self._seen_at:
+            self._seen_at, self._seen = tick, {}
+            self._picture.qpos[:] = places
+            mujoco.mj_kinematics(self._simulation.model, self._picture)
+        if box.name not in self._seen:
+            self._seen[box.name] = self._look_for(box)
+        found = self._seen[box.name]
+        if found is None:
+            raise SensorError(f"the camera does not see {box.name!r}: something is in the way")
+        return found
+
+    def _look_for(self, box: Box) -> Position | None:
+        """Where the picture shows the box; None if less than a third of it can be seen."""
+        body, geom = self._simulation.id_of("body", box.name), self._simulation.model.geom(box.name).id
+        centre, rotation = self._picture.xpos[body], self._picture.xmat[body].reshape(3, 3)
+        rays = centre + _LOOKED_AT * box.edge / 2 @ rotation.T - self._camera
+        hits = np.zeros(len(rays), dtype=np.int32)
+        for index, ray in enumerate(rays):
+            mujoco.mj_ray(
+                self._simulation.model,
+                self._picture,
+                self._camera,
+                ray,
+                _SOLID,
+                1,
+                -1,
+                hits[index : index + 1],
+            )
+        if 3 * int((hits == geom).sum()) < len(rays):
+            return None
+        bottom = (centre - box.edge / 2 * rotation[:, 2]).tolist()
+        return Position(*(self._noise.add("box position", value) for value in bottom))
 
     def colour_number(self, name: str | None = None) -> int:
         """Colour as a whole number 1..10: even is red, odd is blue. Drawn once per round.
@@ -75,16 +124,30 @@ class Sensors:
         return "red" if self.colour_number(name) % 2 == 0 else "blue"
 
     def distance(self) -> float:
-        """Distance from the gripper's palm to the nearest surface along the tool's axis, m."""
+        """Distance from the gripper's palm to the nearest surface along the tool's axis, m, once per tick."""
+        ticks, reading = self._ranged
+        if ticks != self._simulation.ticks:
+            low, high = DISTANCE_RANGE
+            reading = min(max(self._noise.add("distance", self._range()), low), high)
+            self._ranged = self._simulation.ticks, reading
+        return reading
+
+    def _range(self) -> float:
         data = self._simulation.data
         axis = data.site_xmat[self._tool].reshape(3, 3)[:, 2].copy()
         start = data.site_xpos[self._tool] - (kinova.TOOL_LENGTH - _DISTANCE_START) * axis
-        group = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
         own_body = self._simulation.model.body("gripper").id
-        found = mujoco.mj_ray(self._simulation.model, data, start, axis, group, 1, own_body, self._geom)
-        low, high = DISTANCE_RANGE
-        exact = high if found < 0 else float(found)
-        return min(max(self._noise.add("distance", exact), low), high)
+        found = mujoco.mj_ray(self._simulation.model, data, start, axis, _SOLID, 1, own_body, self._geom)
+        return DISTANCE_RANGE[1] if found < 0 else float(found)
+
+    def _encoders(self) -> tuple[float, ...]:
+        """One reading of all encoders per tick, with noise, degrees, not wrapped."""
+        ticks, read = self._read
+        if ticks != self._simulation.ticks:
+            angles = np.degrees(self._simulation.encoders()).tolist()
+            read = tuple(self._noise.add("joint angle", angle) for angle in angles)
+            self._read = self._simulation.ticks, read
+        return read
 
     def _box(self, name: str | None) -> Box:
         if name is None and self._boxes:

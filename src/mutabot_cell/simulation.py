@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import mujoco
@@ -19,7 +20,13 @@ STEPS_PER_TICK = 5
 TICK = STEPS_PER_TICK * model.PHYSICS_STEP
 """Length of one control tick, s."""
 
+FRAME_TICKS = 4
+"""Control ticks from one picture of the cell's camera to the next: 25 a second."""
+LATENCY_TICKS = 4
+"""Control ticks that a picture is older than this when it can be read: 40 ms."""
+
 _ABSURD_SPEED = 1e4
+_KEPT_FRAMES = 1 + math.ceil(LATENCY_TICKS / FRAME_TICKS)
 
 
 def _ignore_warning(message: str) -> None:
@@ -34,6 +41,8 @@ class Simulation:
             rad, then the fingers' closed path in m. Drivers fill it before each tick.
         before_tick: called before each tick, in order; they write `setpoints`.
         after_tick: called after each tick, in order; they may raise.
+        encoder_error: what each joint's encoder reads too much, rad; zero for a well calibrated arm. Servos,
+            protective stop, planner and sensors know the encoders alone. Set it by `set_encoder_error`.
     """
 
     def __init__(self, scene: Scene, grip_force: float) -> None:
@@ -46,7 +55,9 @@ class Simulation:
         self.setpoints: Array = np.tile(self.data.ctrl, (STEPS_PER_TICK, 1))
         self.before_tick: list[Callable[[], None]] = []
         self.after_tick: list[Callable[[], None]] = []
+        self.encoder_error: Array = np.zeros(kinova.JOINT_COUNT)
         self._ticks = 0
+        self._frames: deque[tuple[int, Array]] = deque([(0, self.data.qpos.copy())], maxlen=_KEPT_FRAMES)
         self._ids: dict[tuple[str, str], int] = {}
         self._speeds, self._places = self.data.qvel, self.data.qpos  # views of the physics' own memory
 
@@ -54,6 +65,32 @@ class Simulation:
     def time(self) -> float:
         """Simulated time since the cell was made, s."""
         return self._ticks * TICK
+
+    @property
+    def ticks(self) -> int:
+        """Control ticks since the cell was made."""
+        return self._ticks
+
+    def frame(self) -> tuple[int, Array]:
+        """What the camera's newest readable picture shows: its tick, and `qpos` at that time."""
+        latest = self._ticks - LATENCY_TICKS
+        return next((frame for frame in reversed(self._frames) if frame[0] <= latest), self._frames[0])
+
+    def encoders(self) -> Array:
+        """Joint angles as the encoders tell them to the controller, shape (7,), rad, without noise."""
+        read: Array = self._places[: kinova.JOINT_COUNT] + self.encoder_error
+        return read
+
+    def set_encoder_error(self, error: Sequence[float]) -> None:
+        """Calibrate the encoders wrongly: the joints move to where the encoders read what they read now.
+
+        Args:
+            error: encoder minus joint, rad, one per joint.
+        """
+        read = self.encoders()
+        self.encoder_error[:] = error
+        self._places[: kinova.JOINT_COUNT] = read - self.encoder_error
+        mujoco.mj_forward(self.model, self.data)
 
     def id_of(self, kind: Literal["body", "site"], name: str) -> int:
         """Number of a body or site of the model; looked up once, since checks ask for it at every tick."""
@@ -77,6 +114,8 @@ class Simulation:
             ctrl[:] = row
             step(cell_model, data)
         self._ticks += 1
+        if self._ticks % FRAME_TICKS == 0:
+            self._frames.append((self._ticks, self._places.copy()))
         # one number tells of all: not below the limit also if a value is NaN
         speeds, places = self._speeds, self._places
         if not (speeds.dot(speeds) < _ABSURD_SPEED**2 and math.isfinite(places.dot(places))):

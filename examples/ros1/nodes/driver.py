@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from queue import Empty, Queue
 from threading import Event
 
@@ -23,7 +24,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, SetBoolRequest, SetBoolResponse, Trigger, TriggerRequest, TriggerResponse
 
 from mutabot_cell import Cell, Position
-from mutabot_cell.errors import CellError, MotionRefused
+from mutabot_cell.errors import CellError, MotionRefused, SensorError
 
 FRAME = "base"
 
@@ -115,7 +116,8 @@ class Driver:
         """Publish what the measuring devices see."""
         sensors = self._cell.sensors
         self._publish("robot", FRAME, sensors.tool_pose().position)
-        self._publish("box", "world", sensors.box_position())
+        with suppress(SensorError):  # the camera does not see it: what it saw last stays latched
+            self._publish("box", "world", sensors.box_position())
 
     def _publish(self, name: str, frame: str, position: Position) -> None:
         message = PointStamped()

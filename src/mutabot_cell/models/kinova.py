@@ -1,7 +1,7 @@
 """The Kinova Gen3 arm with 7 joints: published kinematics, masses and limits, and its shape.
 
-Source: the maker's public robot description (joint origins, masses, joint, torque and speed limits) and user
-guide (acceleration limits). Link shapes are our own capsules; each mass is spread over its capsule.
+Source: the maker's public robot description (joint origins, inertias, torque and speed limits) and user guide
+(joint and acceleration limits, peak torque, payload). Link shapes are our own capsules.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ class Joint:
         turn: rotation of the frame about the parent's x axis, rad.
         limit: allowed angle on both sides of zero, rad; infinite for a continuous joint.
         mass: of the link that the joint carries, kg.
-        torque: limit, Nm.
+        centre: of that link's mass, in the joint's frame, m.
+        inertia: of that link about its centre of mass, in the joint's axes: xx, yy, zz, xy, xz, yz, kg m².
+        torque: what the joint can give without end, Nm.
+        peak_torque: what it can give for a short time, Nm.
         speed: limit, rad/s.
         acceleration: limit, rad/s².
     """
@@ -30,25 +33,53 @@ class Joint:
     turn: float
     limit: float
     mass: float
+    centre: tuple[float, float, float]
+    inertia: tuple[float, float, float, float, float, float]
     torque: float
+    peak_torque: float
     speed: float
     acceleration: float
 
 
 _QUARTER = math.pi / 2
 JOINTS: tuple[Joint, ...] = (
-    Joint((0.0, 0.0, 0.15643), math.pi, CONTINUOUS, 1.3773, 39.0, 1.39, 5.2),
-    Joint((0.0, 0.005375, -0.12838), _QUARTER, 2.41, 1.1636, 39.0, 1.39, 5.2),
-    Joint((0.0, -0.21038, -0.006375), -_QUARTER, CONTINUOUS, 1.1636, 39.0, 1.39, 5.2),
-    Joint((0.0, 0.006375, -0.21038), _QUARTER, 2.66, 0.9302, 39.0, 1.39, 5.2),
-    Joint((0.0, -0.20843, -0.006375), -_QUARTER, CONTINUOUS, 0.6781, 9.0, 1.22, 10.0),
-    Joint((0.0, 0.00017505, -0.10593), _QUARTER, 2.23, 0.6781, 9.0, 1.22, 10.0),
-    Joint((0.0, -0.10593, -0.00017505), -_QUARTER, CONTINUOUS, 0.5006, 9.0, 1.22, 10.0),
-)
+    Joint(
+        (0.0, 0.0, 0.15643), math.pi, CONTINUOUS, 1.3773, (-2.3e-5, -0.010364, -0.07336),
+        (0.00457, 0.004831, 0.001409, 1.0e-6, 2.0e-6, 0.000448), 39.0, 105.0, 1.39, 5.2,
+    ),
+    Joint(
+        (0.0, 0.005375, -0.12838), _QUARTER, math.radians(128.9), 1.1636, (-4.4e-5, -0.09958, -0.013278),
+        (0.011088, 0.001072, 0.011255, 5.0e-6, 0.0, -0.000691), 39.0, 105.0, 1.39, 5.2,
+    ),
+    Joint(
+        (0.0, -0.21038, -0.006375), -_QUARTER, CONTINUOUS, 1.1636, (-4.4e-5, -0.006641, -0.117892),
+        (0.010932, 0.011127, 0.001043, 0.0, -7.0e-6, 0.000606), 39.0, 105.0, 1.39, 5.2,
+    ),
+    Joint(
+        (0.0, 0.006375, -0.21038), _QUARTER, math.radians(147.8), 0.9302, (-1.8e-5, -0.075478, -0.015006),
+        (0.008147, 0.000631, 0.008316, -1.0e-6, 0.0, -0.0005), 39.0, 105.0, 1.39, 5.2,
+    ),
+    Joint(
+        (0.0, -0.20843, -0.006375), -_QUARTER, CONTINUOUS, 0.6781, (1.0e-6, -0.009432, -0.063883),
+        (0.001596, 0.001607, 0.000399, 0.0, 0.0, 0.000256), 9.0, 52.0, 1.22, 10.0,
+    ),
+    Joint(
+        (0.0, 0.00017505, -0.10593), _QUARTER, math.radians(120.3), 0.6781, (1.0e-6, -0.045483, -0.00965),
+        (0.001641, 0.00041, 0.001641, 0.0, 0.0, -0.000278), 9.0, 52.0, 1.22, 10.0,
+    ),
+    Joint(
+        (0.0, -0.10593, -0.00017505), -_QUARTER, CONTINUOUS, 0.5, (0.000281, 0.011402, -0.029798),
+        (0.000587, 0.000369, 0.000609, 3.0e-6, 3.0e-6, -0.000118), 9.0, 52.0, 1.22, 10.0,
+    ),
+)  # fmt: skip
 JOINT_COUNT = len(JOINTS)
 INTERFACE_OFFSET = (0.0, 0.0, -0.0615250)
 TOOL_LENGTH = 0.12
 BASE_MASS = 1.697
+PAYLOAD = 4.0
+"""What the maker rates the arm for at mid-range, without end and without a gripper, kg."""
+_PAYLOAD_MARKER = 1e-6
+"""Mass of the empty body at which the controller compensates the declared payload's weight, kg."""
 JERK_RATIO = 10.0
 """Jerk limit of a joint divided by its acceleration limit, 1/s (our choice: reached within 0.1 s)."""
 
@@ -82,13 +113,13 @@ def _numbers(values: tuple[float, ...]) -> str:
     return " ".join(f"{value:.17g}" for value in values)
 
 
-def _link_shape(number: int, end: tuple[float, float, float], mass: float) -> str:
+def _link_shape(number: int, end: tuple[float, float, float]) -> str:
     radius = _LINK_RADIUS[number - 1]
     length = math.sqrt(sum(part * part for part in end))
     reach = tuple(part * max(0.0, 1 - 0.25 * radius / length) for part in end)
     return (
         f'<geom name="link {number}" class="arm" type="capsule" size="{radius}" '
-        f'fromto="0 0 0 {_numbers(reach)}" mass="{mass}" rgba="{_LIGHT}"/>'
+        f'fromto="0 0 0 {_numbers(reach)}" rgba="{_LIGHT}"/>'
         f'<geom class="looks" type="cylinder" size="{radius + 0.0015} 0.012" rgba="{_DARK}"/>'
     )
 
@@ -109,10 +140,11 @@ def arm_xml(tool: str = "") -> str:
         end = JOINTS[index + 1].origin if number < JOINT_COUNT else INTERFACE_OFFSET
         opening.append(
             f'<body name="link {number}" pos="{_numbers(joint.origin)}" quat="{_turn(joint.turn)}" '
-            'gravcomp="1">'
+            f'gravcomp="1"><inertial pos="{_numbers(joint.centre)}" mass="{joint.mass}" '
+            f'fullinertia="{_numbers(joint.inertia)}"/>'
             f'<joint name="joint {number}" armature="{_ROTOR_INERTIA[index]}" actuatorgravcomp="true" '
-            f'actuatorfrclimited="true" actuatorfrcrange="{-joint.torque} {joint.torque}"{limited}/>'
-            + _link_shape(number, end, joint.mass)
+            f'actuatorfrclimited="true" actuatorfrcrange="{-joint.peak_torque} {joint.peak_torque}"'
+            f"{limited}/>" + _link_shape(number, end)
         )
     camera = (
         '<geom class="looks" type="box" size="0.035 0.012 0.03" pos="0 -0.042 -0.03" '
@@ -120,9 +152,16 @@ def arm_xml(tool: str = "") -> str:
     )
     interface = (
         f'<body name="interface" pos="{_numbers(INTERFACE_OFFSET)}" quat="{_turn(math.pi)}" gravcomp="1">'
-        f'<site name="tool" pos="0 0 {TOOL_LENGTH}" size="0.002" rgba="0 0 0 0"/>{tool}</body>'
+        f'<site name="tool" pos="0 0 {TOOL_LENGTH}" size="0.002" rgba="0 0 0 0"/>{tool}'
+        f'<body name="payload" pos="0 0 {TOOL_LENGTH}" gravcomp="1"><inertial pos="0 0 0" '
+        f'mass="{_PAYLOAD_MARKER}" diaginertia="1e-9 1e-9 1e-9"/></body></body>'
     )
     return "".join(opening) + camera + interface + "</body>" * (JOINT_COUNT + 1)
+
+
+def compensation_of(payload: float) -> float:
+    """The `gravcomp` of body "payload" that carries `payload` kg."""
+    return payload / _PAYLOAD_MARKER
 
 
 def actuators_xml() -> str:

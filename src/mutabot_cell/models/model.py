@@ -6,12 +6,27 @@ import math
 
 import mujoco
 
-from mutabot_cell.scene import BASE_POSITION, BLUE_RGBA, RED_RGBA, Box, Fixture, Mark, Scene
+from mutabot_cell.scene import (
+    BASE_POSITION,
+    BLUE_RGBA,
+    FRICTION_ON_SILICONE,
+    FRICTION_ON_STEEL,
+    RED_RGBA,
+    Box,
+    Fixture,
+    Mark,
+    Scene,
+)
 
 from . import kinova, robotiq
 
 PHYSICS_STEP = 0.002
 """Length of one physics step, s."""
+
+_GRIP_BRAKE = 1.8
+_LANDING = "0.008 0.8"
+"""Time constant (s) and damping ratio of what a box lands on: it rebounds with a tenth of its speed, as
+cardboard does on rubber."""
 
 # Collision classes: fixtures (1), arm (2), gripper (4), boxes (8).
 _DEFAULTS = """
@@ -24,14 +39,16 @@ _DEFAULTS = """
 </default>
 """
 
+# impratio: friction is ten times as stiff as what presses. With more, boxes held on one edge chatter between
+# the pads; with less, they creep.
 # The dense Jacobian is right for this size; it also avoids a fault of MuJoCo 4.0.0's sparse factorisation
 # (its issue 3767: wrong accelerations; repaired in 4.0.1).
 _OPTIONS = f"""
-<option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="100" jacobian="dense"
+<option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"
         solver="Newton" iterations="20" tolerance="1e-8">
   <flag autoreset="disable" island="disable"/>
 </option>
-<compiler angle="radian" autolimits="false" inertiafromgeom="true"/>
+<compiler angle="radian" autolimits="false"/>
 """
 
 _LOOKS = """
@@ -98,17 +115,40 @@ def _box_xml(box: Box) -> str:
         f'quat="{math.cos(yaw)} 0 0 {math.sin(yaw)}">'
         f'<freejoint name="{box.name}"/>'
         f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" '
-        f'priority="1" solref="0.015 1" solimp="0.95 0.99 0.001" '
-        f'friction="{box.friction} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
+        f'priority="1" solref="{_LANDING}" solimp="0.95 0.99 0.001" '
+        f'friction="{_friction(box, FRICTION_ON_STEEL)} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
     )
+
+
+def _friction(box: Box, material: float) -> float:
+    return material if box.friction is None else box.friction
+
+
+def _surface_xml(box: Box, fixtures: tuple[Fixture, ...]) -> str:
+    """Contacts of a box with each fixture: friction belongs to the pair of materials."""
+    surfaces = [(fixture.name, fixture.friction) for fixture in fixtures]
+    surfaces += [("floor", FRICTION_ON_STEEL), ("pedestal", FRICTION_ON_STEEL)]
+    return "".join(
+        f'<pair geom1="{name}" geom2="{box.name}" condim="3" solref="{_LANDING}" solimp="0.95 0.99 0.001" '
+        f'friction="{_pair_friction(_friction(box, friction))}"/>'
+        for name, friction in surfaces
+    )
+
+
+def _pair_friction(friction: float) -> str:
+    return f"{friction} {friction} 0.005 0.0001 0.0001"
 
 
 def _grip_xml(box: Box) -> str:
     # Stiffer than other contacts: what is gripped must turn with the fingers. As stiff as this, a falling box
     # would bounce, for numerical reasons.
+    # Friction brakes slip by `_GRIP_BRAKE` of itself per step. MuJoCo's constraint leaves out how the contact
+    # itself accelerates (J' v, about v²/r while the arm moves), so a part of it stays as slip: per step
+    # (1 / brake - 1/2) J' v dt², which vanishes at 2, where slip would swing for ever.
     return "".join(
         f'<pair geom1="{pad}" geom2="{box.name}" condim="3" solref="0.004 1" solimp="0.95 0.99 0.001" '
-        f'friction="{box.friction} {box.friction} 0.005 0.0001 0.0001"/>'
+        f'solreffriction="0 {-_GRIP_BRAKE / PHYSICS_STEP}" '
+        f'friction="{_pair_friction(_friction(box, FRICTION_ON_SILICONE))}"/>'
         for pad in ("left pad", "right pad")
     )
 
@@ -118,6 +158,7 @@ def cell_xml(scene: Scene, grip_force: float) -> str:
     things = "".join(_fixture_xml(fixture) + _legs_xml(fixture) for fixture in scene.fixtures)
     things += "".join(_mark_xml(mark) for mark in scene.marks)
     things += "".join(_box_xml(box) for box in scene.boxes)
+    contacts = "".join(_grip_xml(box) + _surface_xml(box, scene.fixtures) for box in scene.boxes)
     height = BASE_POSITION[2]
     return f"""<mujoco model="cell">{_OPTIONS}{_DEFAULTS}{_LOOKS}
 <worldbody>
@@ -129,7 +170,7 @@ def cell_xml(scene: Scene, grip_force: float) -> str:
   {things}
 </worldbody>
 <tendon>{robotiq.tendon_xml()}</tendon>
-<contact>{"".join(_grip_xml(box) for box in scene.boxes)}</contact>
+<contact>{contacts}</contact>
 <equality>{robotiq.coupling_xml()}</equality>
 <actuator>{kinova.actuators_xml()}{robotiq.actuator_xml(grip_force)}</actuator>
 </mujoco>"""

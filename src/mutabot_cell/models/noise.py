@@ -6,9 +6,7 @@ import math
 import random
 
 STANDARD_DEVIATIONS = {
-    "tool position": 0.0001,  # m
-    "tool orientation": 0.02,  # deg
-    "joint angle": 0.01,  # deg
+    "joint angle": 0.005,  # deg; makes 0.1 mm and 0.015 deg at the tool
     "box position": 0.0005,  # m
     "distance": 0.001,  # m
     "opening": 0.0001,  # m

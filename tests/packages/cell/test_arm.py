@@ -147,11 +147,11 @@ def test_refusal_for_reach_says_by_how_much(cell: Cell) -> None:
 
 
 def test_joint_target_beyond_a_limit_is_refused_with_joint_and_amount(cell: Cell) -> None:
-    with pytest.raises(MotionRefused, match=r"joint 4 .* 7\.6 deg beyond") as refusal:
+    with pytest.raises(MotionRefused, match=r"joint 4 .* 12\.2 deg beyond") as refusal:
         cell.arm.move_joints((0, 15, 180, -160, 0, 55, 90))
     assert refusal.value.limit == "joint 4"
-    assert refusal.value.excess == pytest.approx(160 - math.degrees(2.66))
-    assert refusal.value.allowed == pytest.approx(-math.degrees(2.66))
+    assert refusal.value.excess == pytest.approx(160 - 147.8)
+    assert refusal.value.allowed == pytest.approx(-147.8)
     assert cell.time == 0.0
 
 
