@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
 
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.request import Request
 from mutabot.campaign.simulation import SimulatedMiddleware
 from mutabot.config.table import Table
 from mutabot.errors import MutabotError, UsageError
+from mutabot.execution.task import Result
 from mutabot.model.operation import Clock
 from mutabot_ros._speech import speaks_of
+
+from .agreement import difference
 
 PLUGIN = "mutabot_ros.simulation.plugin"
 #: makes simulated time the time of budgets and reports, unless the vocabulary has a clock
@@ -53,6 +57,7 @@ class Ros2Simulation(SimulatedMiddleware):
     name = "ros2"
     title = "a simulation of ROS 2"
     real = "real ROS 2"
+    draws = False
 
     def over(self, request: Request) -> Request | None:
         """Put the plug-in before pytest's arguments, and the clock into the vocabulary."""
@@ -72,6 +77,12 @@ class Ros2Simulation(SimulatedMiddleware):
         changed = configuration.model_copy(update={"pytest_args": (*arguments, *configuration.pytest_args)})
         clock = request.vocabulary.clock or CLOCK
         return replace(request, configuration=changed, vocabulary=replace(request.vocabulary, clock=clock))
+
+    def difference(
+        self, real: Campaign, results: Sequence[Result], simulated: Sequence[Result]
+    ) -> str | None:
+        """See ``agreement.difference``."""
+        return difference(real, results, simulated, draws=self.draws)
 
     def why(self, error: MutabotError) -> str:
         """The simulation's own words, if it was the simulation that failed."""
