@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any, ParamSpec, TypeVar
 
@@ -23,37 +23,12 @@ T = TypeVar("T")
 #: more than these are not listed one by one
 MOST_REPORTED = 10
 
-#: what it is called here, and what people call it
-_OTHER_NAMES: Mapping[str, Mapping[str, str]] = {
-    "unit": {
-        "m": "meter, meters, metre, metres",
-        "mm": "millimeter, millimeters, millimetre, millimetres",
-        "cm": "centimeter, centimeters, centimetre, centimetres",
-        "deg": "degree, degrees, °",
-        "rad": "radian, radians",
-        "s": "sec, second, seconds",
-        "ms": "msec, millisecond, milliseconds",
-        "percent": "%, per cent",
-        "fraction": "ratio, 1",
-    },
-    "kind": {
-        "label": "color, colour, text, string, enum",
-        "flag": "bool, boolean",
-        "opening": "gripper, grip",
-        "angle": "joint, joint angle",
-        "duration": "time, wait",
-        "distance": "range, length",
-    },
-    "mode": {"by": "relative, rel, incremental", "to": "absolute, abs"},
-    "axis": {"x": "roll", "y": "pitch", "z": "yaw"},
-    "key": {
-        "tf": "transform, frame",
-        "topic": "publisher, subscriber",
-        "parameter": "param",
-        "service": "srv",
-    },
+#: what people call things for which vocabularies have other words
+_ALSO_CALLED = {
+    **{"roll": "x", "pitch": "y", "yaw": "z", "relative": "by", "absolute": "to"},
+    **{"meters": "m", "metres": "m", "millimeters": "mm", "degrees": "deg", "seconds": "s"},
+    **{"color": "label", "colour": "label", "joint": "angle", "gripper": "opening", "transform": "tf"},
 }
-
 #: keys of the configuration that there were, and why there are none any more
 _GONE = dict.fromkeys(("order", "pairs"), "a mutant is one fault, no pair of them")
 #: what is expected, by how the kind of pydantic's mistake begins
@@ -108,16 +83,11 @@ class DocumentPlace:
 
     def unknown(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Note a name that does not exist."""
-        document, known = self.document, list(known)
-        names = _OTHER_NAMES.get(kind, {}).items()
-        alias = next((one for one, others in names if name.casefold() in others.split(", ")), None)
-        where: dict[str, Any] = {
-            "file": document.file,
-            "key": document.key(self.path),
-            "line": document.line(self.path),
-        }
-        alias = alias if alias in known else None
-        self.errors.append(UnknownNameError(unknown_name_text(kind, name, known, alias), **where))
+        document, meant = self.document, _ALSO_CALLED.get(name.casefold())
+        known = list(known)
+        text = unknown_name_text(kind, name, known, meant if meant in known else None)
+        key = document.key(self.path)
+        self.errors.append(UnknownNameError(text, file=document.file, key=key, line=document.line(self.path)))
 
     def attempt(self, read: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | None:
         """Call ``read``; note the ValueError that it raises as a mistake, and return None."""

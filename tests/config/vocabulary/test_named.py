@@ -182,7 +182,7 @@ def test_two_operations_of_one_site_are_told_apart_by_name() -> None:
         (f'{GOAL}fields."[0]" = {X}', [":4", "begin with the name of a field"]),
         (
             f'{GOAL}fields.x = {{ kind = "position", unit = "m" }}',
-            ["belongs to what is received, not to what is sent", 'mode = "to"'],
+            ["belongs to what is received, not to what is sent"],
         ),
         ('service = "/a"\nresponse.x = { kind = "output", values = [0, 1] }', ["request, not to response"]),
         ('topic = "/a"\ndirection = "receive"\ncommand = true', [":4", "sends nothing", "command"]),

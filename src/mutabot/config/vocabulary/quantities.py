@@ -204,21 +204,6 @@ _LACKING: Sequence[tuple[Sequence[str], frozenset[Kind], str]] = (
     (("order",), frozenset(Kind) - {Kind.QUATERNION, Kind.EULER}, ""),
     (("noise",), frozenset(Kind) - (MEASURED & READ), "; only a measured reading has"),
 )
-#: how a kind that stands on the wrong side would be written there
-_AS_ARGUMENT = {
-    Kind.POSITION: '; a commanded position is kind = "translation" with mode = "to"',
-    Kind.ORIENTATION: '; a commanded orientation is kind = "rotation" with mode = "to"',
-    Kind.ANGLE: '; a commanded joint angle is kind = "rotation" with mode = "to" and the joint as axis',
-    Kind.LABEL: '; a commanded choice is kind = "output" with its values',
-    Kind.FLAG: '; a commanded switch is kind = "output" with values = [false, true]',
-}
-_AS_RESULT = {
-    Kind.TRANSLATION: '; where the robot is, is kind = "position"',
-    Kind.ROTATION: '; how the robot is turned, is kind = "orientation" (or "angle" for a joint)',
-    Kind.OPENING: '; how far the gripper is open, is kind = "distance", and whether it is, "flag"',
-    Kind.OUTPUT: '; a state that is read back is kind = "flag" or "label"',
-}
-
 #: a rule: the key, whether it is broken, and what is said then
 Rule = tuple[str, object, str]
 
@@ -258,7 +243,6 @@ def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]
     text = f"{_a(kind)} is sent to the robot, so it belongs to {written}, not to {read}"
     if is_written:
         text = f"{_a(kind)} is read from the robot, so it belongs to {read}, not to {written}"
-    text += (_AS_ARGUMENT if is_written else _AS_RESULT).get(kind, "")
     known = "settings are known from what is set up; no vocabulary describes them"
     is_wrong = kind not in (WRITTEN if is_written else READ)
     return [("kind", kind is Kind.SETTING, known), ("kind", is_wrong, text)]

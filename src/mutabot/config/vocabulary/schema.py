@@ -8,7 +8,6 @@ its goal, feedback, result and cancelling.
 
 from __future__ import annotations
 
-import builtins
 import keyword
 import re
 from collections.abc import Mapping
@@ -92,22 +91,11 @@ def check_target(text: str) -> str:
     module, colon, name = text.partition(":")
     odd = next((part for part in (*module.split("."), *name.split(".")) if not is_name(part)), None)
     if text.strip() and not colon:
-        raise ValueError(f"{text!r} has no colon between module and name; write {_with_colon(text)!r}")
+        raise ValueError(f"{text!r} has no colon between module and name; write module:qualified.name")
     if odd is not None:
         what = f"{odd!r} is not a Python name" if odd else "a name is missing"
         raise ValueError(f"{text!r}: {what}; expected module:qualified.name")
     return text
-
-
-def _with_colon(text: str) -> str:
-    if isinstance(getattr(builtins, text, None), type):
-        return f"builtins:{text}"
-    parts = text.split(".")
-    if len(parts) == 1:
-        return f"module:{text}"
-    # robot.Arm.move: by convention a module's name is lower case and a class's is not
-    first = next((index for index, part in enumerate(parts) if index and part[:1].isupper()), len(parts) - 1)
-    return f"{'.'.join(parts[:first])}:{'.'.join(parts[first:])}"
 
 
 def _check_method(name: str | None) -> str | None:
