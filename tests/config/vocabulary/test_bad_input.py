@@ -306,8 +306,8 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
         ["dx.mode", "needs a mode for each value of r"],
     ),
     "mode_with_a_wrong_value": (
-        "arguments.dx = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = 'relative', 2 = 'to' } }",
-        ["dx.mode", "unknown mode 'relative'", "did you mean 'by'"],
+        "arguments.a = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = 'relative', 2 = 'to' } }",
+        ["a.mode", "unknown mode 'relative'", "did you mean 'by'"],
     ),
     "mode_with_a_table": (
         "arguments.dx = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = {}, 2 = 'to' } }",
