@@ -215,7 +215,7 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     ),
     "ladder_of_one_magnitude": (
         "arguments.dx = { " + _BY + ", ladder = [1] }",
-        ["dx.ladder", "at least two"],
+        ["dx.ladder", "at least 2"],
     ),
     "ladder_in_an_unknown_unit": (
         "arguments.dx = { " + _BY + ", ladder = { steps = [1, 2], unit = 'mmm' } }",
@@ -306,7 +306,8 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
         ["dx.mode", "needs a mode for each value of r"],
     ),
     "mode_with_a_wrong_value": (
-        "arguments.a = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = 'relative', 2 = 'to' } }",
+        "arguments.a = { kind = 'rotation', unit = 'deg', "
+        "mode = { argument = 'r', 1 = 'relative', 2 = 'to' } }",
         ["a.mode", "unknown mode 'relative'", "did you mean 'by'"],
     ),
     "mode_with_a_table": (

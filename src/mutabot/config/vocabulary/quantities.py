@@ -172,7 +172,7 @@ def _path_of(text: str, sides: Sides, is_written: bool) -> Path:
 
 
 def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:
-    steps, unit = _steps_of(table)
+    ladder = table.ladder
     facts = {key: getattr(table, key) for key in _ALIKE}
     for key in ("range", "clip"):
         limits = getattr(table, key)
@@ -184,8 +184,8 @@ def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | No
         axis=axis,
         unit=_unit(table),
         values=(False, True) if values is None and table.kind is Kind.FLAG else values,
-        ladder=tuple(map(float, steps)) if steps is not None else None,
-        ladder_unit=unit,
+        ladder=tuple(ladder.steps) if ladder is not None else None,
+        ladder_unit=ladder.unit if ladder is not None else None,
         **facts,
     )
 
@@ -250,12 +250,12 @@ def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]
 
 def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
     """Names that do not exist: the key, the name, and those that do."""
-    units, (_, of_ladder) = _units(table), _steps_of(table)
+    units, of_ladder = _units(table), table.ladder.unit if table.ladder is not None else None
     if table.unit is not None and units and table.unit not in UNITS:
         yield "unit", table.unit, units
     if table.axis is not None and table.kind in _WITH_AXIS and _split_axes(table.axis) is None:
         yield "axis", table.axis, AXES if nearest_name(table.axis, AXES) else _AXES_IN_SHORT
-    if isinstance(of_ladder, str) and of_ladder not in UNITS:
+    if of_ladder is not None and of_ladder not in UNITS:
         yield "ladder", of_ladder, _units_of_ladder(table)
 
 
@@ -346,33 +346,21 @@ def _unit(table: QuantityTable) -> str | None:
     return "s" if table.kind is Kind.STAMP else table.unit
 
 
-def _steps_of(table: QuantityTable) -> tuple[list[float] | None, str | None]:
-    """The magnitudes of its ladder and their unit, if it has one of its own."""
-    ladder = table.ladder
-    return (ladder.get("steps"), ladder.get("unit")) if isinstance(ladder, dict) else (ladder, None)
-
-
 def _of_ladder(table: QuantityTable) -> list[Rule]:
     if table.ladder is None:
         return []
-    a, (steps, unit), units = _a(table.kind), _steps_of(table), _units_of_ladder(table)
-    is_table = isinstance(table.ladder, dict)
-    is_odd_table = is_table and (table.ladder.keys() != {"steps", "unit"} or not isinstance(unit, str))
-    form = f'write {{ steps = [1, 2, 5], unit = "mm" }}, not {_written(table.ladder)}'
-    if is_odd_table:
-        return [("ladder", True, form)]
-    is_list = isinstance(steps, list) and len(steps) > 1 and all(map(_is_number, steps))
-    if not is_list or steps is None:
-        text = f"takes at least two magnitudes, such as [1, 2, 5], not {_written(steps)}"
-        return [("ladder", True, text)]
+    a, steps, unit, units = _a(table.kind), table.ladder.steps, table.ladder.unit, _units_of_ladder(table)
     falls = any(later <= earlier for earlier, later in pairwise(steps))
     no_scale = f"{a} has no magnitudes; only what is a number on a scale has"
     positive = f"magnitudes are more than 0, not {min(steps):g}; both directions are tried"
     other = f"{unit!r} measures no fault of {a}; use {_listed(units)}"
+    rises = (
+        f"must rise from the smallest to the greatest magnitude, got {', '.join(map('{:g}'.format, steps))}"
+    )
     return [
         ("ladder", table.kind not in MEASURED and table.range is None, no_scale),
         ("ladder", min(steps) <= 0, positive),
-        ("ladder", falls, f"must rise from the smallest to the greatest magnitude, got {_written(steps)}"),
+        ("ladder", falls, rises),
         ("ladder", unit in UNITS and unit not in units, other),
     ]
 
@@ -391,11 +379,6 @@ def _units_of_ladder(table: QuantityTable) -> tuple[str, ...]:
     elif table.kind in WHOLE:
         own = frozenset({Dimension.ANGLE})
     return tuple(name for name in UNITS if dimension_of(name) in (*own, Dimension.TIME, Dimension.RATIO))
-
-
-def _written(value: Any) -> str:
-    """A value as it stands in the file, where that is short."""
-    return str(value) if len(str(value)) < 60 else shown(value)
 
 
 def _fits(kind: Kind, value: Any) -> bool:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.config.table import Table
@@ -144,6 +144,11 @@ def _type(text: str) -> str:
     return f"{found[1]}/{found[2]}"
 
 
+def _ladder(raw: Any) -> Any:
+    """The steps alone are a ladder as well."""
+    return {"steps": raw} if isinstance(raw, list) else raw
+
+
 def _check_argument(text: str) -> str:
     path = Path.parse(text, rooted=True)
     if text == "self":
@@ -166,6 +171,13 @@ TimeUnit = Literal["s", "ms", "us", "min"]
 Scalar = Annotated[Any, AfterValidator(_check_scalar)]
 
 
+class LadderTable(Table):
+    """``ladder = { steps = [1, 2, 5], unit = "mm" }``; without a unit, that of the quantity."""
+
+    steps: Annotated[list[float], Field(min_length=2)]
+    unit: str | None = None
+
+
 class QuantityTable(Table):
     """``{ kind = "translation", axis = "x", unit = "m", … }``"""
 
@@ -180,7 +192,7 @@ class QuantityTable(Table):
     noise: float | None = None
     order: str | None = None
     relative: bool = False
-    ladder: Any = None
+    ladder: Annotated[LadderTable | None, BeforeValidator(_ladder)] = None
     missing: str | None = None
     tcp: float | None = None
 
