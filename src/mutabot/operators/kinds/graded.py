@@ -20,7 +20,7 @@ from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, whole, writing
 from mutabot.operators.magnitudes import Magnitudes, ladder_in, own_ladder, per_second
 from mutabot.operators.operator import Context, Need, Subject, quantity_of
-from mutabot.operators.value import ValueOperator, is_number, label
+from mutabot.operators.value import ValueOperator, is_number, label, turned
 
 #: components of a slice without an end that are tried: those of an arm with seven joints
 _JOINTS = 7
@@ -113,13 +113,9 @@ def _in_component(context: Context, value: Value, change: Callable[[float], floa
 
 
 def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float], float]) -> Value | None:
-    orientation = quantity.orientation(value)
-    if orientation is None:
-        return None
-    angle = change(0.0)
-    radians = convert_difference(angle, quantity.unit or "rad", "rad")
+    radians = convert_difference(change(0.0), quantity.unit or "rad", "rad")
     turn = from_rotation_vector([radians if one == axis else 0.0 for one in "xyz"])
-    return quantity.numbers(product(turn, orientation))
+    return turned(quantity, value, lambda orientation: product(turn, orientation))
 
 
 def _like(quantity: Quantity, before: Value, after: float) -> float:
