@@ -49,7 +49,6 @@ _BOUNDS = {
     "less_than": ("lt", "less than"),
     "less_than_equal": ("le", "at most"),
 }
-_SOURCE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?(?: · (?P<key>.*))?")
 
 
 @dataclass(frozen=True)
@@ -206,13 +205,7 @@ def problem_error(problem: Problem) -> ConfigurationError:
     ``problem.text`` is either a sentence or, if it does not mention the name that is wrong, what kind
     of name it is (``argument``).
     """
-    source = _SOURCE.fullmatch(problem.source)
-    file, line, key = source.group("file", "line", "key") if source else (problem.source, None, None)
-    where: dict[str, Any] = {
-        "file": file or None,
-        "key": " · ".join(part for part in (key, problem.key) if part) or None,
-        "line": int(line) if line else None,
-    }
+    where: dict[str, Any] = {"file": problem.source or None, "key": problem.key or None}
     name, text = problem.name, problem.text
     if name is None:
         return ConfigurationError(text, **where)

@@ -331,10 +331,7 @@ def _of_reading(table: QuantityTable, is_written: bool) -> list[Rule]:
     never = f"{_a(table.kind)} that is sent is never missing; only a reading is"
     ways = f'write "none", "nan" or an exception (module:Name), not {shown(missing)}'
     is_odd = missing is not None and missing not in ("none", "nan") and not is_target(missing)
-    rules: list[Rule] = [("missing", missing is not None and is_written, never), ("missing", is_odd, ways)]
-    positive = f"must be more than 0 (a standard deviation), got {table.noise}"
-    rules.append(("noise", table.noise is not None and table.noise <= 0, positive))
-    return rules
+    return [("missing", missing is not None and is_written, never), ("missing", is_odd, ways)]
 
 
 def _unit(table: QuantityTable) -> str | None:

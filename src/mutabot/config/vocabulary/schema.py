@@ -189,7 +189,7 @@ class QuantityTable(Table):
     values: list[Any] | None = None
     range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     clip: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    noise: float | None = None
+    noise: Annotated[float | None, Field(gt=0)] = None
     order: str | None = None
     relative: bool = False
     ladder: Annotated[LadderTable | None, BeforeValidator(_ladder)] = None
