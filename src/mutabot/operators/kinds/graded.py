@@ -13,7 +13,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.families import GRADED
-from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, Reply
+from mutabot.model import Call, Kind, Mode, Operation, Proceed, Quantity, Reply
 from mutabot.model.quantity import Value
 from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
 from mutabot.operators.command import CommandOperator
@@ -125,10 +125,9 @@ def _like(quantity: Quantity, before: Value, after: float) -> float:
 
 #: angles that say where something is: a share of them means nothing, as their zero is anywhere
 _ANY_ZERO = frozenset({Kind.ORIENTATION, Kind.ANGLE, Kind.TEMPERATURE})
-_Z = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
 _MOVE = writing("robot:Arm.move_by", "dy", Kind.TRANSLATION, axis="y", unit="m", frame="base", mode=Mode.BY)
 _GO = replace(MOVE_TO, arguments=MOVE_TO.arguments[:1])
-_LIFT = Operation("robot:Arm.lift_to", (_Z,))
+_LIFT = writing("robot:Arm.lift_to", "z", Kind.TRANSLATION, axis="z", unit="m", mode=Mode.TO, range=(0, 0.5))
 _ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="deg")
 _MEANT = Subject(LOCATE)
 _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
