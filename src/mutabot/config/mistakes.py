@@ -51,6 +51,9 @@ _BOUNDS = {
 }
 
 
+_LENGTHS = {"too_short": ("at least", "min_length"), "too_long": ("at most", "max_length")}
+
+
 @dataclass(frozen=True)
 class DocumentPlace:
     """A place in a document under inspection; ``place / "key"`` is one inside it.
@@ -146,19 +149,12 @@ def explained(detail: ErrorDetails) -> str:
     if kind in _BOUNDS:
         bound, words = _BOUNDS[kind]
         return f"must be {words} {detail['ctx'][bound]}, got {shown(value)}"
-    if kind in ("too_short", "too_long"):
-        return _length_text(detail)
+    if kind in _LENGTHS:
+        found, (wanted, bound) = detail["ctx"]["actual_length"], _LENGTHS[kind]
+        return f"needs {wanted} {detail['ctx'][bound]} entries, got {found}" if found else "must not be empty"
     if kind == "value_error":  # our own validators say it all
         return str(detail["ctx"]["error"])
     return f"{shown(value)} does not fit here"
-
-
-def _length_text(detail: ErrorDetails) -> str:
-    context = detail["ctx"]
-    least, most = context.get("min_length"), context.get("max_length")
-    wanted = f"at least {least}" if least is not None else f"at most {most}"
-    found = context["actual_length"]
-    return "must not be empty" if found == 0 else f"needs {wanted} entries, got {found}"
 
 
 def _list_hint(detail: ErrorDetails) -> str:
