@@ -10,7 +10,15 @@ from itertools import product
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ByteSize,
+    Field,
+    GetJsonSchemaHandler,
+    TypeAdapter,
+    ValidationError,
+)
 from pydantic_core import CoreSchema
 
 from mutabot import limits
@@ -34,8 +42,7 @@ _NO_VOCABULARY = (
 )
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
-_AMOUNT = re.compile(r"\s*(\d{1,18}(?:\.\d{1,18})?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
-_PREFIXES = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
+_BYTES = TypeAdapter(ByteSize)
 #: signs of a path, and bytes of a name in it, that a file system takes
 _LONGEST_PATH, _LONGEST_NAME = 4000, 255
 #: bytes that Python and pytest need
@@ -46,12 +53,10 @@ _WILD = re.compile(r"[*?\[]")
 def _amount(value: Any, *, least: int, example: str) -> Any:
     """The bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
     if isinstance(value, str):
-        match = _AMOUNT.fullmatch(value)
-        if match is None:
-            raise ValueError(f"{shortened(value)!r} is no number of bytes; write it like {example}")
-        unit = match[2].lower().removesuffix("b")
-        base = 1024 if unit.endswith("i") else 1000
-        value = round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
+        try:
+            value = int(_BYTES.validate_python(value if value.strip(" .0123456789") else ""))
+        except (ValidationError, OverflowError):
+            raise ValueError(f"{shortened(value)!r} is no number of bytes; write it like {example}") from None
     if isinstance(value, int) and not isinstance(value, bool) and value < least:
         raise ValueError(f"{value} bytes are too little; write it like {example}")
     return value

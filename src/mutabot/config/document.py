@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 import tomllib
-from bisect import bisect_left
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -158,107 +156,84 @@ def _label(node: Any) -> str | None:
     return label if isinstance(label, str) and label else None
 
 
-_IGNORED = r"(?:[ \t\n]|#[^\n]*)*"
-_BLANK = re.compile(_IGNORED)
-_OPENED = re.compile(r"(\[{0,2})[ \t]*")
-_CLOSED = re.compile(r"\]{1,2}")
-_KEY = re.compile(
-    r"""(?:(?P<bare>[A-Za-z0-9_-]+)|(?P<quoted>"(?:[^"\\\n]|\\.)*"|'[^'\n]*'))[ \t]*(?P<dot>(?:\.[ \t]*)?)"""
-)
-_EQUALS = re.compile(r"=[ \t]*")
-_PLAIN = re.compile(
-    r"""\"""(?:[^\\]|\\.)*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^,\]}#\n]+""", re.DOTALL
-)
-_COMMA = re.compile(f"{_IGNORED}(?:,{_IGNORED})?")
-_ENDS = {"[": "]", "{": "}"}
+#: how the last line of a value ends that goes over several lines
+_LAST = re.compile(r"""(?:\]|\"""|''')[ \t]*(?:\#.*)?$""")
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
     """The 1-based line of every key, table header and list item of a valid TOML text.
 
-    The standard library's reader does not tell. Where the scan loses its way, it ends with the lines it has.
+    The standard library's reader does not tell, so it reads statement by statement. An item of a list has a
+    line of its own if each item before it, and it itself, stands on one line.
     """
-    scanner = _Scanner(text)
-    with contextlib.suppress(ValueError, IndexError, RecursionError):
-        scanner.document()
-    return scanner.lines
+    lines: dict[KeyPath, int] = {}
+    tables: dict[KeyPath, int] = {}  # arrays of tables: how many elements so far
+    table: KeyPath = ()
+    statement: list[str] = []
+    for number, line in enumerate(text.split("\n"), 1):
+        statement.append(line)
+        is_whole = len(statement) == 1 or _LAST.search(line) is not None
+        data = _read("\n".join(statement)) if is_whole else None
+        if data is None:
+            continue
+        if statement[0].lstrip().startswith("["):
+            table = _header(data, tables)
+            places = [(table[:length], 0) for length in range(1, len(table) + 1)]
+        else:
+            places = list(_places(data, table, _item_lines(statement)))
+        for place, offset in places:
+            lines.setdefault(place, number - len(statement) + 1 + offset)
+        statement = []
+    return lines
 
 
-class _Scanner:
-    def __init__(self, text: str) -> None:
-        self.text, self.position = text, 0
-        self.ends = [match.start() for match in re.finditer("\n", text)]
-        self.lines: dict[KeyPath, int] = {}
-        self.tables: dict[KeyPath, int] = {}  # arrays of tables: how many elements so far
+def _read(text: str) -> dict[str, Any] | None:
+    """What a statement says; None if it goes on."""
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError):
+        return None
 
-    def document(self) -> None:
-        table: KeyPath = ()
-        self.take(_BLANK)
-        while self.position < len(self.text):
-            start, opened = self.position, self.take(_OPENED)[1]
-            if opened:
-                table = self.header(start, is_list=opened == "[[")
-            else:
-                self.pair(table)
-            self.take(_BLANK)
 
-    def header(self, start: int, *, is_list: bool) -> KeyPath:
-        *outer, last = self.key()
-        self.take(_CLOSED)
-        place: KeyPath = ()
-        for key in outer:
-            place = self.with_index((*place, key))
-        place = (*place, last)
-        if is_list:
-            self.tables[place] = self.tables.get(place, 0) + 1
-        for one in (place, self.with_index(place)):
-            self.note(one, start)
-        return self.with_index(place)
+def _header(data: Any, tables: dict[KeyPath, int]) -> KeyPath:
+    """The place of the table that a header opens; ``tables`` counts on."""
+    place: KeyPath = ()
+    while data:
+        ((key, data),) = data.items()
+        place = (*place, key)
+        if isinstance(data, list):
+            tables[place] = tables.get(place, 0) + 1
+            data = data[0]
+        if place in tables:
+            place = (*place, tables[place] - 1)
+    return place
 
-    def pair(self, table: KeyPath) -> None:
-        start = self.position
-        place = table + self.key()
-        for length in range(len(table) + 1, len(place) + 1):
-            self.note(place[:length], start)
-        self.take(_EQUALS)
-        self.value(place)
 
-    def value(self, place: KeyPath) -> None:
-        end = _ENDS.get(self.text[self.position])
-        if end is None:
-            self.take(_PLAIN)
-            return
-        self.position += 1
-        self.take(_BLANK)
-        index = 0
-        while self.text[self.position] != end:
-            if end == "}":
-                self.pair(place)
-            else:
-                self.note((*place, index), self.position)
-                self.value((*place, index))
-            index += 1
-            self.take(_COMMA)
-        self.position += 1
+def _item_lines(statement: list[str]) -> list[int]:
+    """For each item of a list over several lines, how many lines below its key it stands."""
+    found: list[int] = []
+    last = len(statement) - 1
+    for offset, line in enumerate(statement if last else ()):
+        start, end = "_ = [" if offset else "", "" if offset == last else "\n]"
+        data: Any = _read(start + line + end)
+        while isinstance(data, dict) and data:
+            (data,) = data.values()
+        if not isinstance(data, list):
+            break
+        found += [offset] * len(data)
+    return found
 
-    def key(self) -> KeyPath:
-        parts: list[str] = []
-        dot = "."
-        while dot:
-            found = self.take(_KEY)
-            parts.append(found["bare"] or tomllib.loads(f"key = {found['quoted']}")["key"])
-            dot = found["dot"]
-        return tuple(parts)
 
-    def with_index(self, place: KeyPath) -> KeyPath:
-        return (*place, self.tables[place] - 1) if place in self.tables else place
-
-    def note(self, place: KeyPath, position: int) -> None:
-        self.lines.setdefault(place, bisect_left(self.ends, position) + 1)
-
-    def take(self, pattern: re.Pattern[str]) -> re.Match[str]:
-        match = pattern.match(self.text, self.position)
-        if match is None:
-            raise ValueError("the scan does not understand the text")
-        self.position = match.end()
-        return match
+def _places(
+    value: Any, place: KeyPath, item_lines: Sequence[int], offset: int = 0
+) -> Iterator[tuple[KeyPath, int]]:
+    """The places of all that is in a value, each with the lines that lie between it and the key."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield (*place, key), offset
+            yield from _places(item, (*place, key), item_lines, offset)
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            below = item_lines[index] if index < len(item_lines) else offset
+            yield (*place, index), below
+            yield from _places(item, (*place, index), (), below)

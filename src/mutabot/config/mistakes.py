@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any, ParamSpec, TypeVar
 
@@ -23,37 +23,12 @@ T = TypeVar("T")
 #: more than these are not listed one by one
 MOST_REPORTED = 10
 
-#: what it is called here, and what people call it
-_OTHER_NAMES: Mapping[str, Mapping[str, str]] = {
-    "unit": {
-        "m": "meter, meters, metre, metres",
-        "mm": "millimeter, millimeters, millimetre, millimetres",
-        "cm": "centimeter, centimeters, centimetre, centimetres",
-        "deg": "degree, degrees, °",
-        "rad": "radian, radians",
-        "s": "sec, second, seconds",
-        "ms": "msec, millisecond, milliseconds",
-        "percent": "%, per cent",
-        "fraction": "ratio, 1",
-    },
-    "kind": {
-        "label": "color, colour, text, string, enum",
-        "flag": "bool, boolean",
-        "opening": "gripper, grip",
-        "angle": "joint, joint angle",
-        "duration": "time, wait",
-        "distance": "range, length",
-    },
-    "mode": {"by": "relative, rel, incremental", "to": "absolute, abs"},
-    "axis": {"x": "roll", "y": "pitch", "z": "yaw"},
-    "key": {
-        "tf": "transform, frame",
-        "topic": "publisher, subscriber",
-        "parameter": "param",
-        "service": "srv",
-    },
+#: what people call things for which vocabularies have other words
+_ALSO_CALLED = {
+    **{"roll": "x", "pitch": "y", "yaw": "z", "relative": "by", "absolute": "to"},
+    **{"meters": "m", "metres": "m", "millimeters": "mm", "degrees": "deg", "seconds": "s"},
+    **{"color": "label", "colour": "label", "joint": "angle", "gripper": "opening", "transform": "tf"},
 }
-
 #: keys of the configuration that there were, and why there are none any more
 _GONE = dict.fromkeys(("order", "pairs"), "a mutant is one fault, no pair of them")
 #: what is expected, by how the kind of pydantic's mistake begins
@@ -74,7 +49,9 @@ _BOUNDS = {
     "less_than": ("lt", "less than"),
     "less_than_equal": ("le", "at most"),
 }
-_SOURCE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?(?: · (?P<key>.*))?")
+
+
+_LENGTHS = {"too_short": ("at least", "min_length"), "too_long": ("at most", "max_length")}
 
 
 @dataclass(frozen=True)
@@ -108,16 +85,11 @@ class DocumentPlace:
 
     def unknown(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Note a name that does not exist."""
-        document, known = self.document, list(known)
-        names = _OTHER_NAMES.get(kind, {}).items()
-        alias = next((one for one, others in names if name.casefold() in others.split(", ")), None)
-        where: dict[str, Any] = {
-            "file": document.file,
-            "key": document.key(self.path),
-            "line": document.line(self.path),
-        }
-        alias = alias if alias in known else None
-        self.errors.append(UnknownNameError(unknown_name_text(kind, name, known, alias), **where))
+        document, meant = self.document, _ALSO_CALLED.get(name.casefold())
+        known = list(known)
+        text = unknown_name_text(kind, name, known, meant if meant in known else None)
+        key = document.key(self.path)
+        self.errors.append(UnknownNameError(text, file=document.file, key=key, line=document.line(self.path)))
 
     def attempt(self, read: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | None:
         """Call ``read``; note the ValueError that it raises as a mistake, and return None."""
@@ -177,19 +149,12 @@ def explained(detail: ErrorDetails) -> str:
     if kind in _BOUNDS:
         bound, words = _BOUNDS[kind]
         return f"must be {words} {detail['ctx'][bound]}, got {shown(value)}"
-    if kind in ("too_short", "too_long"):
-        return _length_text(detail)
+    if kind in _LENGTHS:
+        found, (wanted, bound) = detail["ctx"]["actual_length"], _LENGTHS[kind]
+        return f"needs {wanted} {detail['ctx'][bound]} entries, got {found}" if found else "must not be empty"
     if kind == "value_error":  # our own validators say it all
         return str(detail["ctx"]["error"])
     return f"{shown(value)} does not fit here"
-
-
-def _length_text(detail: ErrorDetails) -> str:
-    context = detail["ctx"]
-    least, most = context.get("min_length"), context.get("max_length")
-    wanted = f"at least {least}" if least is not None else f"at most {most}"
-    found = context["actual_length"]
-    return "must not be empty" if found == 0 else f"needs {wanted} entries, got {found}"
 
 
 def _list_hint(detail: ErrorDetails) -> str:
@@ -236,13 +201,7 @@ def problem_error(problem: Problem) -> ConfigurationError:
     ``problem.text`` is either a sentence or, if it does not mention the name that is wrong, what kind
     of name it is (``argument``).
     """
-    source = _SOURCE.fullmatch(problem.source)
-    file, line, key = source.group("file", "line", "key") if source else (problem.source, None, None)
-    where: dict[str, Any] = {
-        "file": file or None,
-        "key": " · ".join(part for part in (key, problem.key) if part) or None,
-        "line": int(line) if line else None,
-    }
+    where: dict[str, Any] = {"file": problem.source or None, "key": problem.key or None}
     name, text = problem.name, problem.text
     if name is None:
         return ConfigurationError(text, **where)

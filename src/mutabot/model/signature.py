@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Iterator
 from functools import lru_cache
 from inspect import Parameter, Signature
 from typing import Any
@@ -28,20 +27,22 @@ def parse_signature(text: str) -> Signature:
     """
     arguments = _arguments(text)
     positional = [*arguments.posonlyargs, *arguments.args]
+    kinds: list[Any] = [Parameter.POSITIONAL_ONLY for _ in arguments.posonlyargs]
+    kinds += [Parameter.POSITIONAL_OR_KEYWORD for _ in arguments.args]
     defaults = [*[None] * (len(positional) - len(arguments.defaults)), *arguments.defaults]
-    parameters = []
-    for index, (name, default) in enumerate(zip(positional, defaults, strict=True)):
-        is_only = index < len(arguments.posonlyargs)
-        kind = Parameter.POSITIONAL_ONLY if is_only else Parameter.POSITIONAL_OR_KEYWORD
-        if index or name.arg not in ("self", "cls"):
-            parameters.append(_parameter(name, kind, default))
+    found = list(map(_parameter, positional, kinds, defaults))
+    if found and found[0].name in ("self", "cls"):
+        del found[0]
     if arguments.vararg is not None:
-        parameters.append(Parameter(arguments.vararg.arg, Parameter.VAR_POSITIONAL))
+        found.append(Parameter(arguments.vararg.arg, Parameter.VAR_POSITIONAL))
     for name, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
-        parameters.append(_parameter(name, Parameter.KEYWORD_ONLY, default))
+        found.append(_parameter(name, Parameter.KEYWORD_ONLY, default))
     if arguments.kwarg is not None:
-        parameters.append(Parameter(arguments.kwarg.arg, Parameter.VAR_KEYWORD))
-    return Signature(parameters)
+        found.append(Parameter(arguments.kwarg.arg, Parameter.VAR_KEYWORD))
+    try:
+        return Signature(found)
+    except ValueError as error:  # a name twice
+        raise ValueError(f"{text!r} is no signature ({error}); {_FORM}") from None
 
 
 def takes_anything(signature: Signature) -> bool:
@@ -62,10 +63,6 @@ def _arguments(text: str) -> ast.arguments:
     body = tree.body[0]
     if len(tree.body) != 1 or not isinstance(body, ast.FunctionDef) or not isinstance(body.body[0], ast.Pass):
         raise ValueError(f"{text!r} is no signature; {_FORM}")
-    names = [name.arg for name in _names(body.args)]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"{text!r} names {name!r} twice")
     return body.args
 
 
@@ -77,11 +74,6 @@ def _with_rest(text: str) -> str:
     if not bracket or not dots or end.strip(" ,") or not before.endswith(("(", ",")):
         return text
     return f"{before} {'' if '*' in before else '*args, '}{'' if '**' in before else '**kwargs'}){after}"
-
-
-def _names(arguments: ast.arguments) -> Iterator[ast.arg]:
-    yield from (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
-    yield from (one for one in (arguments.vararg, arguments.kwarg) if one is not None)
 
 
 def _parameter(name: ast.arg, kind: Any, default: ast.expr | None) -> Parameter:

@@ -168,22 +168,23 @@ def _allowed(quantity: Quantity, value: Value) -> bool:
 
 def the_other_way(quantity: Quantity, value: Value) -> Value | None:
     """The inverse rotation, written like the value; the value itself where that is the same orientation."""
-    return _changed(quantity, value, inverse, TURNED_ROUND)
+    return turned(quantity, value, inverse, TURNED_ROUND)
 
 
 def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
     """The orientation turned by a random rotation vector of this standard deviation in each part."""
     sigma = convert(deviation, quantity.unit or "rad", "rad")
     turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
-    return _changed(quantity, value, lambda orientation: product(turn, orientation))
+    return turned(quantity, value, lambda orientation: product(turn, orientation))
 
 
-def _changed(
+def turned(
     quantity: Quantity,
     value: Value,
     change: Callable[[Quaternion], Quaternion],
     least: float = SAME_ORIENTATION,
 ) -> Value | None:
+    """Another orientation, written like the value; the value itself where they are less than that apart."""
     before = quantity.orientation(value)
     if before is None:
         return None

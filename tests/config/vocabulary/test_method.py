@@ -47,7 +47,7 @@ def test_a_method_is_an_operation_of_a_kind_of_its_own(tmp_path: Path) -> None:
         ('method = "move_by"\ncall = "robot:move_by"', "known by one thing: either call or method"),
         ('method = "robot:move_by"', "is not the name of a method"),
         ("method = 3", "expected text, got the number 3"),
-        ('method = "stop"\noverrides = true', "a method has no overrides, only call has"),
+        ('method = "stop"\noverrides = true', "a method has no overrides; it has"),
         ('method = "stop"\nopposite = "start"', "unknown operation"),
         (
             'method = "go"\narguments.x = { kind = "translation", axis = "x", unit = "m", mode = "to" }',

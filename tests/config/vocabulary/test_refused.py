@@ -68,7 +68,7 @@ def test_each_case_of_a_call_has_refusals_of_its_own(tmp_path: Path) -> None:
         (f'{CALL}refused = {{ topic = "note", values = [1] }}', [":3", "'/note'"]),
         ('action = "/a"\nrefused = ["ABORTD"]', [":3", "'ABORTD'", "'ABORTED'"]),
         ('topic = "/a"\ndirection = "publish"\nrefused = { values = [5] }', [":4", "no answer", "topic ="]),
-        ('topic = "/a"\ndirection = "receive"\nrefused = { values = [5] }', [":4", "sends nothing"]),
+        ('topic = "/a"\ndirection = "receive"\nrefused = { values = [5] }', [":4", "has no refused"]),
     ],
 )
 def test_a_wrong_refusal_is_told_with_place_and_remedy(text: str, words: list[str], tmp_path: Path) -> None:

@@ -28,8 +28,6 @@ from .schema import (
     read_idle,
 )
 
-#: keys with quantities
-_TABLES = {key for one in (CALLABLE, *SIDES.values()) for key in (one.written, one.read) if key}
 #: forms that make the robot do something, unless the vocabulary says otherwise
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
 #: keys of callables, and of those forms alone that write a message
@@ -78,19 +76,7 @@ def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Se
     what = f'a topic with direction = "{table.direction}"' if key == "topic" else f"a {key}"
     what = {"action": "an action", "tf": "a transform"}.get(key, what)
     for other in sorted(table.model_fields_set - allowed):
-        text = f"{what} has no {other}"
-        if other in _TABLES and fitting:
-            text += f"; its quantities stand in {' and '.join(sorted(fitting))}"
-        elif other == "opposite" and writes:
-            text += (
-                ": another name cannot be the opposite; give a text command its opposite in patterns, "
-                "or describe a field with two values"
-            )
-        elif other in _OF_COMMANDS:
-            text += ", since it sends nothing"
-        elif other in _ONLY:
-            text += f", only {_ONLY[other]} has"
-        (place / other).error(text)
+        (place / other).error(f"{what} has no {other}; it has {', '.join(sorted(allowed))}")
 
 
 def _read_callable(place: DocumentPlace, table: OperationTable) -> Operation:

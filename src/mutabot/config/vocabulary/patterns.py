@@ -97,9 +97,12 @@ def _arguments(
     inline = {key: value for key, value in raw.items() if key in QuantityTable.model_fields}
     arguments: dict[str, Any] = raw.get("arguments") or {}
     fields = {field.name: field for field in notation.fields}
+    if inline and len(fields) == 1 and not arguments:
+        return _read_field(place, inline, notation.fields[0])
     if inline:
-        field = _only_field(place, notation, has_more=bool(arguments))
-        return _read_field(place, inline, field) if field is not None else ()
+        names = " and ".join(f"{{{name}}}" for name in fields) or "no field"
+        place.error(f"{notation.text!r} has {names}: describe each, arguments.NAME = {{ kind = … }}")
+        return ()
     free = [name for name in fields if name not in arguments]
     quantities: list[Quantity] = []
     beside: dict[str, Any] = {}
@@ -112,26 +115,6 @@ def _arguments(
         else:
             beside[name] = item
     return (*quantities, *read_quantities(place / "arguments", beside, sides, is_written=True))
-
-
-def _only_field(place: DocumentPlace, notation: Notation, *, has_more: bool) -> Field | None:
-    """The one field that keys of a quantity beside the text describe; None if that is a mistake."""
-    fields = notation.fields
-    if has_more:
-        place.error("describe the fields either here or under arguments, not both")
-    elif not fields:
-        place.error(
-            f"{notation.text!r} has no field that this quantity could describe; "
-            "for an argument beside the text write arguments.NAME = { … }"
-        )
-    elif len(fields) > 1:
-        names = " and ".join(f"{{{field.name}}}" for field in fields)
-        (place / "text").error(
-            f"has the fields {names}: describe each, as arguments = {{ {fields[0].name} = {{ kind = … }} }}"
-        )
-    else:
-        return fields[0]
-    return None
 
 
 def _read_field(place: DocumentPlace, raw: Any, field: Field) -> tuple[Quantity, ...]:

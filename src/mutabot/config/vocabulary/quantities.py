@@ -172,7 +172,7 @@ def _path_of(text: str, sides: Sides, is_written: bool) -> Path:
 
 
 def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:
-    steps, unit = _steps_of(table)
+    ladder = table.ladder
     facts = {key: getattr(table, key) for key in _ALIKE}
     for key in ("range", "clip"):
         limits = getattr(table, key)
@@ -184,8 +184,8 @@ def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | No
         axis=axis,
         unit=_unit(table),
         values=(False, True) if values is None and table.kind is Kind.FLAG else values,
-        ladder=tuple(map(float, steps)) if steps is not None else None,
-        ladder_unit=unit,
+        ladder=tuple(ladder.steps) if ladder is not None else None,
+        ladder_unit=ladder.unit if ladder is not None else None,
         **facts,
     )
 
@@ -204,21 +204,6 @@ _LACKING: Sequence[tuple[Sequence[str], frozenset[Kind], str]] = (
     (("order",), frozenset(Kind) - {Kind.QUATERNION, Kind.EULER}, ""),
     (("noise",), frozenset(Kind) - (MEASURED & READ), "; only a measured reading has"),
 )
-#: how a kind that stands on the wrong side would be written there
-_AS_ARGUMENT = {
-    Kind.POSITION: '; a commanded position is kind = "translation" with mode = "to"',
-    Kind.ORIENTATION: '; a commanded orientation is kind = "rotation" with mode = "to"',
-    Kind.ANGLE: '; a commanded joint angle is kind = "rotation" with mode = "to" and the joint as axis',
-    Kind.LABEL: '; a commanded choice is kind = "output" with its values',
-    Kind.FLAG: '; a commanded switch is kind = "output" with values = [false, true]',
-}
-_AS_RESULT = {
-    Kind.TRANSLATION: '; where the robot is, is kind = "position"',
-    Kind.ROTATION: '; how the robot is turned, is kind = "orientation" (or "angle" for a joint)',
-    Kind.OPENING: '; how far the gripper is open, is kind = "distance", and whether it is, "flag"',
-    Kind.OUTPUT: '; a state that is read back is kind = "flag" or "label"',
-}
-
 #: a rule: the key, whether it is broken, and what is said then
 Rule = tuple[str, object, str]
 
@@ -258,7 +243,6 @@ def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]
     text = f"{_a(kind)} is sent to the robot, so it belongs to {written}, not to {read}"
     if is_written:
         text = f"{_a(kind)} is read from the robot, so it belongs to {read}, not to {written}"
-    text += (_AS_ARGUMENT if is_written else _AS_RESULT).get(kind, "")
     known = "settings are known from what is set up; no vocabulary describes them"
     is_wrong = kind not in (WRITTEN if is_written else READ)
     return [("kind", kind is Kind.SETTING, known), ("kind", is_wrong, text)]
@@ -266,12 +250,12 @@ def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]
 
 def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
     """Names that do not exist: the key, the name, and those that do."""
-    units, (_, of_ladder) = _units(table), _steps_of(table)
+    units, of_ladder = _units(table), table.ladder.unit if table.ladder is not None else None
     if table.unit is not None and units and table.unit not in UNITS:
         yield "unit", table.unit, units
     if table.axis is not None and table.kind in _WITH_AXIS and _split_axes(table.axis) is None:
         yield "axis", table.axis, AXES if nearest_name(table.axis, AXES) else _AXES_IN_SHORT
-    if isinstance(of_ladder, str) and of_ladder not in UNITS:
+    if of_ladder is not None and of_ladder not in UNITS:
         yield "ladder", of_ladder, _units_of_ladder(table)
 
 
@@ -347,10 +331,7 @@ def _of_reading(table: QuantityTable, is_written: bool) -> list[Rule]:
     never = f"{_a(table.kind)} that is sent is never missing; only a reading is"
     ways = f'write "none", "nan" or an exception (module:Name), not {shown(missing)}'
     is_odd = missing is not None and missing not in ("none", "nan") and not is_target(missing)
-    rules: list[Rule] = [("missing", missing is not None and is_written, never), ("missing", is_odd, ways)]
-    positive = f"must be more than 0 (a standard deviation), got {table.noise}"
-    rules.append(("noise", table.noise is not None and table.noise <= 0, positive))
-    return rules
+    return [("missing", missing is not None and is_written, never), ("missing", is_odd, ways)]
 
 
 def _unit(table: QuantityTable) -> str | None:
@@ -362,33 +343,21 @@ def _unit(table: QuantityTable) -> str | None:
     return "s" if table.kind is Kind.STAMP else table.unit
 
 
-def _steps_of(table: QuantityTable) -> tuple[list[float] | None, str | None]:
-    """The magnitudes of its ladder and their unit, if it has one of its own."""
-    ladder = table.ladder
-    return (ladder.get("steps"), ladder.get("unit")) if isinstance(ladder, dict) else (ladder, None)
-
-
 def _of_ladder(table: QuantityTable) -> list[Rule]:
     if table.ladder is None:
         return []
-    a, (steps, unit), units = _a(table.kind), _steps_of(table), _units_of_ladder(table)
-    is_table = isinstance(table.ladder, dict)
-    is_odd_table = is_table and (table.ladder.keys() != {"steps", "unit"} or not isinstance(unit, str))
-    form = f'write {{ steps = [1, 2, 5], unit = "mm" }}, not {_written(table.ladder)}'
-    if is_odd_table:
-        return [("ladder", True, form)]
-    is_list = isinstance(steps, list) and len(steps) > 1 and all(map(_is_number, steps))
-    if not is_list or steps is None:
-        text = f"takes at least two magnitudes, such as [1, 2, 5], not {_written(steps)}"
-        return [("ladder", True, text)]
+    a, steps, unit, units = _a(table.kind), table.ladder.steps, table.ladder.unit, _units_of_ladder(table)
     falls = any(later <= earlier for earlier, later in pairwise(steps))
     no_scale = f"{a} has no magnitudes; only what is a number on a scale has"
     positive = f"magnitudes are more than 0, not {min(steps):g}; both directions are tried"
     other = f"{unit!r} measures no fault of {a}; use {_listed(units)}"
+    rises = (
+        f"must rise from the smallest to the greatest magnitude, got {', '.join(map('{:g}'.format, steps))}"
+    )
     return [
         ("ladder", table.kind not in MEASURED and table.range is None, no_scale),
         ("ladder", min(steps) <= 0, positive),
-        ("ladder", falls, f"must rise from the smallest to the greatest magnitude, got {_written(steps)}"),
+        ("ladder", falls, rises),
         ("ladder", unit in UNITS and unit not in units, other),
     ]
 
@@ -407,11 +376,6 @@ def _units_of_ladder(table: QuantityTable) -> tuple[str, ...]:
     elif table.kind in WHOLE:
         own = frozenset({Dimension.ANGLE})
     return tuple(name for name in UNITS if dimension_of(name) in (*own, Dimension.TIME, Dimension.RATIO))
-
-
-def _written(value: Any) -> str:
-    """A value as it stands in the file, where that is short."""
-    return str(value) if len(str(value)) < 60 else shown(value)
 
 
 def _fits(kind: Kind, value: Any) -> bool:

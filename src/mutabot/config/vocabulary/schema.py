@@ -8,7 +8,6 @@ its goal, feedback, result and cancelling.
 
 from __future__ import annotations
 
-import builtins
 import keyword
 import re
 from collections.abc import Mapping
@@ -16,7 +15,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.config.table import Table
@@ -92,22 +91,11 @@ def check_target(text: str) -> str:
     module, colon, name = text.partition(":")
     odd = next((part for part in (*module.split("."), *name.split(".")) if not is_name(part)), None)
     if text.strip() and not colon:
-        raise ValueError(f"{text!r} has no colon between module and name; write {_with_colon(text)!r}")
+        raise ValueError(f"{text!r} has no colon between module and name; write module:qualified.name")
     if odd is not None:
         what = f"{odd!r} is not a Python name" if odd else "a name is missing"
         raise ValueError(f"{text!r}: {what}; expected module:qualified.name")
     return text
-
-
-def _with_colon(text: str) -> str:
-    if isinstance(getattr(builtins, text, None), type):
-        return f"builtins:{text}"
-    parts = text.split(".")
-    if len(parts) == 1:
-        return f"module:{text}"
-    # robot.Arm.move: by convention a module's name is lower case and a class's is not
-    first = next((index for index, part in enumerate(parts) if index and part[:1].isupper()), len(parts) - 1)
-    return f"{'.'.join(parts[:first])}:{'.'.join(parts[first:])}"
 
 
 def _check_method(name: str | None) -> str | None:
@@ -156,6 +144,11 @@ def _type(text: str) -> str:
     return f"{found[1]}/{found[2]}"
 
 
+def _ladder(raw: Any) -> Any:
+    """The steps alone are a ladder as well."""
+    return {"steps": raw} if isinstance(raw, list) else raw
+
+
 def _check_argument(text: str) -> str:
     path = Path.parse(text, rooted=True)
     if text == "self":
@@ -178,6 +171,13 @@ TimeUnit = Literal["s", "ms", "us", "min"]
 Scalar = Annotated[Any, AfterValidator(_check_scalar)]
 
 
+class LadderTable(Table):
+    """``ladder = { steps = [1, 2, 5], unit = "mm" }``; without a unit, that of the quantity."""
+
+    steps: Annotated[list[float], Field(min_length=2)]
+    unit: str | None = None
+
+
 class QuantityTable(Table):
     """``{ kind = "translation", axis = "x", unit = "m", … }``"""
 
@@ -189,10 +189,10 @@ class QuantityTable(Table):
     values: list[Any] | None = None
     range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     clip: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    noise: float | None = None
+    noise: Annotated[float | None, Field(gt=0)] = None
     order: str | None = None
     relative: bool = False
-    ladder: Any = None
+    ladder: Annotated[LadderTable | None, BeforeValidator(_ladder)] = None
     missing: str | None = None
     tcp: float | None = None
 

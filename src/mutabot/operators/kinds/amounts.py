@@ -18,16 +18,13 @@ _TAKEN = "taken"
 #: the number is worked out in the other unit, and nobody converts it
 _GIVEN = "given"
 
-_METRES = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 2.0))
-_MOVE_TO = Operation("robot:Arm.move_to", (_METRES,))
-_MOVE_BY = Operation(
-    "robot:Arm.move_by", (Quantity("x", Path("x"), Kind.TRANSLATION, "x", "m", "base", Mode.BY),)
+_BASE = {"frame": "base", "mode": Mode.TO}
+_MOVE_TO = writing("robot:Arm.move_to", "z", Kind.TRANSLATION, axis="z", unit="m", range=(0.0, 2.0), **_BASE)
+_MOVE_BY = writing("robot:Arm.move_by", "x", Kind.TRANSLATION, axis="x", unit="m", mode=Mode.BY)
+_MOVE_IN_MM = writing(
+    "robot:Arm.move_to", "x", Kind.TRANSLATION, axis="x", unit="mm", range=(0.0, 800.0), **_BASE
 )
-_MILLIMETRES = Quantity("x", Path("x"), Kind.TRANSLATION, "x", "mm", "base", Mode.TO, range=(0.0, 800.0))
-_MOVE_IN_MM = Operation("robot:Arm.move_to", (_MILLIMETRES,))
-_TURN = Operation(
-    "robot:Arm.turn_by", (Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.BY),)
-)
+_TURN = writing("robot:Arm.turn_by", "yaw", Kind.ROTATION, axis="z", unit="deg", mode=Mode.BY)
 _J1 = Quantity("[0]", Path.parse("[0]", rooted=False), Kind.ANGLE, "j1", "rad")
 _JOINTS = Operation("robot:Arm.joints", result=(_J1,), command=False)
 _IN_CM, _IN_MM = (reading("laser:distance", Kind.DISTANCE, unit=unit) for unit in ("cm", "mm"))

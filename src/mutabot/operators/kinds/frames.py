@@ -26,6 +26,7 @@ from mutabot.operators.value import (
     label,
     like,
     map_numbers,
+    turned,
 )
 
 _BASE, _TOOL = "base", "tool"
@@ -156,12 +157,7 @@ def _negative(number: float) -> float:
 def _mirrored(quantity: Quantity, value: Value) -> Value | None:
     if not quantity.is_whole:
         return map_numbers(value, _negative)
-    orientation = quantity.orientation(value)
-    if orientation is None or not all(is_number(part) for part in value):
-        raise Unchanged("its value is no orientation")
-    w, x, y, z = orientation
-    parts = iter(quantity.numbers((w, -x, y, -z)))
-    return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
+    return turned(quantity, value, lambda one: (one[0], -one[1], one[2], -one[3]))
 
 
 class BaseForTool(ValuesOperator):

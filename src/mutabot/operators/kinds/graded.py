@@ -13,14 +13,14 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.families import GRADED
-from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, Reply
+from mutabot.model import Call, Kind, Mode, Operation, Proceed, Quantity, Reply
 from mutabot.model.quantity import Value
 from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
 from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, whole, writing
 from mutabot.operators.magnitudes import Magnitudes, ladder_in, own_ladder, per_second
 from mutabot.operators.operator import Context, Need, Subject, quantity_of
-from mutabot.operators.value import ValueOperator, is_number, label
+from mutabot.operators.value import ValueOperator, is_number, label, turned
 
 #: components of a slice without an end that are tried: those of an arm with seven joints
 _JOINTS = 7
@@ -113,13 +113,9 @@ def _in_component(context: Context, value: Value, change: Callable[[float], floa
 
 
 def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float], float]) -> Value | None:
-    orientation = quantity.orientation(value)
-    if orientation is None:
-        return None
-    angle = change(0.0)
-    radians = convert_difference(angle, quantity.unit or "rad", "rad")
+    radians = convert_difference(change(0.0), quantity.unit or "rad", "rad")
     turn = from_rotation_vector([radians if one == axis else 0.0 for one in "xyz"])
-    return quantity.numbers(product(turn, orientation))
+    return turned(quantity, value, lambda orientation: product(turn, orientation))
 
 
 def _like(quantity: Quantity, before: Value, after: float) -> float:
@@ -129,10 +125,9 @@ def _like(quantity: Quantity, before: Value, after: float) -> float:
 
 #: angles that say where something is: a share of them means nothing, as their zero is anywhere
 _ANY_ZERO = frozenset({Kind.ORIENTATION, Kind.ANGLE, Kind.TEMPERATURE})
-_Z = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
 _MOVE = writing("robot:Arm.move_by", "dy", Kind.TRANSLATION, axis="y", unit="m", frame="base", mode=Mode.BY)
 _GO = replace(MOVE_TO, arguments=MOVE_TO.arguments[:1])
-_LIFT = Operation("robot:Arm.lift_to", (_Z,))
+_LIFT = writing("robot:Arm.lift_to", "z", Kind.TRANSLATION, axis="z", unit="m", mode=Mode.TO, range=(0, 0.5))
 _ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="deg")
 _MEANT = Subject(LOCATE)
 _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")

@@ -198,7 +198,17 @@ class ShortQueue(_Setting):
         return 1
 
 
-class FlipLatch(_Setting):
+class _OtherOfTwo(_Setting):
+    """Sets the other of two values."""
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        values = context.quantity.values or ()
+        if value not in values:
+            raise Unchanged(f"{value} is neither {' nor '.join(map(str, values))}")
+        return values[1 - values.index(value)]
+
+
+class FlipLatch(_OtherOfTwo):
     """A publisher that keeps its last message for subscribers who come later does not, or one that does not
     does.
     """
@@ -210,21 +220,6 @@ class FlipLatch(_Setting):
         changed(ADVERTISE, False, True, quantity="latch"),
         unchanged(ADVERTISE, {"name": "target"}, "its middleware latches nothing", quantity="latch"),
     )
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        if not isinstance(value, bool):
-            raise Unchanged(f"{value} is neither true nor false")
-        return not value
-
-
-class _OtherOfTwo(_Setting):
-    """Sets the other of two values."""
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        values = context.quantity.values or ()
-        if value not in values:
-            raise Unchanged(f"{value} is neither {' nor '.join(map(str, values))}")
-        return values[1 - values.index(value)]
 
 
 class WrongReliability(_OtherOfTwo):
