@@ -436,7 +436,7 @@ def test_the_short_option_asks_for_help_too(command: list[str], capsys: pytest.C
 
 
 @pytest.mark.needs("source")
-def test_the_shell_completes_commands_and_names(project: Path) -> None:
+def test_the_shell_completes_commands(project: Path) -> None:
     def completed(words: str) -> list[str]:
         variables = {"_MUTABOT_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": "2"}
         count = str(len(words.split()) - (not words.endswith(" ")))
@@ -447,9 +447,6 @@ def test_the_shell_completes_commands_and_names(project: Path) -> None:
         return done.stdout.split()
 
     assert completed("mutabot re") == ["replay", "results", "report"]
-    assert completed("mutabot report --format s") == ["sarif"]
-    assert completed("mutabot run --engine ") == ["auto", "fork", "replay"]
-    assert completed("mutabot run --family co") == ["conventional"]
 
 
 def test_help_is_quick() -> None:

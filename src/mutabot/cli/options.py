@@ -26,12 +26,6 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-def _families() -> list[str]:
-    from mutabot.faults import known_families  # noqa: PLC0415  # so that `--help` is fast
-
-    return list(known_families())
-
-
 def _number(value: float | None) -> float | None:
     if value is not None and math.isnan(value):
         raise typer.BadParameter("nan is no number")
@@ -62,9 +56,7 @@ _ENGINE = f"How mutants are run: {', '.join(ENGINES)}."
 Only = Annotated[list[str] | None, Option("--only", metavar="WHICH", help=_ONLY)]
 Skip = Annotated[list[str] | None, Option("--skip", metavar="WHICH", help=_SKIP)]
 Settings = Annotated[list[str] | None, Option("-o", metavar="KEY=VALUE", help=_SETTING)]
-Families = Annotated[
-    list[str] | None, Option("--family", metavar="NAME", help=_FAMILY, autocompletion=_families)
-]
+Families = Annotated[list[str] | None, Option("--family", metavar="NAME", help=_FAMILY)]
 Sample = Annotated[str | None, Option("--sample", metavar="SIZE", help=_SAMPLE)]
 Rounds = Annotated[
     int | None, Option("--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Rounds, each with new seeds.")
@@ -75,9 +67,7 @@ Seed = Annotated[
 Jobs = Annotated[
     int | None, Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs.")
 ]
-Engine = Annotated[
-    str, Option("--engine", metavar="ENGINE", help=_ENGINE, autocompletion=lambda: list(ENGINES))
-]
+Engine = Annotated[str, Option("--engine", metavar="ENGINE", help=_ENGINE)]
 OneMutant = Annotated[str, typer.Argument(metavar="MUTANT", help="Number, id, or a unique part of the id.")]
 Shard = Annotated[
     str | None, Option("--shard", metavar="N/M", help="Run only part N of M; see `mutabot merge`.")

@@ -35,7 +35,6 @@ _Formats = Annotated[
         "--format",
         metavar="NAME",
         help=f"One of {', '.join(names())}. Repeatable, each with an --output.",
-        autocompletion=names,
     ),
 ]
 _Outputs = Annotated[

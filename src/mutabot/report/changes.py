@@ -11,10 +11,8 @@ from collections.abc import Iterator
 
 from mutabot.results.results import MutantResult, Results
 
-from .sections import Place, Section, percent
+from .sections import MUTANT_COLUMNS, Place, Section, mutant_cells, percent
 from .texts import rounds_text
-
-_COLUMNS = (">no.", "place", "operator", "*fault", "*result")
 
 
 def changes(old: Results, new: Results, place: Place) -> Iterator[Section]:
@@ -33,16 +31,10 @@ def changes(old: Results, new: Results, place: Place) -> Iterator[Section]:
     }
     for name, those in found.items():
         rows = [
-            (
-                str(one.number),
-                place(one.site.span),
-                one.operator,
-                one.description,
-                f"{_end(after.get(one.id))}; before: {_end(before.get(one.id))}",
-            )
+            (*mutant_cells(one, place), f"{_end(after.get(one.id))}; before: {_end(before.get(one.id))}")
             for one in (result.mutant for result in those)
         ]
-        yield Section(f"{name}: {len(rows)}", _COLUMNS if rows else (), rows)
+        yield Section(f"{name}: {len(rows)}", (*MUTANT_COLUMNS, "*result") if rows else (), rows)
     yield Section(f"Survivors as before: {len(survives & survived)}")
 
 

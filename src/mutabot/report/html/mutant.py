@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
-from math import inf, isnan
+from itertools import accumulate, groupby, pairwise
+from math import inf
 from typing import Any
 
 from mutabot.evidence.recording import Recording, Told, Track, TrackKind
+from mutabot.evidence.tracks import TrackPath
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of
 from mutabot.report.texts import mapped
@@ -30,9 +31,12 @@ Row = tuple[float, ...]
 
 def thinned(track: Track, times: Sequence[float]) -> Any:
     """A track as data: times in ms and numbers in steps, each as the difference from the one before."""
-    rows, when, gaps = _rows(track, times)
-    if not rows:
+    path = TrackPath(track, times)
+    when = path.when
+    if not when:
         return None
+    rows = list(accumulate(path.rows, _turned_like)) if track.kind is TrackKind.POSE else path.rows
+    gaps = _gaps(times, when)
     scales, misses = _scales(track.kind, rows)
     steps = [tuple(value / scale for value, scale in zip(row, scales, strict=True)) for row in rows]
     kept = kept_points(when, steps, misses)
@@ -74,26 +78,12 @@ def _slopes(times: Sequence[float], rows: Sequence[Row], first: int, last: int) 
     return [(one - other) / span for one, other in zip(rows[last], rows[first], strict=True)], span
 
 
-def _rows(track: Track, times: Sequence[float]) -> tuple[list[Row], list[float], list[list[int]]]:
-    """The moments at which it was there, and from when to when (ms) it was not."""
-    width, values = track.kind.width, track.values
-    rows: list[Row] = []
-    when: list[float] = []
-    gaps: list[list[int]] = []
-    gone: float | None = None
-    for number, time in enumerate(times):
-        row = tuple(values[number * width : (number + 1) * width])
-        if isnan(row[0]):
-            gone = time if gone is None else gone
-            continue
-        if gone is not None:
-            gaps.append([round(1000 * gone), round(1000 * time)])
-            gone = None
-        rows.append(_turned_like(rows[-1], row) if rows and track.kind is TrackKind.POSE else row)
-        when.append(time)
-    if gone is not None:
-        gaps.append([round(1000 * gone), round(1000 * times[-1]) + 1])
-    return rows, when, gaps
+def _gaps(times: Sequence[float], when: Sequence[float]) -> list[list[int]]:
+    """From when to when (ms) something was not there."""
+    there, ends = {*when}, [*times[1:], times[-1] + 1e-3]
+    runs = groupby(zip(times, ends, strict=True), key=lambda moment: moment[0] in there)
+    absent = [list(run) for is_there, run in runs if not is_there]
+    return [[round(1000 * run[0][0]), round(1000 * run[-1][1])] for run in absent]
 
 
 def _turned_like(before: Row, row: Row) -> Row:

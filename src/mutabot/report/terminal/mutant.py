@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -14,15 +13,14 @@ from mutabot.journal.records import Replayed
 from mutabot.model import Diverged, Looked, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import end_in_words
 from mutabot.report.sections import Section, between, plural
-from mutabot.report.texts import effect_text, numbers_text, telling
+from mutabot.report.texts import effect_text, telling
+from mutabot.results.divergence import numbers_text
 from mutabot.results.results import MutantResult
 from mutabot.results.suggested import Suggestions
 
 from .campaign import letters
 from .console import below, heading, make_table, mark_of, plain, print_section
-from .suggested import print_suggestions, suggested_sections
-
-__all__ = ["excerpt", "print_mutant", "print_replayed", "print_suggestions"]
+from .suggested import suggested_sections
 
 #: checks of a test that are shown, and lines of a message on the one screen; the journal and JSON have more
 _CHECKS, _LINES = 15, 8
@@ -190,27 +188,13 @@ def _summary(looked: Looked) -> str:
 
 
 def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
-    """Return the lines of a span and ``around`` lines before and after it, with a caret underline.
-
-    Columns of the span count UTF-8 bytes; the underline counts the cells that a terminal shows.
-    """
+    """Return the lines of a span, marked with ``>``, and ``around`` lines before and after it."""
     lines = source.splitlines()
     if not 1 <= span.line <= len(lines):
         return []
     first, last = max(1, span.line - around), min(len(lines), span.end_line + around)
-    width = len(str(last))
-    shown = []
-    for number in range(first, last + 1):
-        line = lines[number - 1]
-        shown.append(f"{number:>{width}} │ {line.expandtabs(_TAB)}".rstrip())
-        if span.line <= number <= span.end_line:
-            shown.append(f"{'':>{width}} │ {_underline(line, number, span)}")
-    return shown
-
-
-def _underline(line: str, number: int, span: Span) -> str:
-    raw = line.encode()
-    start = span.column if number == span.line else len(raw) - len(raw.lstrip())
-    end = span.end_column if number == span.end_line else len(raw)
-    before, marked = (cell_len(raw[:at].decode(errors="ignore").expandtabs(_TAB)) for at in (start, end))
-    return " " * before + "^" * max(1, marked - before)
+    return [
+        f"{'>' if span.line <= number <= span.end_line else ' '} {number:>{len(str(last))}} │ "
+        f"{lines[number - 1].expandtabs(_TAB)}".rstrip()
+        for number in range(first, last + 1)
+    ]

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from mutabot.report.sections import Section, plural
-from mutabot.report.texts import numbers_text
+from mutabot.results.divergence import numbers_text
 from mutabot.results.results import MutantResult
 from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
 
