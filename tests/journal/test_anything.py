@@ -142,7 +142,7 @@ def read_all(path: Path) -> None:
 
 def written_as(name: str) -> Callable[[Path], None]:
     def write(path: Path) -> None:
-        format_of(name)(Material(portable(open_campaign(path)), "", None))
+        format_of(name)(Material(portable(open_campaign(path))))
 
     return write
 

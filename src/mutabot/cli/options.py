@@ -49,7 +49,6 @@ _SAMPLE = "Only a random sample: 10% of each family and role, or 50 of each fami
 _SINCE = "Run only what changes since this git revision can have altered; reuse the other results."
 _JOURNAL = "Also reuse valid outcomes from this journal, e.g. one downloaded from CI."
 _BUDGET = "Stop after this much time (90s, 10m), baseline included; run the most informative mutants first."
-_COMPARE = "Compare with this journal (or with the journal in this project folder)."
 _VERIFY = "Re-run N random outcomes in fresh processes; exit with 4 if one ends differently."
 _MIN_SCORE = "Exit with 1 if a score is below this percentage."
 _ENGINE = f"How mutants are run: {', '.join(ENGINES)}."
@@ -75,7 +74,6 @@ Shard = Annotated[
 Fresh = Annotated[bool, Option("--fresh", help="Re-run everything, including results that are still valid.")]
 Since = Annotated[str | None, Option("--since", metavar="REF", help=_SINCE)]
 OtherJournal = Annotated[Path | None, Option("--journal", metavar="PATH", help=_JOURNAL)]
-Compared = Annotated[Path | None, Option("--compare", metavar="OLD", help=_COMPARE)]
 Budget = Annotated[str | None, Option("--budget", metavar="TIME", help=_BUDGET)]
 Verify = Annotated[int, Option("--verify", metavar="N", min=0, max=limits.VERIFIED, help=_VERIFY)]
 Round = Annotated[

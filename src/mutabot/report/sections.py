@@ -254,9 +254,9 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
         yield Section(text, is_alarm=any(one.changed for _, one in kinds))
 
 
-def section_lines(section: Section, at_most: int, *, level: int = 3) -> Iterator[str]:
+def section_lines(section: Section, at_most: int) -> Iterator[str]:
     """Yield the Markdown of a section, of many rows the first."""
-    yield from (f"{'#' * level} {escaped(section.title)}", "")
+    yield from (f"### {escaped(section.title)}", "")
     if section.columns:
         yield _row(name.lstrip(">*") for name in section.columns)
         yield _row("---:" if name.startswith(">") else "---" for name in section.columns)
