@@ -235,6 +235,29 @@ def test_a_wrong_setting_is_2_and_names_the_option(
     assert fake.request is None
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("run --selection few.txt", "--selection is gone; use --only @FILE"),
+        ("run --table", "`mutabot results`"),
+        ("run --serve", "`mutabot live`"),
+        ("list --when once", "use -o when=MOMENT"),
+        ("run --order 2", "--order is gone; a mutant is one fault"),
+        ("thresholds --steps", "`mutabot thresholds --json`"),
+        ("report --compare old", "`mutabot.open`"),
+        ("replay 1 --video a.mp4", "--video is gone; use `mutabot motion MUTANT`"),
+        ("compare", "the command compare is gone; `make comparison`"),
+    ],
+)
+def test_what_went_away_says_what_to_use_instead(
+    fake: Campaign, words: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words.split()) == 2
+    err = capsys.readouterr().err
+    assert told in err
+    assert len(err.splitlines()) == 1
+
+
 def test_an_option_that_there_is_not_is_no_part_of_a_request(project: Path) -> None:
     with pytest.raises(TypeError, match="there is no option rouns"):
         request_of(project, rouns=3)  # type: ignore[call-arg]

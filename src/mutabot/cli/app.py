@@ -44,6 +44,32 @@ _OWN = {
     "thresholds": ("results:thresholds", "Show how large a fault the tests miss."),
     "report": ("results:report", "Write pages, or formats of other tools."),
 }
+#: options and a command of earlier versions, and what serves instead
+_GONE = {
+    "--selection": "use --only @FILE",
+    "--when": "use -o when=MOMENT",
+    "--baseline": "use -o baseline_repetitions=N",
+    "--table": "`mutabot results` prints the table",
+    "--serve": "`mutabot live` runs a campaign with its page",
+    "--confirm": "use --verify N",
+    "--repeats": "kills that may be a coincidence are re-run anyway",
+    "--no-repeats": "use -o repeats=false",
+    "--one-per-site": "use --sample",
+    "--sites-only": "--since runs what a change can have altered",
+    "--whole-ladders": "every magnitude is run only where the search needs it",
+    "--mixed": "workers run with the same versions as this machine",
+    "--view": "`mutabot motion MUTANT --rerun` shows what was recorded",
+    "--write": "apply the diff that `mutabot suggest` prints",
+    **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
+    "--suggest-demands": "write a demand with a magnitude that `mutabot thresholds` shows",
+    "--compare": "`mutabot.open` reads both campaigns in Python",
+    **dict.fromkeys(("--steps", "--sort", "--picture"), "`mutabot thresholds --json` has every magnitude"),
+    **dict.fromkeys(("--video", "--rerun", "--rrd", "--mcap"), "use `mutabot motion MUTANT`"),
+    **dict.fromkeys(
+        ("--tls-ca", "--tls-cert", "--tls-key"), "use -o cluster.ca=FILE, cluster.cert or cluster.key"
+    ),
+    "compare": "`make comparison` in a clone of mutabot compares families of mutants",
+}
 #: settings of every command, mutabot's own and those of packages
 SETTINGS: dict[str, Any] = {
     "context_settings": {"help_option_names": ["-h", "--help"]},
@@ -183,20 +209,23 @@ def _code_of(arguments: Sequence[str]) -> int:
 
 
 def _usage_error(error: Any) -> int:
-    package = _package_of(error)
-    if package is not None:
-        typer.echo(f"mutabot: {package}", err=True)
+    instead = _instead(error)
+    if instead is not None:
+        typer.echo(f"mutabot: {instead}", err=True)
     else:
         error.message = shortened(str(getattr(error, "message", "")), _LONGEST)
         error.show()
     return ExitCode.USAGE
 
 
-def _package_of(error: Any) -> str | None:
-    """Say which package brings an unknown option or command, if one does."""
+def _instead(error: Any) -> str | None:
+    """Say what replaces an option or a command that is gone, or which package brings one."""
     option: str = getattr(error, "option_name", None) or ""
     found = re.match(r"No such command '([^']*)'", getattr(error, "message", ""))
     command = found[1] if found is not None else ""
+    for name, what in ((option, option), (command, f"the command {command}")):
+        if name in _GONE:
+            return f"{what} is gone; {_GONE[name]}"
     missing = not_installed(option.removeprefix("--"), "executors") or not_installed(command, "commands")
     return None if missing is None else f"{option or f'the command {command}'} {missing}"
 

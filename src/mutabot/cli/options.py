@@ -37,7 +37,7 @@ Version = Annotated[
 ]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
 All = Annotated[bool, Option("--all", help="Also list every skipped mutant.")]
-EveryRound = Annotated[bool, Option("--all", help="Show every round, test and check.")]
+EveryRound = Annotated[bool, Option("--all", help="Show every round.")]
 _ONLY = (
     "Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; globs "
     "too; @FILE for a list, one per line. Repeatable."

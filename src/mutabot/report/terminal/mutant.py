@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.journal.records import Replayed
-from mutabot.model import Diverged, Looked, Mutant, Outcome, Quantity, Span
+from mutabot.model import Diverged, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import end_in_words
 from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import effect_text, telling
@@ -22,8 +22,8 @@ from .campaign import letters
 from .console import below, heading, make_table, mark_of, plain, print_section
 from .suggested import suggested_sections
 
-#: checks of a test that are shown, and lines of a message on the one screen; the journal and JSON have more
-_CHECKS, _LINES = 15, 8
+#: lines of a message on the one screen; the journal and JSON have more
+_LINES = 8
 _TAB = 4
 
 
@@ -40,7 +40,7 @@ def print_mutant(
     Args:
         source: the text of its file, or None if it is not known.
         suggestions: checks that were suggested for its campaign; None if none were looked for.
-        everything: print every round, and what the checks of each test saw.
+        everything: print every round.
     """
     mutant = result.mutant
     console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
@@ -49,12 +49,11 @@ def print_mutant(
     if lines:
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
-    found = [_rounds(result, everything=everything), *_happened(result)]
-    found += [*(_looked(result) if everything else ()), *suggested_sections(result, suggestions)]
-    for section in found:
+    rounds = _rounds(result, everything=everything)
+    for section in (rounds, *_happened(result), *suggested_sections(result, suggestions)):
         print_section(console, section)
     if not everything:
-        console.print(Text("\nUse --all for every round, test and check.", style="dim"))
+        console.print(Text("\nUse --all for every round.", style="dim"))
 
 
 def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed]) -> None:
@@ -157,34 +156,6 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
         at = f" at {diverged.at:.1f} s{clock}" if diverged.at is not None else ""
         fault = f" The fault acts at {diverged.fault:.1f} s." if diverged.fault is not None else ""
         yield f"First difference{at}: {diverged.what}.{fault}"
-
-
-def _looked(result: MutantResult) -> Iterator[Section]:
-    """The checks that ran with a survivor, and by how much each held."""
-    found = next((one for one in result.outcomes if one.looked), None)
-    for looked in found.looked if found is not None and result.is_survivor else ():
-        rows = [
-            (
-                one.place.rpartition("/")[2],
-                one.text + (f" ({one.times} times)" if one.times > 1 else ""),
-                f"{one.spare:.3g}" if one.spare is not None else "–",
-                one.seen or "–",
-            )
-            for one in looked.checks[:_CHECKS]
-        ]
-        columns = ("place", "*check", ">to spare", "*with") if rows else ()
-        yield Section(f"Checks that ran: {_summary(looked)}", columns, rows)
-
-
-def _summary(looked: Looked) -> str:
-    if not looked.acted:
-        return f"{looked.test}: the mutant changed nothing in it"
-    count = len(looked.checks) + looked.more
-    if not count:
-        return f"{looked.test}: no check was seen; assertions that pytest does not rewrite are not"
-    spares = [one.spare for one in looked.checks if one.spare is not None]
-    nearest = f", the nearest by {min(spares):.3g}" if spares else ""
-    return f"{looked.test}: {plural(count, 'check')} held{nearest}"
 
 
 def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
