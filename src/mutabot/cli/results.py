@@ -51,12 +51,12 @@ _Prefix = Annotated[
 ]
 
 
-def results(context: typer.Context, all: options.All = False, json: options.Json = False) -> None:
+def results(context: typer.Context, json: options.Json = False) -> None:
     """List the mutants and scores of the last campaign.
 
     Also of a campaign that was interrupted or still runs.
     """
-    show_results(find_journal(context.obj), json=json, everything=all, earlier=True)
+    show_results(find_journal(context.obj), json=json, earlier=True)
 
 
 def show(

@@ -62,16 +62,16 @@ def _noticed_by(ladder: Ladder) -> str:
 
 def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
     """What needs a look, by its heading."""
-    found: dict[str, list[str]] = {
-        "Out of order: a larger fault was missed": [],
-        "Rounds that do not count": [],
+    known = [(f"{one.place} {one.name}", one) for one in thresholds.ladders]
+    return {
+        "Out of order: a larger fault was missed": [
+            f"{name}: {text}" for name, one in known for text in violations_in_words(one)
+        ],
+        "Rounds that do not count": [
+            f"{name}: {text}" for name, one in known for text in rounds_left_out(one)
+        ],
+        "Not judged": [f"{one.place} {one.name}: {one.why_unjudged}" for one in thresholds.unjudged],
     }
-    for one in thresholds.ladders:
-        name = f"{one.place} {one.name}"
-        found["Out of order: a larger fault was missed"] += (f"{name}: {x}" for x in violations_in_words(one))
-        found["Rounds that do not count"] += (f"{name}: {x}" for x in rounds_left_out(one))
-    unjudged = [f"{one.place} {one.name}: {one.why_unjudged}" for one in thresholds.unjudged]
-    return found | {"Not judged": unjudged}
 
 
 def _confidence(thresholds: Thresholds) -> str:

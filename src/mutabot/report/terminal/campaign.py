@@ -12,7 +12,7 @@ from mutabot.model import Outcome
 from mutabot.report.sections import Section, plural, sections, size_text
 from mutabot.results.results import Results
 
-from .console import below, legend, make_table, mark_of, marks_in, plain, print_section, short_place
+from .console import legend, make_table, mark_of, marks_in, plain, print_section, short_place
 
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12
@@ -24,16 +24,14 @@ _NEXT = (
 )
 
 
-def print_results(console: Console, results: Results, *, everything: bool = False) -> None:
-    """Print all mutants and all sections; ``everything`` also lists each mutant that the plan left out."""
+def print_results(console: Console, results: Results) -> None:
+    """Print all mutants and all sections."""
     console.print(Text(title(results), style="bold"))
     console.print(Text(_circumstances(results), style="dim"))
     for part in (*_earlier(results), *_mutants(results)):
         console.print(part)
     for section in sections(results, short_place):
         print_section(console, section)
-    for item in results.left_out if everything else ():
-        console.print(below(f"{item.id}  {item.description}: {item.reason}"))
 
 
 def print_summary(console: Console, results: Results) -> None:
