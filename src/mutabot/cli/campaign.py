@@ -26,10 +26,9 @@ from mutabot.errors import ExitCode, NothingToDoError, UsageError
 from mutabot.journal.files import HOME, JOURNAL, find_journal
 from mutabot.journal.journal import JournalReader
 from mutabot.report.document import replayed as replayed_data
+from mutabot.report.terminal.campaign import plan_data, print_plan, print_rules
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.listing import plan_data, print_plan, print_rules
-from mutabot.report.terminal.mutant import print_replayed
-from mutabot.report.terminal.suggested import print_suggestions
+from mutabot.report.terminal.mutant import print_replayed, print_suggestions
 from mutabot.results.gate import Decision, decide
 from mutabot.results.results import MutantResult, Results, find_mutant, read_results, results_at
 from mutabot.results.suggested import keep_suggestions

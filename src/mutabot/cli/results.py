@@ -16,10 +16,10 @@ from mutabot.errors import JournalError, UsageError
 from mutabot.journal.files import find_journal
 from mutabot.report.format import Format, Material, format_of, names
 from mutabot.report.html.folder import Contents, check_folder, write_folder
+from mutabot.report.terminal.campaign import print_thresholds
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
-from mutabot.report.thresholds import print_thresholds
 from mutabot.results.results import Results, find_mutant, results_at
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import kept_suggestions

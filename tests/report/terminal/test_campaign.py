@@ -15,9 +15,8 @@ from rich.console import Console
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Span, Verdict
-from mutabot.report.terminal.campaign import print_results, print_summary
+from mutabot.report.terminal.campaign import print_plan, print_results, print_summary
 from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
-from mutabot.report.terminal.listing import print_plan
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.results.results import Results, find_mutant, read_results
 from results import samples

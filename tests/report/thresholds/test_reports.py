@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.report.document import data_of, dumps
+from mutabot.report.terminal.campaign import bar, print_thresholds
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds import bar, print_thresholds
 from mutabot.results.thresholds import Thresholds, thresholds_of
 from results import samples
 from results.thresholds import journals

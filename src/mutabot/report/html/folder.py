@@ -15,7 +15,7 @@ from mutabot.journal.files import REPORT_MARK
 from mutabot.model import By
 from mutabot.report.document import data_of, finite
 from mutabot.report.terminal.console import mark_of
-from mutabot.report.terminal.suggested import check_on_page
+from mutabot.report.terminal.mutant import check_on_page
 from mutabot.report.texts import effect_text, status_of
 from mutabot.results.results import MutantResult, Results, killers, unlooked
 from mutabot.results.stored import StoredEvidence
