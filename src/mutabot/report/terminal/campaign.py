@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from datetime import datetime
 from itertools import groupby
 from typing import Any
@@ -117,17 +116,19 @@ def print_plan(
     console: Console, mutants: Sequence[Mutant], left_out: Sequence[LeftOut], *, everything: bool = False
 ) -> None:
     """Print every planned mutant, a ladder in one line; ``everything`` adds ids and all that was left out."""
-    ladders = len({mutant.ladder for mutant in mutants} - {""})
-    of_them = f" ({plural(ladders, 'ladder')} in one line each)" if ladders and not everything else ""
+    ladders = Counter(mutant.ladder for mutant in mutants if mutant.ladder)
+    firsts = {mutant.ladder or mutant.id: mutant for mutant in reversed(mutants)}
+    of_them = f" ({plural(len(ladders), 'ladder')} in one line each)" if ladders and not everything else ""
     rows = [
         (
             str(mutant.number),
             mutant.site.role.value,
             short_place(mutant.site.span),
             mutant.operator,
-            f"{mutant.description}\n{mutant.id}" if everything else mutant.description,
+            mutant.description + (f"\n{mutant.id}" if everything else _others(ladders[mutant.ladder] - 1)),
         )
-        for mutant in (mutants if everything else _ladders_in_one(mutants))
+        for mutant in mutants
+        if everything or mutant is firsts[mutant.ladder or mutant.id]
     ]
     columns = (">no.", "role", "place", "operator", "*fault")
     print_section(console, Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows))
@@ -137,19 +138,8 @@ def print_plan(
         console.print(below(f"{item.id}  {item.description}: {item.reason}"))
 
 
-def _ladders_in_one(mutants: Sequence[Mutant]) -> list[Mutant]:
-    """The mutants, with the first of each ladder for all of its magnitudes."""
-    ladders: dict[str, list[Mutant]] = {}
-    for mutant in mutants:
-        ladders.setdefault(mutant.ladder or mutant.id, []).append(mutant)
-    return [steps[0] if len(steps) == 1 else _ladder(steps) for steps in ladders.values()]
-
-
-def _ladder(steps: Sequence[Mutant]) -> Mutant:
-    first = steps[0]
-    before, _, behind = first.description.rpartition(f"{first.magnitude:g}")
-    sizes = ", ".join(f"{one.magnitude:g}" for one in steps)
-    return replace(first, description=f"{before}{sizes}{behind}")
+def _others(count: int) -> str:
+    return f", and {count} other magnitudes" if count > 0 else ""
 
 
 def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut]) -> dict[str, Any]:
