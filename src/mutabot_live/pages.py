@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.errors import JournalError
-from mutabot.report.html.folder import campaign_data, script
-from mutabot.report.html.mutant import Recorded, mutant_page
+from mutabot.report.html.folder import Recorded, campaign_data, mutant_page, script
 from mutabot.report.texts import Cleaner, portable
 from mutabot.results.results import MutantResult, Results, results_at
 from mutabot.results.stored import StoredEvidence

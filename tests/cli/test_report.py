@@ -68,7 +68,6 @@ def test_pages_go_to_a_folder_that_is_named_and_may_be_written_again(
     [
         ("--html .", "the folder holds other files, such as .mutabot"),
         ("--html .mutabot/journal.sqlite", "it is a file; --html takes a folder"),
-        ("--html pages --compare old.sqlite", "--html cannot hold a comparison"),
         ("", "say which --format to write: csv, github"),
         ("--format sarf", "unknown format 'sarf'; did you mean 'sarif'?"),
         ("--format sarif --format junit", "2 formats and 0 files"),
@@ -79,23 +78,16 @@ def test_pages_go_to_a_folder_that_is_named_and_may_be_written_again(
         ("--format sarif -o .mutabot", "it is a folder"),
         ("--format csv --prefix /abs", "must be a folder inside the repository"),
         ("--format csv --prefix ../up", "must be a folder inside the repository"),
-        ("--compare nowhere.sqlite", "there is no journal yet"),
-        ("--compare .", "is the campaign itself"),
-        (
-            "--compare old.sqlite --format markdown -o a --format sarif -o b",
-            "cannot hold a comparison; markdown can",
-        ),
     ],
 )
 def test_what_cannot_be_done_is_2_and_says_what_can(
     words: str, told: str, project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    samples.write_journal(project / "old.sqlite")
     assert main(["report", *words.split()]) == 2
     out, err = capsys.readouterr()
     assert told in err
     assert out == ""
-    written = [file for file in project.iterdir() if not file.name.startswith((".mutabot", "old.sqlite"))]
+    written = [file for file in project.iterdir() if not file.name.startswith(".mutabot")]
     assert written == []
 
 
@@ -120,20 +112,6 @@ def test_the_folder_in_the_repository_stands_before_files(
 ) -> None:
     assert main(["report", "--format", "github", "--prefix", "./cells/one/"]) == 0
     assert "file=cells/one/mission.py,line=2" in capsys.readouterr().out
-
-
-def test_a_comparison_is_text_or_a_part_of_markdown(
-    project: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    samples.write_journal(project / "old" / JOURNAL, outcomes=samples.OUTCOMES[:2])
-    assert main(["report", "--compare", "old"]) == 0
-    assert "New survivors: 3" in capsys.readouterr().out
-    assert main(["report", "--compare", str(Path("old", JOURNAL))]) == 0
-    assert "Fixed survivors: 0" in capsys.readouterr().out
-    assert main(["report", "--compare", "old", "--format", "markdown"]) == 0
-    out = capsys.readouterr().out
-    assert out.startswith("## Mutation testing")
-    assert "### Since the older campaign" in out
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "utf-8"])

@@ -135,14 +135,14 @@ def read_all(path: Path) -> None:
     decide(found, min_score=0.5, max_errors=0.5)
     thresholds_of(found)
     console = make_console()
-    print_results(console, found, everything=True)
+    print_results(console, found)
     for one in found.everything:
         print_mutant(console, find_mutant(found, one.mutant.id), samples.PROGRAM)
 
 
 def written_as(name: str) -> Callable[[Path], None]:
     def write(path: Path) -> None:
-        format_of(name)(Material(portable(open_campaign(path)), "", None))
+        format_of(name)(Material(portable(open_campaign(path))))
 
     return write
 

@@ -20,7 +20,7 @@ NAMES = {*operators.names(), *operators_of_packages(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
     "opposite": {"init", "config/vocabulary"},
-    "noise": {"config/vocabulary", "report/thresholds"},
+    "noise": {"config/vocabulary"},
     "skip": {"cli"},
     "reverse": {"campaign/baseline/writes.py"},  # a method of lists
     "drop": {"init"},

@@ -10,8 +10,7 @@ from typing import Any
 
 from mutabot.model import Verdict
 from mutabot.report.document import document
-from mutabot.report.html.folder import campaign_data
-from mutabot.report.html.mutant import mutant_page
+from mutabot.report.html.folder import campaign_data, mutant_page
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant

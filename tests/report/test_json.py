@@ -19,7 +19,7 @@ from mutabot.journal.journal import Journal
 from mutabot.model import Diverged, Outcome, Verdict
 from mutabot.model.outcome import Apart
 from mutabot.report.document import document, dumps
-from mutabot.report.terminal.listing import plan_data
+from mutabot.report.terminal.campaign import plan_data
 from mutabot.results.results import Results, read_results
 from results import samples
 

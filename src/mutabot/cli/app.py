@@ -62,9 +62,8 @@ _GONE = {
     "--write": "apply the diff that `mutabot suggest` prints",
     **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
     "--suggest-demands": "write a demand with a magnitude that `mutabot thresholds` shows",
-    **dict.fromkeys(
-        ("--steps", "--sort", "--picture", "--compare"), "`mutabot thresholds --json` has every magnitude"
-    ),
+    "--compare": "`mutabot.open` reads both campaigns in Python",
+    **dict.fromkeys(("--steps", "--sort", "--picture"), "`mutabot thresholds --json` has every magnitude"),
     **dict.fromkeys(("--video", "--rerun", "--rrd", "--mcap"), "use `mutabot motion MUTANT`"),
     **dict.fromkeys(
         ("--tls-ca", "--tls-cert", "--tls-key"), "use -o cluster.ca=FILE, cluster.cert or cluster.key"

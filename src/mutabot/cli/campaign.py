@@ -26,8 +26,8 @@ from mutabot.errors import ExitCode, NothingToDoError, UsageError
 from mutabot.journal.files import HOME, JOURNAL, find_journal
 from mutabot.journal.journal import JournalReader
 from mutabot.report.document import replayed as replayed_data
+from mutabot.report.terminal.campaign import plan_data, print_plan, print_rules
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.listing import plan_data, print_plan, print_rules
 from mutabot.report.terminal.mutant import print_replayed, print_suggestions
 from mutabot.results.gate import Decision, decide
 from mutabot.results.results import MutantResult, Results, find_mutant, read_results, results_at

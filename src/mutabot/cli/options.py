@@ -26,12 +26,6 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-def _families() -> list[str]:
-    from mutabot.faults import known_families  # noqa: PLC0415  # so that `--help` is fast
-
-    return list(known_families())
-
-
 def _number(value: float | None) -> float | None:
     if value is not None and math.isnan(value):
         raise typer.BadParameter("nan is no number")
@@ -43,7 +37,7 @@ Version = Annotated[
 ]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
 All = Annotated[bool, Option("--all", help="Also list every skipped mutant.")]
-EveryRound = Annotated[bool, Option("--all", help="Show every round, test and check.")]
+EveryRound = Annotated[bool, Option("--all", help="Show every round.")]
 _ONLY = (
     "Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; globs "
     "too; @FILE for a list, one per line. Repeatable."
@@ -55,16 +49,13 @@ _SAMPLE = "Only a random sample: 10% of each family and role, or 50 of each fami
 _SINCE = "Run only what changes since this git revision can have altered; reuse the other results."
 _JOURNAL = "Also reuse valid outcomes from this journal, e.g. one downloaded from CI."
 _BUDGET = "Stop after this much time (90s, 10m), baseline included; run the most informative mutants first."
-_COMPARE = "Compare with this journal (or with the journal in this project folder)."
 _VERIFY = "Re-run N random outcomes in fresh processes; exit with 4 if one ends differently."
 _MIN_SCORE = "Exit with 1 if a score is below this percentage."
 _ENGINE = f"How mutants are run: {', '.join(ENGINES)}."
 Only = Annotated[list[str] | None, Option("--only", metavar="WHICH", help=_ONLY)]
 Skip = Annotated[list[str] | None, Option("--skip", metavar="WHICH", help=_SKIP)]
 Settings = Annotated[list[str] | None, Option("-o", metavar="KEY=VALUE", help=_SETTING)]
-Families = Annotated[
-    list[str] | None, Option("--family", metavar="NAME", help=_FAMILY, autocompletion=_families)
-]
+Families = Annotated[list[str] | None, Option("--family", metavar="NAME", help=_FAMILY)]
 Sample = Annotated[str | None, Option("--sample", metavar="SIZE", help=_SAMPLE)]
 Rounds = Annotated[
     int | None, Option("--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Rounds, each with new seeds.")
@@ -75,9 +66,7 @@ Seed = Annotated[
 Jobs = Annotated[
     int | None, Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs.")
 ]
-Engine = Annotated[
-    str, Option("--engine", metavar="ENGINE", help=_ENGINE, autocompletion=lambda: list(ENGINES))
-]
+Engine = Annotated[str, Option("--engine", metavar="ENGINE", help=_ENGINE)]
 OneMutant = Annotated[str, typer.Argument(metavar="MUTANT", help="Number, id, or a unique part of the id.")]
 Shard = Annotated[
     str | None, Option("--shard", metavar="N/M", help="Run only part N of M; see `mutabot merge`.")
@@ -85,7 +74,6 @@ Shard = Annotated[
 Fresh = Annotated[bool, Option("--fresh", help="Re-run everything, including results that are still valid.")]
 Since = Annotated[str | None, Option("--since", metavar="REF", help=_SINCE)]
 OtherJournal = Annotated[Path | None, Option("--journal", metavar="PATH", help=_JOURNAL)]
-Compared = Annotated[Path | None, Option("--compare", metavar="OLD", help=_COMPARE)]
 Budget = Annotated[str | None, Option("--budget", metavar="TIME", help=_BUDGET)]
 Verify = Annotated[int | None, Option("--verify", metavar="N", min=0, max=limits.VERIFIED, help=_VERIFY)]
 Round = Annotated[

@@ -47,13 +47,10 @@ def progress_shown() -> Bar | Lines:
     return make_progress(make_console(stderr=True))
 
 
-def show_results(
-    path: Path, *, json: bool, everything: bool = False, earlier: bool = False, summary: bool = False
-) -> Results:
+def show_results(path: Path, *, json: bool, earlier: bool = False, summary: bool = False) -> Results:
     """Print what the journal at ``path`` holds, and return it.
 
     Args:
-        everything: also list each mutant that the plan left out.
         earlier: also show what earlier campaigns found.
         summary: leave out the table of mutants.
     """
@@ -63,5 +60,5 @@ def show_results(
     elif summary:
         print_summary(make_console(), found)
     else:
-        print_results(make_console(), found, everything=everything)
+        print_results(make_console(), found)
     return found

@@ -54,6 +54,7 @@ def request_of(
     configuration = load_configuration(project, families, given.get("settings") or ())
     root, families = configuration.root, families or configuration.families
     selection = configuration.selection if configured_selection else None
+    moments = map(Moment.parse_any, configuration.when)
     chosen = None
     if executor is not None:
         kind = brought("executors")[executor[0]].load_class(ExecutorChoice)  # type: ignore[type-abstract]
@@ -76,7 +77,7 @@ def request_of(
         families=families,
         sample=size,
         every_test=every_test,
-        moments=_moments(configuration.when),
+        moments=tuple({one and one.text: one for one in moments}.values()),
         shard=Shard.parse(shard) if shard is not None else None,
         evidence=evidence and configuration.evidence > 0,
         since=given.get("since"),
@@ -101,15 +102,6 @@ def families_of(given: Sequence[str] | None) -> tuple[str, ...]:
     """The families of the command line, in the order of their numbers. Raises UsageError."""
     named = (name.strip() for text in given or () for name in text.split(","))
     return asked_for(name for name in named if name)
-
-
-def _moments(texts: Sequence[str]) -> tuple[Moment | None, ...]:
-    """At which calls mutants act; the texts were checked with the configuration."""
-    found: dict[str, Moment | None] = {}
-    for text in texts:
-        moment = Moment.parse_any(text)
-        found.setdefault(moment.text if moment is not None else "", moment)
-    return tuple(found.values())
 
 
 def _listed(words: Sequence[str] | None, root: Path) -> tuple[str, ...]:

@@ -13,16 +13,15 @@ import typer
 from mutabot.cli import options
 from mutabot.cli.output import print_bytes, print_json, show_results, tell
 from mutabot.errors import JournalError, UsageError
-from mutabot.journal.files import find_journal, previous_of
-from mutabot.report.changes import changes
+from mutabot.journal.files import find_journal
 from mutabot.report.format import Format, Material, format_of, names
 from mutabot.report.html.folder import Contents, check_folder, write_folder
-from mutabot.report.terminal.console import make_console, print_section, short_place
+from mutabot.report.terminal.campaign import print_thresholds
+from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
-from mutabot.report.thresholds import print_thresholds
 from mutabot.results.results import Results, find_mutant, results_at
-from mutabot.results.stored import StoredEvidence, journal_at
+from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import kept_suggestions
 from mutabot.results.thresholds import thresholds_of
 
@@ -35,7 +34,6 @@ _Formats = Annotated[
         "--format",
         metavar="NAME",
         help=f"One of {', '.join(names())}. Repeatable, each with an --output.",
-        autocompletion=names,
     ),
 ]
 _Outputs = Annotated[
@@ -53,12 +51,12 @@ _Prefix = Annotated[
 ]
 
 
-def results(context: typer.Context, all: options.All = False, json: options.Json = False) -> None:
+def results(context: typer.Context, json: options.Json = False) -> None:
     """List the mutants and scores of the last campaign.
 
     Also of a campaign that was interrupted or still runs.
     """
-    show_results(find_journal(context.obj), json=json, everything=all, earlier=True)
+    show_results(find_journal(context.obj), json=json, earlier=True)
 
 
 def show(
@@ -97,35 +95,20 @@ def report(
     format: _Formats = None,
     output: _Outputs = None,
     html: _Html = None,
-    compare: options.Compared = None,
     prefix: _Prefix = "",
 ) -> None:
-    """Write the last campaign as HTML pages or in formats of other tools.
-
-    With --compare alone, print what became of survivors since an older campaign.
-    """
+    """Write the last campaign as HTML pages or in formats of other tools."""
     wanted = list(_wanted(format or (), output or ()))
-    if not wanted and compare is None and html is None:
-        raise UsageError(
-            f"say which --format to write: {', '.join(names())}; or --html with a folder; or --compare"
-        )
+    if not wanted and html is None:
+        raise UsageError(f"say which --format to write: {', '.join(names())}; or --html with a folder")
     if html is not None:
         check_folder(html)
-    unfit = ["--html"] if html is not None else []
-    unfit += [f"the format {name}" for name in format or () if name != "markdown"]
-    if compare is not None and unfit:
-        raise UsageError(f"{unfit[0]} cannot hold a comparison; markdown can")
     journal, folder = find_journal(context.obj), PurePosixPath(prefix)
     if folder.is_absolute() or ".." in folder.parts:
         raise UsageError(f"--prefix {prefix} must be a folder inside the repository, relative to its root")
     stored = results_at(journal)
     campaign = portable(stored)
-    older = portable(results_at(_older(compare, journal))) if compare is not None else None
-    if older is not None and not wanted:
-        console = make_console()
-        for section in changes(older, campaign, short_place):
-            print_section(console, section)
-    material = Material(campaign, "" if folder == PurePosixPath() else str(folder), older)
+    material = Material(campaign, "" if folder == PurePosixPath() else str(folder))
     for make, file in wanted:
         _write(make(material), file)
     if html is not None:
@@ -149,15 +132,6 @@ def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Forma
         if file != _STANDARD and not file.parent.is_dir():
             raise UsageError(f"the report {file} cannot be written: there is no folder {file.parent}")
         yield found, file
-
-
-def _older(path: Path, journal: Path) -> Path:
-    """Return the journal of an older campaign. Raises UsageError if it is this one."""
-    other = journal_at(path)
-    if other.exists() and journal.exists() and other.samefile(journal):
-        before = f"the last complete one before it, if there was any, is in {previous_of(journal).name}"
-        raise UsageError(f"{path} is the campaign itself; {before} beside it")
-    return other
 
 
 def _write(text: str, file: Path) -> None:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import base64
 import json
-import sys
 import zlib
 from array import array
 from collections.abc import Mapping
@@ -136,14 +135,14 @@ _PLAIN_FIELDS = ("blocks", "moments", "calls", "fault", "faulty_call", "is_simul
 
 
 def to_bytes(recording: Recording) -> bytes:
-    """The recording as compressed bytes, to be kept."""
+    """The recording as compressed bytes, to be kept; numbers in this machine's order of bytes."""
     tracks = recording.tracks.values()
     fields = {name: getattr(recording, name) for name in _PLAIN_FIELDS}
     fields["tracks"] = [(one.name, one.kind, one.unit, one.size) for one in tracks]
     fields["count"] = len(recording.times)
     head = json.dumps(fields, default=_plain, separators=(",", ":")).encode()
-    numbers = (recording.times, *(track.values for track in tracks))
-    return zlib.compress(b"".join([len(head).to_bytes(4, "little"), head, *map(_little, numbers)]), 1)
+    numbers = [one.tobytes() for one in (recording.times, *(track.values for track in tracks))]
+    return zlib.compress(b"".join([len(head).to_bytes(4, "little"), head, *numbers]), 1)
 
 
 def from_bytes(data: bytes) -> Recording:
@@ -177,21 +176,11 @@ def bytes_of(text: str) -> bytes:
     return base64.b64decode(text)
 
 
-def _little(numbers: array[float]) -> bytes:
-    if sys.byteorder == "little":
-        return numbers.tobytes()
-    numbers = numbers[:]
-    numbers.byteswap()
-    return numbers.tobytes()
-
-
 def _numbers(kind: str, data: bytes, start: int, count: int) -> tuple[array[float], int]:
     """So many numbers from there on, and where they end."""
     numbers: array[float] = array(kind)
     end = start + count * numbers.itemsize
     numbers.frombytes(data[start:end])
-    if sys.byteorder == "big":
-        numbers.byteswap()
     return numbers, end
 
 

@@ -96,20 +96,19 @@ def _repeats(repeats: records.Repeats) -> dict[str, Any]:
 
 def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
     known = "none_up_to? half_from all_from refused_from median share_shown"
-    data = data_of.facts(
-        ladder,
-        "id place name file=mutant.site.span.file line=mutant.site.span.line "
-        "function=mutant.site.span.function call=mutant.site.text role=mutant.site.role "
-        "quantity=mutant.quantity operator=mutant.operator direction=mutant.direction unit magnitudes=sizes "
-        "why=why_unjudged?",
-    )
-    if ladder.why_unjudged:
-        data |= {"judged": False, "text": None, **dict.fromkeys(known.replace("?", "").split())}
-    else:
-        data |= {"judged": True, "text": line_of(ladder), **data_of.facts(ladder, known)}
-        if ladder.median is not None:
-            data["median"] = data_of.facts(ladder.median, "above=low? at_most=high level")
-    return data | {
+    is_judged = not ladder.why_unjudged
+    found = data_of.facts(ladder, known) if is_judged else dict.fromkeys(known.replace("?", "").split())
+    return {
+        **data_of.facts(
+            ladder,
+            "id place name file=mutant.site.span.file line=mutant.site.span.line "
+            "function=mutant.site.span.function call=mutant.site.text role=mutant.site.role "
+            "quantity=mutant.quantity operator=mutant.operator direction=mutant.direction unit "
+            "magnitudes=sizes why=why_unjudged?",
+        ),
+        "judged": is_judged,
+        "text": line_of(ladder) if is_judged else None,
+        **found,
         "rounds_counted": len(ladder.counted),
         **data_of.facts(ladder, "rounds violations"),
     }
@@ -185,6 +184,7 @@ data_of = Encoder(
         thresholds.Thresholds: _thresholds,
         ladders.Ladder: _ladder,
         ladders.LadderRound: _ladder_round,
+        ladders.Between: "above=low? at_most=high level",
         ladders.Violation: "round=round+1 noticed missed",
         Suggestions: _suggestions,
     }

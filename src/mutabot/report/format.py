@@ -27,12 +27,10 @@ class Material:
     Attributes:
         campaign: the campaign, fit for any report.
         prefix: the project's folder in its repository, with forward slashes; empty if that is its root.
-        older: an older campaign, if the report is to tell what became of its survivors.
     """
 
     campaign: Results
     prefix: str = ""
-    older: Results | None = None
 
     def path(self, file: str) -> str:
         """A file of the project, relative to the repository."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from mutabot.errors import in_short
 from mutabot.frozen import frozen
 from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated
-from mutabot.model import LeftOut, Span, Verdict
+from mutabot.model import LeftOut, Mutant, Span, Verdict
 from mutabot.results.divergence import first_line
 from mutabot.results.results import Results, unlooked
 from mutabot.results.score import Group
@@ -59,6 +60,15 @@ def sections(results: Results, place: Place) -> Iterator[Section]:
         yield skipped(results.left_out)
     yield from _thresholds(results, place)
     yield from _reliability(results)
+
+
+#: columns that say which mutant a row is about
+MUTANT_COLUMNS = (">no.", "place", "operator", "*fault")
+
+
+def mutant_cells(mutant: Mutant, place: Place) -> tuple[str, ...]:
+    """The cells of these columns."""
+    return str(mutant.number), place(mutant.site.span), mutant.operator, mutant.description
 
 
 def _errors(results: Results) -> Iterator[Section]:
@@ -145,16 +155,13 @@ def _survivors(results: Results, place: Place) -> Iterator[Section]:
     order = ", largest deviation from the original first" if len(shown) > 1 else ""
     rows = [
         (
-            str(result.mutant.number),
-            place(result.mutant.site.span),
-            result.mutant.operator,
-            result.mutant.description,
+            *mutant_cells(result.mutant, place),
             effect_text(result),
             f"{result.kill_rate.valid - result.kill_rate.killed} of {result.kill_rate.valid}",
         )
         for result in shown
     ]
-    columns = (">no.", "place", "operator", "*fault", "*effect", ">survived") if rows else ()
+    columns = (*MUTANT_COLUMNS, "*effect", ">survived") if rows else ()
     lines = [f"{plural(len(same), 'survivor')} without a measured effect: {numbered(same)}"] if same else []
     yield Section(f"{plural(len(survivors), 'survivor')}{order}", columns, rows, lines)
 
@@ -164,18 +171,12 @@ def _outside(results: Results, place: Place) -> Iterator[Section]:
     found = [(verdict, results.with_verdict(verdict)) for verdict in OUTSIDE]
     told = ", ".join(f"{len(those)} {verdict}" for verdict, those in found if those)
     rows = [
-        (
-            str(one.mutant.number),
-            place(one.mutant.site.span),
-            one.mutant.operator,
-            one.mutant.description,
-            f"{rounds_text(one)}: {first_line(outcome.message)}",
-        )
+        (*mutant_cells(one.mutant, place), f"{rounds_text(one)}: {first_line(outcome.message)}")
         for _, those in found
         for one, outcome in those
     ]
     if rows:
-        columns = (">no.", "place", "operator", "*fault", "*result")
+        columns = (*MUTANT_COLUMNS, "*result")
         yield Section(f"Not counted in the score: {told}", columns, rows, is_detail=True)
     waiting = sum(not result.outcomes for result in results.mutants)
     if waiting:
@@ -261,9 +262,9 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
         yield Section(text, is_alarm=any(one.changed for _, one in kinds))
 
 
-def section_lines(section: Section, at_most: int, *, level: int = 3) -> Iterator[str]:
+def section_lines(section: Section, at_most: int) -> Iterator[str]:
     """Yield the Markdown of a section, of many rows the first."""
-    yield from (f"{'#' * level} {escaped(section.title)}", "")
+    yield from (f"### {escaped(section.title)}", "")
     if section.columns:
         yield _row(name.lstrip(">*") for name in section.columns)
         yield _row("---:" if name.startswith(">") else "---" for name in section.columns)
@@ -281,10 +282,8 @@ def _row(cells: Iterable[str]) -> str:
 
 def numbered(numbers: Sequence[int]) -> str:
     """Return ``mutants 1, 2 and 9 more``."""
-    different = list(dict.fromkeys(numbers))
-    shown = ", ".join(map(str, different[:_NUMBERS]))
-    more = f" and {len(different) - _NUMBERS} more" if len(different) > _NUMBERS else ""
-    return f"mutant{'s' if len(different) > 1 else ''} {shown}{more}"
+    different = [str(number) for number in dict.fromkeys(numbers)]
+    return f"mutant{'s' if len(different) > 1 else ''} {in_short(different, _NUMBERS)}"
 
 
 def plural(count: int, singular: str, several: str | None = None) -> str:

@@ -7,15 +7,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
-from itertools import groupby
 from typing import Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
-from mutabot.results.divergence import first_line, worst_of
+from mutabot.results.divergence import first_line, numbers_text, worst_of
 from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
@@ -229,14 +228,3 @@ def _end(outcome: Outcome | None) -> str:
     if outcome is None:
         return "not run"
     return f"{outcome.verdict} by {outcome.by}" if outcome.by is not None else outcome.verdict.value
-
-
-def numbers_text(numbers: Iterable[int]) -> str:
-    """Return ``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
-    runs: list[str] = []
-    for _, group in groupby(enumerate(numbers), key=lambda pair: pair[1] - pair[0]):
-        run = [number for _, number in group]
-        runs += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run)
-    *others, last = runs
-    text = f"{', '.join(others)} and {last}" if others else last
-    return f"{'round' if text.isdigit() else 'rounds'} {text}"

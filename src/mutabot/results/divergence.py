@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import groupby
 
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
 from mutabot.model.quantity import told_apart, value_text
@@ -95,3 +96,14 @@ def first_line(text: str | None) -> str:
     """The first line of a message, or words that say there is none."""
     lines = (text or "").strip().splitlines()
     return lines[0] if lines else "no message"
+
+
+def numbers_text(numbers: Iterable[int]) -> str:
+    """Return ``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
+    runs: list[str] = []
+    for _, group in groupby(enumerate(sorted({*numbers})), key=lambda pair: pair[1] - pair[0]):
+        run = [number for _, number in group]
+        runs += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run)
+    *others, last = runs
+    text = f"{', '.join(others)} and {last}" if others else last
+    return f"{'round' if text.isdigit() else 'rounds'} {text}"

@@ -99,10 +99,7 @@ def crossed(table: Sequence[Sequence[float | None]]) -> Interval | None:
     cells = _Cells.of(table)
     if cells is None:
         return None
-    variance, freedom = cells.variance()
-    independent = cells.smoothed * (1 - cells.smoothed) / variance
-    independent *= (_NORMAL / student(freedom)) ** 2
-    return _wilson(cells.score, min(independent, cells.count))
+    return cells.interval(*cells.variance(), most=cells.count)
 
 
 def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interval | None:
@@ -135,9 +132,7 @@ def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interva
     if left == 0.0:
         return Interval(cells.score, cells.score)
     variance = left * cells.variance_of_mutants()
-    independent = cells.smoothed * (1 - cells.smoothed) / variance
-    independent *= (_NORMAL / student(cells.mutants - 1)) ** 2
-    return _wilson(cells.score, min(independent, cells.mutants / left))
+    return cells.interval(variance, cells.mutants - 1, most=cells.mutants / left)
 
 
 @frozen
@@ -186,6 +181,11 @@ class _Cells:
     def smoothed(self) -> float:
         """The score with the imagined mutants."""
         return (self.score * self.mutants + _IMAGINED) / (self.mutants + 2 * _IMAGINED)
+
+    def interval(self, variance: float, freedom: float, *, most: float) -> Interval:
+        """Wilson's, with the number of independent observations that gives this variance, at ``most``."""
+        independent = self.smoothed * (1 - self.smoothed) / variance * (_NORMAL / student(freedom)) ** 2
+        return _wilson(self.score, min(independent, most))
 
     def weight(self, number: int) -> float:
         """What one cell of this round counts in the score."""

@@ -1,19 +1,18 @@
 """Stored campaigns: what a journal holds as one object, with recordings, and as a table.
 
-The table has one row per mutant and round that has been run; docs/reports.md has its columns. Names, types
-and units are stable: columns may be added, at the end.
+The table has one row per mutant and round that has been run; docs/reports.md has its columns. Names and units
+are stable: columns may be added, at the end.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from mutabot.errors import UsageError
 from mutabot.evidence.recording import Recording, from_bytes
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
@@ -22,10 +21,6 @@ from mutabot.model.codec import shallow
 from mutabot.results.results import Encoder, MutantResult, Results, find_mutant, results_at
 from mutabot.results.score import Group
 from mutabot.results.thresholds import Thresholds, thresholds_of
-
-if TYPE_CHECKING:
-    import pandas
-
 
 #: recordings that are held
 _HELD = 32
@@ -63,16 +58,6 @@ class StoredEvidence:
         return from_bytes(data) if data is not None else None
 
 
-#: what a cell may hold; None is a value that is not known or does not apply
-Cell = str | int | float | bool | None
-
-
-#: the types of columns; of those that are not named here it is a text
-_KINDS: Mapping[type, str] = {
-    int: "number round line column hits acted tests commands repeats",
-    float: "wall_s cpu_s simulated_s distance way magnitude",
-    bool: "valid killed indistinguishable confirmed",
-}
 _LINE = (
     "mutant=mutant.id number=mutant.number round=outcome.round+1 family=mutant.family role=mutant.site.role "
     "operator=mutant.operator variant=mutant.variant file=mutant.site.span.file line=mutant.site.span.line "
@@ -87,57 +72,26 @@ _LINE = (
     "magnitude_unit=mutant.unit direction=mutant.direction?"
 )
 #: the columns of the table by their stable names, in the order of files; one with a unit ends in it
-COLUMNS: Mapping[str, type] = {
-    name: next((kind for kind, names in _KINDS.items() if name in names.split()), str)
-    for name in (word.partition("=")[0] for word in _LINE.split())
-}
+COLUMNS = tuple(word.partition("=")[0] for word in _LINE.split())
 _FACTS = Encoder({})
 
 
-def rows(results: Results) -> Iterator[tuple[Cell, ...]]:
-    """The cells of all outcomes, in the order of ``COLUMNS``: by mutant, then by round."""
+def rows(results: Results) -> Iterator[dict[str, Any]]:
+    """The cells of all outcomes by column: by mutant, then by round. None stands for what is not known."""
     for result in results.everything:
         for outcome in result.outcomes:
             example = outcome.example if outcome.example is not None and len(outcome.example) == 2 else ()
-            before, after = example or (None, None)
+            before, after = map(str, example) if example else (None, None)
             row = SimpleNamespace(
                 mutant=result.mutant, quantity=result.quantity, outcome=outcome, before=before, after=after,
                 divergence=next(iter(outcome.divergence), None),
             )  # fmt: skip
             cells = _FACTS.facts(row, _LINE)
-            yield tuple(_cell(COLUMNS[name], found) for name, found in cells.items())
+            yield {name: None if _is_no_number(cell) else cell for name, cell in cells.items()}
 
 
-def frame_of(results: Results) -> pandas.DataFrame:
-    """The table for pandas. Raises UsageError if it is not installed."""
-    try:
-        import pandas  # noqa: PLC0415  # an extra, and slow
-    except ImportError as error:
-        raise missing("pandas", "a data frame") from error
-    cells = list(zip(*rows(results), strict=True)) or [() for _ in COLUMNS]
-    return pandas.DataFrame(
-        {
-            name: pandas.array(list(those), dtype=_DTYPES[kind])
-            for (name, kind), those in zip(COLUMNS.items(), cells, strict=True)
-        }
-    )
-
-
-def missing(library: str, wanted: str) -> UsageError:
-    """What to say where a library of an extra is not installed."""
-    install = "pip install 'path/to/mutabot[notebook]'"
-    return UsageError(f"{wanted} needs {library}, which is not installed: {install}")
-
-
-def _cell(kind: type, found: Any) -> Cell:
-    if found is None or (isinstance(found, float) and not math.isfinite(found)):
-        return None
-    made: Cell = kind(found)
-    return made
-
-
-#: names of pandas's types that can be missing
-_DTYPES = {str: "string", int: "Int64", float: "Float64", bool: "boolean"}
+def _is_no_number(cell: Any) -> bool:
+    return isinstance(cell, float) and not math.isfinite(cell)
 
 
 @frozen
@@ -161,12 +115,9 @@ class StoredCampaign(Results):
         """
         return find_mutant(self, name)
 
-    def frame(self) -> pandas.DataFrame:
-        """One row per outcome; docs/reports.md has the columns. Needs pandas: ``mutabot[notebook]``.
-
-        Raises UsageError if pandas is not installed.
-        """
-        return frame_of(self)
+    def rows(self) -> list[dict[str, Any]]:
+        """One row per outcome, by column; docs/reports.md has them. ``pandas.DataFrame`` takes this."""
+        return list(rows(self))
 
 
 def journal_at(path: Path) -> Path:

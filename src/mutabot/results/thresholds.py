@@ -14,6 +14,7 @@ from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
 from mutabot.model import Outcome, Verdict
 from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
+from mutabot.results.divergence import numbers_text
 from mutabot.results.ladders import Above, Ladder, LadderRound, ladders_of, looseness
 from mutabot.results.results import Results
 
@@ -115,13 +116,8 @@ def violations_in_words(ladder: Ladder) -> Iterator[str]:
     for one in ladder.violations:
         rounds.setdefault((one.noticed, one.missed), []).append(one.round + 1)
     for (noticed, missed), numbers in rounds.items():
-        yield (f"noticed at {_text(ladder, noticed)}, survives {_text(ladder, missed)}, {in_rounds(numbers)}")
-
-
-def in_rounds(numbers: Iterable[int]) -> str:
-    """``round 3`` or ``rounds 1, 2 and 5``; the numbers count from 1."""
-    *rest, last = [str(number) for number in sorted(set(numbers))]
-    return f"rounds {', '.join(rest)} and {last}" if rest else f"round {last}"
+        ends = f"noticed at {_text(ladder, noticed)}, survives {_text(ladder, missed)}"
+        yield f"{ends}, {numbers_text(numbers)}"
 
 
 @dataclass(frozen=True)
@@ -197,7 +193,7 @@ def _why_unmet(demand: Demand, ladder: Ladder) -> str:
     for verdict, words in _UNKNOWN.items():
         rounds = [number for number, found in verdicts.items() if found is verdict]
         if rounds:
-            return f"{size} {words} in {in_rounds(rounds)}{'' if verdict else '; `mutabot run` goes on'}"
+            return f"{size} {words} in {numbers_text(rounds)}{'' if verdict else '; `mutabot run` goes on'}"
     is_noticed = any(one is not None and one.is_killed for one in verdicts.values())
     if is_noticed or {*verdicts.values()} == {Verdict.REFUSED}:
         return ""
@@ -211,12 +207,12 @@ _UNKNOWN = {Verdict.UNSTABLE: "is unstable", Verdict.ERROR: "ended in error", No
 def _survivors_text(ladder: Ladder, survivors: Sequence[tuple[int, float, Outcome]]) -> str:
     unreached = [number for number, _, outcome in survivors if outcome.verdict is Verdict.NOT_COVERED]
     if unreached:
-        return f"no test reaches it in {in_rounds(unreached)}"
+        return f"no test reaches it in {numbers_text(unreached)}"
     rounds: dict[float, list[int]] = {}
     for number, size, _ in survivors:
         rounds.setdefault(size, []).append(number)
     told = [
-        f"{_text(ladder, size)} in {in_rounds(numbers)} (mutant {ladder.number_of(size)})"
+        f"{_text(ladder, size)} in {numbers_text(numbers)} (mutant {ladder.number_of(size)})"
         for size, numbers in rounds.items()
     ]
     return f"survives {', '.join(told)}"

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mutabot.evidence.recording import Track, TrackKind
-from mutabot.report.html.mutant import thinned
+from mutabot.report.html.folder import thinned
 
 _PLACES = st.lists(
     st.tuples(*[st.floats(-2, 2, width=32, allow_subnormal=False)] * 3), min_size=1, max_size=30

@@ -10,8 +10,7 @@ import pytest
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.mutant import print_mutant
-from mutabot.report.terminal.suggested import check_on_page
+from mutabot.report.terminal.mutant import check_on_page, print_mutant
 from mutabot.results.results import MutantResult, find_mutant, read_results
 from mutabot.results.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
 from results import samples

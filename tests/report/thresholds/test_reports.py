@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.report.document import data_of, dumps
+from mutabot.report.terminal.campaign import bar, print_thresholds
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds import bar, print_thresholds
 from mutabot.results.thresholds import Thresholds, thresholds_of
 from results import samples
 from results.thresholds import journals
@@ -77,7 +77,7 @@ def test_what_the_lines_say_of_further_rounds_has_its_level(thresholds: Threshol
 def test_all_that_is_to_be_said_is_said(thresholds: Thresholds) -> None:
     text = " ".join(text_of(thresholds, width=300).split())
     assert "noticed at 5 mm" not in text
-    assert "noticed at 5 deg, survives 10 deg, rounds 1, 2, 3, 4 and 5" in text
+    assert "noticed at 5 deg, survives 10 deg, rounds 1 to 5" in text
     assert "the robot refuses every magnitude that was tried" in text
 
 

@@ -14,5 +14,5 @@ def make(material: Material) -> str:
     file = io.StringIO(newline="")
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(COLUMNS)
-    writer.writerows(rows(material.campaign))
+    writer.writerows(row.values() for row in rows(material.campaign))
     return file.getvalue()

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from mutabot.model import Span
-from mutabot.report.changes import changes
 from mutabot.report.format import Material
 from mutabot.report.sections import section_lines, sections, size_text
 from mutabot.report.texts import escaped
@@ -36,7 +35,3 @@ def _lines(material: Material) -> Iterator[str]:
 
     for section in sections(campaign, place):
         yield from section_lines(section, _ROWS)
-        if section.title == "Scores" and material.older is not None:
-            yield from ("### Since the older campaign", "")
-            for changed in changes(material.older, campaign, place):
-                yield from section_lines(changed, _ROWS, level=4)

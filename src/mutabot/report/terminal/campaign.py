@@ -1,18 +1,27 @@
-"""A campaign on the terminal: the summary of a run, and the whole table of mutants."""
+"""A campaign on the terminal: its plan, the summary of a run, the table of mutants, and thresholds as bars.
+
+Also the operators that there are.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
+from itertools import groupby
+from typing import Any
 
 from rich.console import Console, RenderableType
 from rich.text import Text
 
-from mutabot.model import Outcome
-from mutabot.report.sections import Section, plural, sections, size_text
+from mutabot.model import LeftOut, Mutant, Outcome
+from mutabot.report.document import data_of
+from mutabot.report.sections import Section, plural, sections, size_text, skipped
+from mutabot.results.ladders import Ladder
 from mutabot.results.results import Results
+from mutabot.results.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
 
-from .console import below, legend, make_table, mark_of, marks_in, plain, print_section, short_place
+from .console import below, heading, legend, make_table, mark_of, marks_in, plain, print_section, short_place
 
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12
@@ -24,16 +33,14 @@ _NEXT = (
 )
 
 
-def print_results(console: Console, results: Results, *, everything: bool = False) -> None:
-    """Print all mutants and all sections; ``everything`` also lists each mutant that the plan left out."""
+def print_results(console: Console, results: Results) -> None:
+    """Print all mutants and all sections."""
     console.print(Text(title(results), style="bold"))
     console.print(Text(_circumstances(results), style="dim"))
     for part in (*_earlier(results), *_mutants(results)):
         console.print(part)
     for section in sections(results, short_place):
         print_section(console, section)
-    for item in results.left_out if everything else ():
-        console.print(below(f"{item.id}  {item.description}: {item.reason}"))
 
 
 def print_summary(console: Console, results: Results) -> None:
@@ -103,3 +110,124 @@ def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
     else:
         parts = [Text(mark_of(one).letter, style=mark_of(one).style) for one in rounds]
     return Text(" ").join(parts)
+
+
+def print_plan(
+    console: Console, mutants: Sequence[Mutant], left_out: Sequence[LeftOut], *, everything: bool = False
+) -> None:
+    """Print every planned mutant, a ladder in one line; ``everything`` adds ids and all that was left out."""
+    ladders = Counter(mutant.ladder for mutant in mutants if mutant.ladder)
+    firsts = {mutant.ladder or mutant.id: mutant for mutant in reversed(mutants)}
+    of_them = f" ({plural(len(ladders), 'ladder')} in one line each)" if ladders and not everything else ""
+    rows = [
+        (
+            str(mutant.number),
+            mutant.site.role.value,
+            short_place(mutant.site.span),
+            mutant.operator,
+            mutant.description + (f"\n{mutant.id}" if everything else _others(ladders[mutant.ladder] - 1)),
+        )
+        for mutant in mutants
+        if everything or mutant is firsts[mutant.ladder or mutant.id]
+    ]
+    columns = (">no.", "role", "place", "operator", "*fault")
+    print_section(console, Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows))
+    if left_out:
+        print_section(console, skipped(left_out))
+    for item in left_out if everything else ():
+        console.print(below(f"{item.id}  {item.description}: {item.reason}"))
+
+
+def _others(count: int) -> str:
+    return f", and {count} other magnitudes" if count > 0 else ""
+
+
+def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut]) -> dict[str, Any]:
+    """Return the plan as JSON-like data."""
+    return {"mutants": data_of(mutants), "left_out": data_of(left_out)}
+
+
+def print_rules(console: Console, rules: Iterable[Mapping[str, str]]) -> None:
+    """Print operators, family by family: what each does, where it applies, and its source."""
+    found = list(rules)
+    for family, group in groupby(found, key=lambda rule: rule["family"]):
+        console.print(heading(family))
+        for rule in group:
+            console.print(Text(rule["name"], style="bold"))
+            more = [f"{name}: {rule[name]}" for name in ("where", "source") if rule[name]]
+            for line in (rule["summary"], *more):
+                console.print(below(line, 3))
+    console.print(f"\n{plural(len(found), 'operator')}")
+
+
+#: lines of a section that are shown; --json has all
+_MOST = 12
+_LEGEND = "· no round notices   ▒ some do   █ all do   × the robot refuses; one sign per magnitude"
+
+
+def print_thresholds(console: Console, thresholds: Thresholds) -> None:
+    """Print the thresholds of a campaign, the loosest first."""
+    size = f"{plural(len(thresholds.all), 'ladder')} × {plural(thresholds.rounds, 'round')}"
+    columns = ("*fault", ">none up to", "magnitudes", ">all from", "*noticed by")
+    rows = [_row(one) for one in thresholds.ladders]
+    print_section(console, Section(f"{size}: {thresholds.state}", columns, rows, [_LEGEND]))
+    for name, lines in _sections(thresholds).items():
+        if lines:
+            print_section(console, Section(name, lines=lines), _MOST)
+    console.print(Text(f"\n{_confidence(thresholds)}", style="dim"))
+
+
+def _row(one: Ladder) -> tuple[str, ...]:
+    none = amount(one.none_up_to, one.unit) if one.none_up_to else "–"
+    every = amount(one.all_from, one.unit) if one.all_from in one.sizes else "–"
+    return f"{one.place} {one.name}", none, bar(one), every, _noticed_by(one)
+
+
+def bar(ladder: Ladder) -> str:
+    """Return one sign per magnitude: whether no round, some or all notice it, or the robot refuses it."""
+    refused = ladder.refused_from
+    return "".join(
+        "×" if refused is not None and size >= refused else
+        "█" if size >= ladder.all_from else
+        "·" if size <= ladder.none_up_to else
+        "▒"
+        for size in ladder.sizes
+    )  # fmt: skip
+
+
+def _noticed_by(ladder: Ladder) -> str:
+    by = Counter(one.noticed_by for one in ladder.counted if one.noticed_by is not None)
+    rounds = len(ladder.counted)
+    told = [f"{name} in {count} of {plural(rounds, 'round')}" for name, count in by.most_common()]
+    return ", ".join(told) or line_of(ladder)
+
+
+def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
+    """What needs a look, by its heading."""
+    known = [(f"{one.place} {one.name}", one) for one in thresholds.ladders]
+    return {
+        "Out of order: a larger fault was missed": [
+            f"{name}: {text}" for name, one in known for text in violations_in_words(one)
+        ],
+        "Rounds that do not count": [
+            f"{name}: {text}" for name, one in known for text in rounds_left_out(one)
+        ],
+        "Not judged": [f"{one.place} {one.name}: {one.why_unjudged}" for one in thresholds.unjudged],
+    }
+
+
+def _confidence(thresholds: Thresholds) -> str:
+    """What the table says about further rounds, and what it cost."""
+    parts = []
+    first = max(thresholds.ladders, key=lambda one: len(one.counted), default=None)
+    if first is not None and first.median is None:
+        parts.append("One round says nothing about further rounds.")
+    elif first is not None and first.median is not None:
+        level = f"With {100 * first.median.level:.0f} % confidence"
+        ends = "the largest fault that no round noticed and the smallest that every round noticed"
+        parts.append(f"{level} the median threshold lies between {ends}.")
+        shares = [one.share_shown for one in thresholds.ladders if one.share_shown is not None]
+        if shares:
+            share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"
+            parts.append(f"Where all rounds notice, {share}.")
+    return " ".join(parts)

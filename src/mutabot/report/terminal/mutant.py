@@ -1,31 +1,28 @@
-"""One mutant on the terminal: one screen about what tells most, or everything about it."""
+"""One mutant on the terminal: one screen about what tells most, or everything; and suggested checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from mutabot.journal.records import Replayed
-from mutabot.model import Diverged, Looked, Mutant, Outcome, Quantity, Span
+from mutabot.model import Diverged, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import end_in_words
 from mutabot.report.sections import Section, between, plural
-from mutabot.report.texts import effect_text, numbers_text, telling
+from mutabot.report.texts import effect_text, telling
+from mutabot.results.divergence import numbers_text
 from mutabot.results.results import MutantResult
-from mutabot.results.suggested import Suggestions
+from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
 
 from .campaign import letters
 from .console import below, heading, make_table, mark_of, plain, print_section
-from .suggested import print_suggestions, suggested_sections
 
-__all__ = ["excerpt", "print_mutant", "print_replayed", "print_suggestions"]
-
-#: checks of a test that are shown, and lines of a message on the one screen; the journal and JSON have more
-_CHECKS, _LINES = 15, 8
+#: lines of a message on the one screen; the journal and JSON have more
+_LINES = 8
 _TAB = 4
 
 
@@ -42,7 +39,7 @@ def print_mutant(
     Args:
         source: the text of its file, or None if it is not known.
         suggestions: checks that were suggested for its campaign; None if none were looked for.
-        everything: print every round, and what the checks of each test saw.
+        everything: print every round.
     """
     mutant = result.mutant
     console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
@@ -51,12 +48,11 @@ def print_mutant(
     if lines:
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
-    found = [_rounds(result, everything=everything), *_happened(result)]
-    found += [*(_looked(result) if everything else ()), *suggested_sections(result, suggestions)]
-    for section in found:
+    rounds = _rounds(result, everything=everything)
+    for section in (rounds, *_happened(result), *suggested_sections(result, suggestions)):
         print_section(console, section)
     if not everything:
-        console.print(Text("\nUse --all for every round, test and check.", style="dim"))
+        console.print(Text("\nUse --all for every round.", style="dim"))
 
 
 def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed]) -> None:
@@ -165,56 +161,103 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
         yield f"First difference{at}: {diverged.what}.{fault}"
 
 
-def _looked(result: MutantResult) -> Iterator[Section]:
-    """The checks that ran with a survivor, and by how much each held."""
-    found = next((one for one in result.outcomes if one.looked), None)
-    for looked in found.looked if found is not None and result.is_survivor else ():
-        rows = [
-            (
-                one.place.rpartition("/")[2],
-                one.text + (f" ({one.times} times)" if one.times > 1 else ""),
-                f"{one.spare:.3g}" if one.spare is not None else "–",
-                one.seen or "–",
-            )
-            for one in looked.checks[:_CHECKS]
-        ]
-        columns = ("place", "*check", ">to spare", "*with") if rows else ()
-        yield Section(f"Checks that ran: {_summary(looked)}", columns, rows)
-
-
-def _summary(looked: Looked) -> str:
-    if not looked.acted:
-        return f"{looked.test}: the mutant changed nothing in it"
-    count = len(looked.checks) + looked.more
-    if not count:
-        return f"{looked.test}: no check was seen; assertions that pytest does not rewrite are not"
-    spares = [one.spare for one in looked.checks if one.spare is not None]
-    nearest = f", the nearest by {min(spares):.3g}" if spares else ""
-    return f"{looked.test}: {plural(count, 'check')} held{nearest}"
-
-
 def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
-    """Return the lines of a span and ``around`` lines before and after it, with a caret underline.
-
-    Columns of the span count UTF-8 bytes; the underline counts the cells that a terminal shows.
-    """
+    """Return the lines of a span, marked with ``>``, and ``around`` lines before and after it."""
     lines = source.splitlines()
     if not 1 <= span.line <= len(lines):
         return []
     first, last = max(1, span.line - around), min(len(lines), span.end_line + around)
-    width = len(str(last))
-    shown = []
-    for number in range(first, last + 1):
-        line = lines[number - 1]
-        shown.append(f"{number:>{width}} │ {line.expandtabs(_TAB)}".rstrip())
-        if span.line <= number <= span.end_line:
-            shown.append(f"{'':>{width}} │ {_underline(line, number, span)}")
-    return shown
+    return [
+        f"{'>' if span.line <= number <= span.end_line else ' '} {number:>{len(str(last))}} │ "
+        f"{lines[number - 1].expandtabs(_TAB)}".rstrip()
+        for number in range(first, last + 1)
+    ]
 
 
-def _underline(line: str, number: int, span: Span) -> str:
-    raw = line.encode()
-    start = span.column if number == span.line else len(raw) - len(raw.lstrip())
-    end = span.end_column if number == span.end_line else len(raw)
-    before, marked = (cell_len(raw[:at].decode(errors="ignore").expandtabs(_TAB)) for at in (start, end))
-    return " " * before + "^" * max(1, marked - before)
+#: lines of a section that are shown; --json has all
+_MOST = 10
+
+
+def print_suggestions(console: Console, found: Suggestions) -> None:
+    """Print each check with what it kills and how sure it is, the survivors that are left, and the diff."""
+    killed = {mutant for one in found.suggestions for mutant in one.kills}
+    survivors = plural(len(killed) + len(found.unsolved), "survivor")
+    text = f"{plural(len(found.suggestions), 'check')} for {len(killed)} of {survivors}"
+    console.print(Text(text, style="bold"))
+    for number, one in enumerate(found.suggestions, start=1):
+        print_section(console, Section(f"{number}  {one.test}", lines=[*lines_of(one, found)]))
+    left = [_left(one, found) for one in found.unsolved if not one.never]
+    never = [_left(one, found) for one in found.unsolved if one.never]
+    dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]
+    sections = {
+        f"No check found for {plural(len(left), 'survivor')}": left,
+        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": never,
+        f"{plural(len(dropped), 'check')} dropped, because verification failed": dropped,
+    }
+    for name, lines in sections.items():
+        if lines:
+            print_section(console, Section(name, lines=lines), _MOST)
+    if found.diff:
+        console.print(f"\n{found.diff.rstrip()}", soft_wrap=True)
+
+
+def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
+    """Yield the assertion, what it kills, its tolerance, and its false alarms."""
+    yield one.statement
+    yield f"kills {_kills(one, found)}"
+    seen = f"{plural(one.runs, 'run')} of the original"
+    yield f"{seen} spread {one.spread:.3g}" if one.spread else f"equal in {seen}"
+    yield (
+        f"false alarms: none in {plural(one.fresh, 'new seed')} "
+        f"(so at most {100 * one.unseen:.2g} % of runs, 95 % confidence)"
+    )
+    if one.by_hand:
+        yield "another tool makes this test: add this by hand where it ends:"
+        yield from (f"  {line}" for line in one.by_hand.splitlines())
+
+
+def _kills(one: Suggestion, found: Suggestions) -> str:
+    """The mutants by the rounds in which they are killed: ``#7, #9 in all rounds``."""
+    by_rounds: dict[tuple[int, ...], list[int]] = {}
+    for mutant, rounds in one.kills.items():
+        by_rounds.setdefault(tuple(rounds), []).append(found.numbers.get(mutant, 0))
+    parts = []
+    for rounds, numbers in by_rounds.items():
+        where = f" in {numbers_text(round + 1 for round in rounds)}"
+        if len(rounds) == found.rounds:
+            where = " in all rounds" if found.rounds > 1 else ""
+        parts.append(", ".join(f"#{number}" for number in sorted(numbers)) + where)
+    return "; ".join(parts)
+
+
+def _left(one: Unsolved, found: Suggestions) -> str:
+    return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
+
+
+def suggested_sections(result: MutantResult, found: Suggestions | None) -> Iterator[Section]:
+    """Yield the section of a survivor; nothing for other mutants."""
+    if not result.is_survivor or result.mutant.ladder:
+        return
+    check = check_on_page(result, found)
+    reasons = {one.mutant: one.reason for one in found.unsolved} if found is not None else {}
+    if check is not None:
+        lines = [f"in {check['test']}:", check["code"], *check["notes"]]
+        lines.append("`mutabot suggest` prints it as a diff.")
+    elif result.mutant.id in reasons:
+        lines = [f"None was found: {reasons[result.mutant.id]}"]
+    elif result.indistinguishable:
+        add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
+        lines = [f"No measured difference. {add}"]
+    else:
+        lines = [f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."]
+    yield Section("A check that would catch it", lines=lines)
+
+
+def check_on_page(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
+    """Return the check that was suggested for a mutant, with its notes; None if there is none."""
+    suggestions = found.suggestions if found is not None else ()
+    one = next((one for one in suggestions if result.mutant.id in one.kills), None)
+    if one is None or found is None:
+        return None
+    statement, *notes = lines_of(one, found)
+    return {"code": statement, "test": one.test, "notes": notes}
