@@ -15,11 +15,11 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.tasks import task
 from mutabot.errors import SelectionError
 from mutabot.evidence.recording import Recording, bytes_of, from_bytes
-from mutabot.evidence.tape import Film
 from mutabot.execution.task import Result, Task, death
 from mutabot.model import Mutant
 from mutabot.model.events import TestEnd
 from mutabot.model.job import Job, Pictures
+from mutabot_motion.pictures.film import Film
 
 #: wall-clock seconds that a picture may take, beside those of the test; pictures per simulated second
 _PER_PICTURE, _RATE = 4.0, 25.0

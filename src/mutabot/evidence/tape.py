@@ -14,33 +14,14 @@ import zlib
 from array import array
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from pathlib import Path
-from typing import Any, BinaryIO
-
-from mutabot.frozen import frozen
+from typing import Any
 
 from .recording import Block, RecordedMoment, Recording, Track, TrackKind
 
-#: before each picture: its time in s, height, width, and bytes that follow
-_HEAD = struct.Struct("<dIII")
+#: before each picture of a film: its time in s, height, width, and bytes that follow
+HEAD = struct.Struct("<dIII")
 #: pictures from which on no more are taken: four minutes at 25 per second
 MOST_PICTURES = 6000
-
-
-@frozen
-class Picture:
-    """One picture.
-
-    Attributes:
-        time: s, on the same clock as the recording of the test.
-        height, width: pixels.
-        pixels: red, green and blue, a byte each, row by row from the top.
-    """
-
-    time: float
-    height: int
-    width: int
-    pixels: bytes
 
 
 class FilmWriter:
@@ -63,8 +44,8 @@ class FilmWriter:
             picture: shape (height, width, 3) or (height, width, 4), of bytes; the fourth of each is left out.
         """
         height, width, pixels = pixels_of(picture)
-        data = zlib.compress(_differing(pixels, self._before), 1)
-        left = memoryview(_HEAD.pack(time, height, width, len(data)) + data)
+        data = zlib.compress(differing(pixels, self._before), 1)
+        left = memoryview(HEAD.pack(time, height, width, len(data)) + data)
         while left:
             left = left[os.write(self._file, left) :]
         self._before = pixels
@@ -73,43 +54,6 @@ class FilmWriter:
     def close(self) -> None:
         """No more come."""
         os.close(self._file)
-
-
-class Film:
-    """A film that was written; of one whose process was killed it has the pictures that are whole.
-
-    Args:
-        path: its file. One that does not exist has no pictures.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-
-    @property
-    def times(self) -> list[float]:
-        """When its pictures were taken, s."""
-        return [head[0] for head, _ in self._heads()]
-
-    def pictures(self) -> Iterator[Picture]:
-        """All of them, one after the other."""
-        before = b""
-        for (at, height, width, size), file in self._heads():
-            before = _differing(zlib.decompress(file.read(size)), before)
-            yield Picture(at, height, width, before)
-
-    def _heads(self) -> Iterator[tuple[tuple[float, int, int, int], BinaryIO]]:
-        """What stands before each picture, and the file at its beginning."""
-        if not self._path.is_file():
-            return
-        length = self._path.stat().st_size
-        with self._path.open("rb") as file:
-            while len(head := file.read(_HEAD.size)) == _HEAD.size:
-                time, height, width, size = _HEAD.unpack(head)
-                after = file.tell() + size
-                if after > length:
-                    return
-                yield (time, height, width, size), file
-                file.seek(after)
 
 
 def pixels_of(picture: Any) -> tuple[int, int, bytes]:
@@ -132,7 +76,7 @@ def pixels_of(picture: Any) -> tuple[int, int, bytes]:
     return height, width, bytes(pixels)
 
 
-def _differing(pixels: bytes, before: bytes) -> bytes:
+def differing(pixels: bytes, before: bytes) -> bytes:
     """What differs from a picture of the same size, bit by bit; applied twice it gives the picture back."""
     if len(pixels) != len(before):
         return pixels

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from PIL import Image, ImageDraw, ImageOps
 
-from mutabot.evidence.tape import Film, Picture
+from mutabot_motion.pictures.film import Film, Picture
 from mutabot_motion.shown import COLOURS, Shown
 
 from .lettering import letters

@@ -13,7 +13,7 @@ from typing import Any
 import av
 
 from mutabot.errors import UsageError
-from mutabot.evidence.tape import Film
+from mutabot_motion.pictures.film import Film
 from mutabot_motion.shown import Shown
 from mutabot_motion.sights import written_whole
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.evidence import tape
-from mutabot.evidence.tape import Film
 from mutabot_cell import Cell
+from mutabot_motion.pictures.film import Film
 
 CODE = """
 import sys

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from mutabot.errors import UsageError
-from mutabot.evidence.tape import Film, FilmWriter
+from mutabot.evidence.tape import FilmWriter
+from mutabot_motion.pictures.film import Film
 from packages.motion.sample import recording, shown
 
 av = pytest.importorskip("av")
