@@ -343,7 +343,7 @@ class Clock:
     step: float | None = None
 
 
-def _owner(target: str) -> str:
+def owner_of(target: str) -> str:
     """What a callable lies in, as ``module:Name``; empty for what its module has itself."""
     owner = target.rpartition(".")[0]
     return owner if ":" in owner else ""
@@ -363,11 +363,6 @@ class Wait:
     unit: str = "s"
     source: str = ""
 
-    @property
-    def owner(self) -> str:
-        """The class whose objects have it; empty for a plain function."""
-        return _owner(self.target)
-
 
 @frozen
 class Probe:
@@ -384,11 +379,6 @@ class Probe:
     tolerance: float = 1e-6
     source: str = ""
     result: tuple[Quantity, ...] = ()
-
-    @property
-    def owner(self) -> str:
-        """The object or class in which the target lies; empty for what its module has itself."""
-        return _owner(self.target)
 
 
 @frozen

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot.model import Choice, Moment, Mutant, Operation, Probe
 from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Budget, Job
+from mutabot.model.operation import owner_of
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import Sink
 from mutabot.runtime.evidence import Evidence, Meter, together
@@ -118,9 +119,8 @@ class Session:
             elif operation.kind is None:
                 self.callables.wrap(operation.target, handler)
         self._see_calls()
-        self.instances.watch(probe.owner for probe in vocabulary.probes)
-        if vocabulary.wait is not None:
-            self.instances.watch([vocabulary.wait.owner])
+        waits = [vocabulary.wait.target] if vocabulary.wait is not None else []
+        self.instances.watch(map(owner_of, (*waits, *(probe.target for probe in vocabulary.probes))))
         if vocabulary.clock is not None:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)

@@ -60,7 +60,11 @@ def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpressio
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
     found = [*_by_oracle(project, place, module, coarse)]
-    calls = [(one.target, ["()", ""], one.tolerance) for one in vocabulary.probes if not one.owner]
+    calls = [
+        (one.target, ["()", ""], one.tolerance)
+        for one in vocabulary.probes
+        if "." not in one.target.partition(":")[2]
+    ]
     calls += [(one.target, list(_calls(one)), coarse) for one in vocabulary.operations]
     for target, endings, tolerance in calls:
         where, _, attribute = target.partition(":")
@@ -74,7 +78,9 @@ def of_objects(project: ProjectFiles) -> list[tuple[str, float]]:
     """Readings of objects, ``module:Class.name``, each with its tolerance."""
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
-    found = {probe.target: probe.tolerance for probe in vocabulary.probes if probe.owner}
+    found = {
+        probe.target: probe.tolerance for probe in vocabulary.probes if "." in probe.target.partition(":")[2]
+    }
     for one in vocabulary.operations:
         if _only_reads(one) and not one.patterns and "." in one.qualname:
             found.setdefault(one.target, coarse)

@@ -231,36 +231,35 @@ class _Mishap(MessageOperator):
         return await proceed(call.with_mishap(self.mishap, context.option))
 
 
-class KillNode(_Mishap):
+class _Death(_Mishap):
+    is_raced = True
+    forms = frozenset({*WRITTEN, *COMING})
+
+
+def _dead(how: str) -> tuple[Example, ...]:
+    return tuple(Example(Subject(one), performed=({how: 0.0},)) for one in (GOAL, TICK))
+
+
+class KillNode(_Death):
     """The node's process is killed in the place of the call, and nobody tells the others. Only where the node
     is a process of its own: never that of the tests.
     """
 
     name = "kill-node"
-    is_raced = True
     mishap = Mishap.KILLED
-    forms = frozenset({*WRITTEN, *COMING})
     fault = "the node is killed"
-    examples = (
-        Example(Subject(GOAL), performed=({"killed": 0.0},)),
-        Example(Subject(TICK), performed=({"killed": 0.0},)),
-    )
+    examples = _dead("killed")
 
 
-class RestartNode(_Mishap):
+class RestartNode(_Death):
     """The node's process is killed in the place of the call and begins anew with the same command line, as
     under a supervisor, once. Only where the node is a process of its own.
     """
 
     name = "restart-node"
-    is_raced = True
     mishap = Mishap.RESTARTED
-    forms = frozenset({*WRITTEN, *COMING})
     fault = "the node is killed and begins anew"
-    examples = (
-        Example(Subject(GOAL), performed=({"restarted": 0.0},)),
-        Example(Subject(TICK), performed=({"restarted": 0.0},)),
-    )
+    examples = _dead("restarted")
 
 
 class CancelGoal(_Mishap):

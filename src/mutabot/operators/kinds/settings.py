@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
 from mutabot.families import MIDDLEWARE
-from mutabot.model import Kind, Quantity
+from mutabot.model import Kind, Operation, Quantity
 from mutabot.model.operation import DEFAULT, Form
 from mutabot.model.quantity import Value, is_same
 from mutabot.operators.command import form_of
@@ -222,6 +222,17 @@ class FlipLatch(_OtherOfTwo):
     )
 
 
+def _of_two(quantity: str, one: str, other: str, first: Operation, second: Operation) -> tuple[Example, ...]:
+    """Examples of a policy that has two values beside the system's default."""
+    return (
+        changed(first, one, other, quantity=quantity),
+        changed(second, other, one, quantity=quantity),
+        unchanged(
+            SUBSCRIBE, "system_default", f"system_default is neither {one} nor {other}", quantity=quantity
+        ),
+    )
+
+
 class WrongReliability(_OtherOfTwo):
     """A publisher or subscription is best effort instead of reliable, or the other way round. A subscription
     that asks for more than is offered hears nothing.
@@ -229,16 +240,7 @@ class WrongReliability(_OtherOfTwo):
 
     name = "wrong-reliability"
     setting = "reliability"
-    examples = (
-        changed(ADVERTISE, "reliable", "best_effort", quantity="reliability"),
-        changed(SUBSCRIBE, "best_effort", "reliable", quantity="reliability"),
-        unchanged(
-            SUBSCRIBE,
-            "system_default",
-            "system_default is neither reliable nor best_effort",
-            quantity="reliability",
-        ),
-    )
+    examples = _of_two("reliability", "reliable", "best_effort", ADVERTISE, SUBSCRIBE)
 
 
 class WrongDurability(_OtherOfTwo):
@@ -248,16 +250,7 @@ class WrongDurability(_OtherOfTwo):
 
     name = "wrong-durability"
     setting = "durability"
-    examples = (
-        changed(ADVERTISE, "transient_local", "volatile", quantity="durability"),
-        changed(SUBSCRIBE, "volatile", "transient_local", quantity="durability"),
-        unchanged(
-            SUBSCRIBE,
-            "system_default",
-            "system_default is neither volatile nor transient_local",
-            quantity="durability",
-        ),
-    )
+    examples = _of_two("durability", "volatile", "transient_local", SUBSCRIBE, ADVERTISE)
 
 
 class WrongDeadline(_Setting):

@@ -153,9 +153,9 @@ class ProgramTime:
             raise LookupError(f"{module}, which lets the program's time pass, is not imported")
         owner, name, found = resolve(sys.modules[module], qualname)
         if isinstance(owner, type):
-            objects = self.instances.of(wait.owner)
+            objects = self.instances.of(of := wait.target.rpartition(".")[0])
             if not objects:
-                raise LookupError(f"the program has no object of {wait.owner}, which lets its time pass")
+                raise LookupError(f"the program has no object of {of}, which lets its time pass")
             found = getattr(objects[-1], name)
         waited = found(convert(seconds, "s", wait.unit))
         if inspect.isawaitable(waited):

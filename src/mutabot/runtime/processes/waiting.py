@@ -133,10 +133,9 @@ class _Waiting:
             os._exit = self._exit
         SourceFileLoader.get_code = self._original  # type: ignore[method-assign]
         atexit.unregister(self._end)
-        from mutabot.runtime.processes.member import Begun  # noqa: PLC0415
-        from mutabot.runtime.processes.member import join as become  # noqa: PLC0415
+        from mutabot.runtime.processes import member  # noqa: PLC0415
 
-        become(self._folder, Begun(self._name, self._number, self._loaded))
+        member.join(self._folder, member.Begun(self._name, self._number, self._loaded))
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in _EVENTS or (event == "import" and arguments[0] == "runpy" and self._codes):
