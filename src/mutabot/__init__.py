@@ -7,9 +7,10 @@ beside a robot program.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from .lazy import lazily
 
-TYPE_CHECKING = False  # to import typing takes longer than all else here
 if TYPE_CHECKING:
     from mutabot.results.stored import StoredCampaign as StoredCampaign
     from mutabot.results.stored import open as open

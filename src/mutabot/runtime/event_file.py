@@ -33,7 +33,6 @@ class EventFile:
         fail: called if something could not be written; by default it ends the process, of which nobody could
             know anything any more.
         bell: descriptor of the pipe by which the controller is told that there is something to read.
-        number: of the last event in the file, if something else has begun it.
     """
 
     def __init__(
@@ -43,12 +42,11 @@ class EventFile:
         key: str,
         fail: Callable[[], None] = lambda: os._exit(UNWRITTEN),
         bell: int | None = None,
-        number: int = 0,
     ) -> None:
         self._folder, self.name, self._key, self._fail = folder, name, key, fail
         self._bell = bell
         self._lock = threading.RLock()
-        self._last, self.forks = number, 0
+        self._last = self.forks = 0
         self._file = -1
         self._status: os.stat_result
         self._open()

@@ -13,7 +13,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -57,28 +57,12 @@ def is_of_text_alone(job: Job) -> bool:
     return not (job.vocabulary.operations or job.vocabulary.clock or job.faults)
 
 
-@dataclass(frozen=True, slots=True)
-class Begun:
-    """What a process has told and done that waited before it became a member.
-
-    Attributes:
-        name: the name of its file of events.
-        number: of the last event in it.
-        loaded: program files that were loaded with the mutant in them, and their text.
-    """
-
-    name: str
-    number: int
-    loaded: Mapping[str, bytes]
-
-
 class TextOnly:
     """What ``runtime.session.Session`` is of a job that has nothing to do with calls.
 
     Args:
         job: what to do.
         pipe: where reports go.
-        loaded: program files that this process has loaded with their alternatives, and their text.
 
     Attributes:
         text: the program text, if it is instrumented.
@@ -91,15 +75,15 @@ class TextOnly:
     sites: tuple[SiteSeen, ...] = ()
     is_fork = False
 
-    def __init__(self, job: Job, pipe: Sink, loaded: Mapping[str, bytes]) -> None:
-        self.job, self.pipe, self._loaded = job, pipe, loaded
+    def __init__(self, job: Job, pipe: Sink) -> None:
+        self.job, self.pipe = job, pipe
         self.text: SessionText | None = None
         self.test = ""
         self.meter = Meter(Budget())
 
     def install(self) -> None:
         """Instrument the program from now on, and the mutant with it."""
-        self.text = SessionText.of(self.job, self.pipe, self._acted, self._loaded)
+        self.text = SessionText.of(self.job, self.pipe, self._acted)
 
     def start_test(self, test: str) -> None:
         """A test begins."""
@@ -124,12 +108,12 @@ class TextOnly:
 _member: Member | None = None
 
 
-def join(folder: str, begun: Begun | None = None) -> None:
-    """Be a member of the campaign whose processes have this folder; ``begun``: what it did as it waited."""
+def join(folder: str) -> None:
+    """Be a member of the campaign whose processes have this folder."""
     global _member  # noqa: PLW0603  # one process, one member
     if _member is None:
         job = read_job(os.path.dirname(folder))
-        _member = Member(folder, job, begun=begun)
+        _member = Member(folder, job)
         _member.begin()
 
 
@@ -151,27 +135,18 @@ class Member:
         folder: the folder of the campaign's processes.
         job: the job of the test process.
         session: the session that goes on, in a process that was forked; None to make one.
-        begun: what this process has done before it was a member; None if nothing.
     """
 
-    def __init__(
-        self,
-        folder: str,
-        job: Job,
-        session: Session | TextOnly | None = None,
-        begun: Begun | None = None,
-    ) -> None:
+    def __init__(self, folder: str, job: Job, session: Session | TextOnly | None = None) -> None:
         self._folder = folder
         self._now = Now(folder)
         self._test = self._now.number
         now = time.monotonic()
-        name = f"{os.getpid()}-{int(now * 1e6)}" if begun is None else begun.name
-        number = begun.number if begun is not None else 0
-        self.file = EventFile(folder, name, job.key, self._now.note_unwritten, number=number)
-        if begun is None:
-            self.file.send(Began(os.getpid(), os.getpgrp(), tuple(sys.orig_argv), now, self._test))
-        self.session = session or _session(job, self, begun)
-        self._has_begun = begun is not None
+        name = f"{os.getpid()}-{int(now * 1e6)}"
+        self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
+        command = tuple(getattr(sys, "orig_argv", sys.argv))
+        self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
+        self.session = session or _session(job, self)
         self._targets: set[str] = set()
         self._told = Evidence()
         self._places: set[int] = set()
@@ -182,8 +157,7 @@ class Member:
         """Put the session in place."""
         carry(self._folder)
         self.session.install()
-        if not self._has_begun:
-            hook_script()
+        hook_script()
         self._attend()
         self.session.start_test(self._now.name_of(self._test))
         self._watch_text()
@@ -382,13 +356,13 @@ class Member:
         )
 
 
-def _session(job: Job, pipe: Member, begun: Begun | None) -> Session | TextOnly:
+def _session(job: Job, pipe: Member) -> Session | TextOnly:
     text = job.instrumentation
     if text is not None and not (text.active or text.record):
         text = None  # those below a fork parent are the original, and fork for nobody
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
     if is_of_text_alone(job):
-        return TextOnly(job, pipe, begun.loaded if begun is not None else {})
+        return TextOnly(job, pipe)
     from mutabot import extensions  # noqa: PLC0415  # see above
     from mutabot.runtime.interception.trace import Locator  # noqa: PLC0415
     from mutabot.runtime.session import Session  # noqa: PLC0415

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import ast
-import hashlib
-import marshal
 import os
 from collections.abc import Iterable
 from dataclasses import replace
-from types import CodeType
 
 from mutabot.extensions import brought
 from mutabot.model.event_file import FOLDER
@@ -26,17 +22,11 @@ from mutabot.model.events import (
 )
 from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
 from mutabot.model.job import Job
-from mutabot.runtime.processes import waiting
 from mutabot.runtime.processes.environment import Now, ProcessWatch, carry, write_wake
-from mutabot.runtime.processes.member import is_of_text_alone
-from mutabot.runtime.program_text.instrument import instrumented
-from mutabot.runtime.program_text.loading import compile_tree
 from mutabot.runtime.session import Session
 
 #: what processes of interest load
 _JOIN = "mutabot.runtime.processes.member"
-#: what they load if they may wait
-_WAIT = "mutabot.runtime.processes.waiting"
 
 
 class Members:
@@ -168,31 +158,7 @@ def _write_wake(folder: str, job: Job) -> None:
     files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
     for path in (*job.program, *job.oracle):
         names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
-    write_wake(folder, _WAIT if _let_wait(folder, job) else _JOIN, names, files)
-
-
-def _let_wait(folder: str, job: Job) -> bool:
-    """Write down what processes need that wait until they reach the mutant; False if none may wait."""
-    text = job.instrumentation
-    if not is_of_text_alone(job) or (text is not None and text.record):
-        return False
-    texts = text.texts if text is not None and text.active else ()
-    codes: dict[str, tuple[bytes, CodeType]] = {}
-    places = [place.number for one in texts for place in one.places]
-    try:
-        for one in texts:
-            path = os.path.realpath(os.path.join(job.root, one.file))
-            with open(path, "rb") as file:
-                source = file.read()
-            if hashlib.sha256(source).hexdigest() != one.digest:
-                return False
-            codes[path] = source, compile_tree(instrumented(ast.parse(source), one.places), path)
-    except (OSError, RecursionError, SyntaxError, ValueError):
-        return False  # members tell why
-    told = {"python": waiting.python(), "key": job.key, "codes": codes, "places": places}
-    with open(os.path.join(folder, waiting.FILE), "wb") as file:
-        marshal.dump(told, file)
-    return True
+    write_wake(folder, _JOIN, names, files)
 
 
 def _top(target: str) -> str:

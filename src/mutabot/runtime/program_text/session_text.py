@@ -78,27 +78,20 @@ class SessionText:
         self._unknown = False
 
     @classmethod
-    def of(
-        cls, job: Job, pipe: Sink, on_act: Callable[[], None], loaded: Mapping[str, bytes] | None = None
-    ) -> SessionText | None:
+    def of(cls, job: Job, pipe: Sink, on_act: Callable[[], None]) -> SessionText | None:
         """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None
         text = cls(job.root, job.instrumentation, pipe, on_act)
-        text.install(loaded)
+        text.install()
         return text
 
-    def install(self, loaded: Mapping[str, bytes] | None = None) -> None:
-        """Instrument the program's files from now on; files imported before are told as problems.
-
-        ``loaded``: those that have been loaded with their alternatives, by real path, and their text.
-        """
+    def install(self) -> None:
+        """Instrument the program's files from now on; files imported before are told as problems."""
         (self.sightings or self.alternatives).install()
-        for path, source in (loaded or {}).items():
-            self.change(ast.parse(source), source, path)
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
-            if text is not None and text.file not in self.imported:
+            if text is not None:
                 self._refuse(text, "it was imported before mutabot could look at it")
         loading.add(self)
         loading.hook_runpy()
