@@ -23,7 +23,15 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, Track, TrackKind, to_bytes
+from mutabot.evidence.recording import (
+    Block,
+    RecordedCall,
+    RecordedMoment,
+    Recording,
+    Track,
+    TrackKind,
+    to_bytes,
+)
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
@@ -92,7 +100,9 @@ def recording(seed: int, fault: float | None) -> Recording:
         source = odd if fault is not None and 2.0 * number > fault else usual
         written = {"dx": round(source.random(), 4), "dy": 0.0}
         place = f"cell/part_0.py:{3 + number}"
-        calls.append(Told(2.0 * number, 2.0 * number + 1.9, "robot:Arm.move_by", place, None, written, {}))
+        calls.append(
+            RecordedCall(2.0 * number, 2.0 * number + 1.9, "robot:Arm.move_by", place, None, written, {})
+        )
     return Recording(
         times,
         {

@@ -15,7 +15,7 @@ from typing import Any
 
 import configuration_page
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE
-from mutabot.model import Mishap, Quantity
+from mutabot.model import CallFault, Quantity
 from mutabot.model.notation import Notation
 from mutabot.operators import Example, Need, Operator, Subject, operator
 from mutabot.operators.registry import built_in
@@ -154,7 +154,7 @@ _OF_ALL = re.compile(
 
 
 def _studies(operators: list[Operator]) -> str:
-    found = (_STUDIED.search(each.stands_for) for each in operators)
+    found = (_STUDIED.search(each.rationale) for each in operators)
     numbers = {one[1]: int(one[2]) for one in found if one}
     return ", ".join(f"{name} {number}" for name, number in sorted(numbers.items(), key=lambda one: -one[1]))
 
@@ -162,7 +162,7 @@ def _studies(operators: list[Operator]) -> str:
 def _section(each: Operator) -> Iterator[str]:
     yield f"## {each.name}\n"
     yield f"{each.summary}{' *(idle)*' if Need.IDLE in each.needs else ''}\n"
-    if each.stands_for and "vocabulary" in each.where and "vocabulary" not in each.summary:
+    if each.rationale and "vocabulary" in each.where and "vocabulary" not in each.summary:
         yield f"Where: {each.where}.\n"
     if each.published:
         yield f"Published as: {re.sub(r'[0-9]+[.] ', '', each.published).rstrip('.')}.\n"
@@ -174,7 +174,7 @@ def _section(each: Operator) -> Iterator[str]:
             yield f"- {_before(example)} → {_after(example)}{note}"
     reasons = {example.away: None for example in each.examples if example.away}
     told = [reason for reason in reasons if not _OF_ALL.search(reason)]
-    if told and not each.stands_for:
+    if told and not each.rationale:
         yield f"- Left alone: {'; '.join(told)}"
     yield ""
 
@@ -229,8 +229,8 @@ def _after(example: Example) -> str:
 def _call(subject: Subject, values: Mapping[str, Any]) -> str:
     operation, pattern = subject.operation, subject.pattern
     opposite = bool(values.get("reversed"))
-    mishaps = [_mishap(Mishap(name), much) for name, much in values.items() if name in {*Mishap}]
-    values = {name: value for name, value in values.items() if name not in {"reversed", *Mishap}}
+    call_faults = [_mishap(CallFault(name), much) for name, much in values.items() if name in {*CallFault}]
+    values = {name: value for name, value in values.items() if name not in {"reversed", *CallFault}}
     if pattern is not None:
         text = Notation.compile((opposite and pattern.opposite) or pattern.text).write(values)
         return f'`{operation.name}("{text}")`'
@@ -239,17 +239,17 @@ def _call(subject: Subject, values: Mapping[str, Any]) -> str:
     given = _values(subject.written, values)
     if operation.named is not None:
         given = f": {given}" if given else ""
-        return ", ".join([f"`{name}{given}`", *mishaps])
-    return ", ".join([f"`{name}({given})`", *mishaps])
+        return ", ".join([f"`{name}{given}`", *call_faults])
+    return ", ".join([f"`{name}({given})`", *call_faults])
 
 
-def _mishap(mishap: Mishap, seconds: float) -> str:
+def _mishap(call_fault: CallFault, seconds: float) -> str:
     return (
         f"{seconds:g} s later"
-        if mishap is Mishap.LATE
-        else f"{mishap} by {seconds:g} s"
+        if call_fault is CallFault.LATE
+        else f"{call_fault} by {seconds:g} s"
         if seconds
-        else mishap
+        else call_fault
     )
 
 

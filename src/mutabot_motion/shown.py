@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, TrackKind
+from mutabot.evidence.recording import Block, RecordedCall, RecordedMoment, Recording, TrackKind
 from mutabot.evidence.tracks import TrackPath, paths_of
 
 #: of both sides: red, green and blue that people with any kind of sight tell apart
@@ -148,7 +148,7 @@ def events(shown: Shown, recording: Recording) -> list[ShownEvent]:
     return sorted(found, key=lambda one: one.time)
 
 
-def _call(call: Told) -> ShownEvent:
+def _call(call: RecordedCall) -> ShownEvent:
     assert call.began is not None
     file, _, line = call.place.rpartition(":")
     name = call.pattern or call.operation.rpartition(":")[2]

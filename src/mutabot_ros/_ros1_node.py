@@ -10,7 +10,7 @@ from collections.abc import Awaitable, Callable
 from types import CodeType
 from typing import Any
 
-from mutabot.runtime.targets.target import Means, Where
+from mutabot.runtime.targets.target import MiddlewareControls, Where
 
 from ._patches import Patches
 
@@ -92,7 +92,7 @@ def where(
     cancel: Callable[[Any], Awaitable[None]] | None = None,
 ) -> Where:
     """Where a call is, and what can befall it."""
-    return Where(code, name(), Means(_sleep, _later, lost, cancel, clock.jump, _later))
+    return Where(code, name(), MiddlewareControls(_sleep, _later, lost, cancel, clock.jump, _later))
 
 
 async def _sleep(seconds: float) -> None:

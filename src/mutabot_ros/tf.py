@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import Means, Names, Where
+from mutabot.runtime.targets.target import MiddlewareControls, Names, Where
 
 from ._patches import Patches
 
@@ -34,7 +34,7 @@ def hook(messages: Names) -> Callable[[], None]:
             tf2_ros: Any = sys.modules[MODULE]
             raise tf2_ros.LookupException(f"no transform {name} has come")
 
-        return handler(read, buffer, (), {}, Where(node=node, means=Means(lost=lost)))
+        return handler(read, buffer, (), {}, Where(node=node, means=MiddlewareControls(lost=lost)))
 
     patches.put(sys.modules[MODULE].Buffer, "lookup_transform", look_up)
     return patches.undo

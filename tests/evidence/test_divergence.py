@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.evidence.recording import Recording, Told
+from mutabot.evidence.recording import RecordedCall, Recording
 from mutabot.evidence.story import diverged
 from mutabot.evidence.tracks import RecordedPaths, noise_between
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
@@ -32,7 +32,9 @@ def held_until(number: int, lands: int | None = 40) -> object:
     return touching
 
 
-ORIGINAL = recorded(CARRIED, BOX, held_until(41), [Told(4.0, 4.2, "arm:open", "mission.py:9", None, {}, {})])  # type: ignore[arg-type]
+ORIGINAL = recorded(
+    CARRIED, BOX, held_until(41), [RecordedCall(4.0, 4.2, "arm:open", "mission.py:9", None, {}, {})]
+)  # type: ignore[arg-type]
 
 
 def test_equal_recordings_do_not_differ() -> None:
@@ -52,7 +54,7 @@ def test_a_box_that_slips_is_told() -> None:
 
 def test_a_box_that_is_let_go_too_early_is_told() -> None:
     dropped = [*WAY[:31], *[TABLE] * 20][: len(CARRIED)]
-    opened = [Told(3.0, 3.2, "arm:open", "mission.py:9", None, {}, {})]
+    opened = [RecordedCall(3.0, 3.2, "arm:open", "mission.py:9", None, {}, {})]
     text = story(ORIGINAL, recorded(CARRIED, dropped, held_until(31, 32), opened))  # type: ignore[arg-type]
     assert text.startswith("box and gripper separated at 3.1 s (original: at 4.1 s)")
 
@@ -100,8 +102,8 @@ def test_what_equal_runs_differ_by_is_no_difference() -> None:
 
 
 def test_rounding_is_no_difference_of_a_call() -> None:
-    original = Recording(calls=[Told(0.0, 1.0, "s:read", "m.py:1", None, {}, {"x": -0.329123321209})])
-    mutant = Recording(calls=[Told(0.5, 1.0, "s:read", "m.py:1", None, {}, {"x": -0.329123321207})])
+    original = Recording(calls=[RecordedCall(0.0, 1.0, "s:read", "m.py:1", None, {}, {"x": -0.329123321209})])
+    mutant = Recording(calls=[RecordedCall(0.5, 1.0, "s:read", "m.py:1", None, {}, {"x": -0.329123321207})])
     assert apart(original, mutant) is None
 
 
@@ -116,7 +118,7 @@ def test_rounding_is_no_difference_of_a_call() -> None:
 def test_the_first_call_that_differs_is_named(calls: list[tuple[str, dict[str, float]]], what: str) -> None:
     def told(made: list[tuple[str, dict[str, float]]]) -> Recording:
         found = [
-            Told(float(number), number + 0.5, name, f"m.py:{number + 1}", None, values, {})
+            RecordedCall(float(number), number + 0.5, name, f"m.py:{number + 1}", None, values, {})
             for number, (name, values) in enumerate(made)
         ]
         return Recording(calls=found)

@@ -11,9 +11,9 @@ from hypothesis import strategies as some
 
 from mutabot.evidence.recording import (
     Block,
+    RecordedCall,
     RecordedMoment,
     Recording,
-    Told,
     Track,
     TrackKind,
     bytes_of,
@@ -39,7 +39,7 @@ def recordings(draw: some.DrawFn) -> Recording:
         size = draw(some.none() | some.just((0.5, 0.25, 0.125)))
         tracks[name] = Track(name, kind, values, draw(NAMES), size)
     told = some.builds(
-        Told,
+        RecordedCall,
         some.none() | some.floats(0, 10),
         some.none() | some.floats(0, 10),
         NAMES,
@@ -84,6 +84,6 @@ def test_what_is_no_recording_is_refused(data: Any) -> None:
 
 
 def test_values_that_json_does_not_know_are_told_in_words() -> None:
-    odd = Told(0.0, 1.0, "arm:move", "mission.py:1", None, {"to": {1, 2}}, {})
+    odd = RecordedCall(0.0, 1.0, "arm:move", "mission.py:1", None, {"to": {1, 2}}, {})
     (read,) = from_bytes(to_bytes(Recording(calls=[odd]))).calls
     assert read.written == {"to": "{1, 2}"}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.feed import Feed
-from mutabot.evidence.recording import Recording, Told
+from mutabot.evidence.recording import RecordedCall, Recording
 from mutabot.evidence.story import diverged
 from mutabot.evidence.tracks import RecordedPaths
 from mutabot.model.outcome import Diverged
@@ -29,7 +29,7 @@ def recorded(
     tool: Sequence[Place],
     box: Sequence[Place] | None = None,
     touching: Callable[[int], set[tuple[str, str]]] = lambda number: set(),
-    calls: Sequence[Told] = (),
+    calls: Sequence[RecordedCall] = (),
 ) -> Recording:
     """What a simulator tells whose tool and box are at these places, ten a second."""
     tape = tapes.begin()

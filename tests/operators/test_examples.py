@@ -56,7 +56,7 @@ def play(name: str, example: Example) -> CallRecord:
 def shown(call: Call) -> dict[str, Any]:
     """A performed call, as examples write it."""
     reversed_ = {"reversed": True} if call.reversed else {}
-    return {**call.values, **reversed_, **{str(name): much for name, much in call.mishaps.items()}}
+    return {**call.values, **reversed_, **{str(name): much for name, much in call.call_faults.items()}}
 
 
 @pytest.mark.parametrize(("name", "index"), CASES)
@@ -101,8 +101,8 @@ def test_operators_on_values_show_where_they_stay_away() -> None:
 @pytest.mark.parametrize("name", [name for name in names() if operator(name).family == CATALOGUE])
 def test_operators_of_the_catalogue_say_what_they_stand_for_and_where_they_apply(name: str) -> None:
     rule = operator(name)
-    assert re.search(r"\b(28|20|14|13|9|4|2) of the bugs", rule.stands_for), "no evidence"
-    assert rule.stands_for.endswith(".")
+    assert re.search(r"\b(28|20|14|13|9|4|2) of the bugs", rule.rationale), "no evidence"
+    assert rule.rationale.endswith(".")
     assert rule.where
     assert name in registry._ORDER.split(), "it has no place in the documentation"
 

@@ -53,7 +53,7 @@ SITE = {
         from functools import partial
 
         from mutabot.runtime.targets.messages import deliver
-        from mutabot.runtime.targets.target import Means
+        from mutabot.runtime.targets.target import MiddlewareControls
         from mutabot.runtime.targets.target import Where
         from mutabot.model.operation import Form
 
@@ -71,7 +71,7 @@ SITE = {
                 send = partial(originals[0], topic)
                 if handler is None:
                     return send(message)
-                return handler(send, None, (message,), {}, Where(node=NODE, means=Means()))
+                return handler(send, None, (message,), {}, Where(node=NODE, means=MiddlewareControls()))
 
             def look(topic, callback):
                 def received(message):
@@ -79,7 +79,7 @@ SITE = {
                     handler = names.find(Form.RECEIVE, topic, NODE)
                     if handler is None:
                         return callback(message)
-                    where = Where(callback.__code__, NODE, Means())
+                    where = Where(callback.__code__, NODE, MiddlewareControls())
                     return deliver(handler, message, callback, where)
                 originals[1](topic, received)
 

@@ -24,7 +24,7 @@ from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.messages import Messages, deliver, wait_for
-from mutabot.runtime.targets.target import Means, Where
+from mutabot.runtime.targets.target import MiddlewareControls, Where
 from tests.runtime.stage import take_away
 
 from .stage import ListPipe
@@ -155,7 +155,7 @@ class Client:
         return self.messages.find(form, name, NODE) if self.messages is not None else None
 
     @property
-    def _means(self) -> Means:
+    def _means(self) -> MiddlewareControls:
         async def sleep(seconds: float) -> None:
             self.now += seconds
 
@@ -171,7 +171,7 @@ class Client:
         def later(seconds: float, action: Callable[[], object]) -> None:
             heapq.heappush(self._due, (self.now + seconds, len(self._due), action))
 
-        return Means(sleep, later, lost, cancel, jump, goes_out=later)
+        return MiddlewareControls(sleep, later, lost, cancel, jump, goes_out=later)
 
 
 @dataclass

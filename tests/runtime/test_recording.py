@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.evidence.recording import Told, bytes_of, from_bytes
+from mutabot.evidence.recording import RecordedCall, bytes_of, from_bytes
 from mutabot.model import Role
 from mutabot.runtime.observation.probes import TestRecording
 
@@ -24,7 +24,9 @@ def test_values_that_cannot_be_written_cost_the_calls_alone(value: Any) -> None:
     recording.start(True, "tests/test_it.py::test_it", lambda: 1.0, nullcontext, is_simulated=True)
     recording.note_fault(1, 0.5)
     recording.stop()
-    text = recording.text([Told(0.0, 1.0, "arm:move", "m.py:1", None, {"to": value}, {}, Role.PROGRAM)])
+    text = recording.text(
+        [RecordedCall(0.0, 1.0, "arm:move", "m.py:1", None, {"to": value}, {}, Role.PROGRAM)]
+    )
     assert text is not None
     found = from_bytes(bytes_of(text))
     assert (found.calls, found.fault) == ([], 0.5)

@@ -61,7 +61,7 @@ def _report(
     why = "cannot matter" if baseline.faults.left_out_beforehand else "would change nothing"
     reached = {place.operation for place in baseline.places}
     unused = [one.target for one in request.vocabulary.operations if one.target not in reached]
-    flaky, restless = baseline.unstable, sorted(baseline.restless)
+    flaky, nondeterministic = baseline.unstable, sorted(baseline.nondeterministic)
     clock = request.vocabulary.clock
     never_ticks = clock is not None and all(end.simulated is None for end in baseline.ends.values())
     lines = [
@@ -70,7 +70,10 @@ def _report(
         f"controls  {controls} ended as they must",
         f"mutants   {len(mutants)}{selected}, {left_out} left out because they {why}",
         *(f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in flaky.items()),
-        *(f"restless  {test} in round {round + 1}: equal runs differ in values" for round, test in restless),
+        *(
+            f"nondeterministic  {test} in round {round + 1}: equal runs differ in values"
+            for round, test in nondeterministic
+        ),
         *_unused(request.vocabulary, unused),
     ]
     if clock is not None and never_ticks:
@@ -86,7 +89,7 @@ def _report(
         "left_out": left_out,
         "controls": controls,
         "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in flaky.items()],
-        "restless": [{"round": r, "test": t} for r, t in restless],
+        "nondeterministic": [{"round": r, "test": t} for r, t in nondeterministic],
         "unused": unused,
         "remarks": [to_data(remark) for remark in baseline.remarks],
     }

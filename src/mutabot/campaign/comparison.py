@@ -15,7 +15,7 @@ from typing import Any
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Operation, Pattern, Probe, Quantity
 from mutabot.model.events import TestEnd
-from mutabot.model.quantity import is_number, told_apart, value_text
+from mutabot.model.quantity import distinct_texts, is_number, value_text
 from mutabot.model.units import apart, distance
 
 #: an operation and the notation of its command
@@ -118,7 +118,7 @@ _STRIDES = (1, 4, 16, 64)
 _FULL = 100
 
 
-def strides_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dict[str, int]]:
+def probe_intervals_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dict[str, int]]:
     """After every how many commands the probes are read, by round and test; tests without are left out."""
     read = [end for end in ends.values() if end.reading is not None]
     if not read or any(end.not_along for end in ends.values()):
@@ -348,7 +348,7 @@ def _probe_differences(
         if angle is not None:
             done.update(keys)
             part = f"{name}{quantity.path}"
-            shown = " instead of ".join(told_apart(after, before, value_text, 4))
+            shown = " instead of ".join(distinct_texts(after, before, value_text, 4))
             text = f"{_short(part)}: {shown} (turned by {angle:.3g} {quantity.unit or 'rad'})"
             found.append((min(angle / _tolerance(part, probes), OTHER_WORLD), text))
     for key in dict.fromkeys([*original.probes, *mutant.probes]):
@@ -497,7 +497,7 @@ def _short(key: str) -> str:
 
 
 def _change(before: Any, after: Any) -> str:
-    text = " instead of ".join(told_apart(after, before, value_text, 4))
+    text = " instead of ".join(distinct_texts(after, before, value_text, 4))
     if is_number(before) and is_number(after):
         return f"{text} (off by {abs(float(after) - float(before)):.3g})"
     return text

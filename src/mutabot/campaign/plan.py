@@ -152,5 +152,5 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
         for rule in (one for one in rules if one.family == family):
             told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
             published = f"Published operators: {rule.published}." if rule.published else ""
-            found.append({**told, "source": rule.stands_for or published})
+            found.append({**told, "source": rule.rationale or published})
     return found

@@ -191,8 +191,8 @@ def _judged(campaign: Campaign, run: Run) -> Outcome:
     outcome = judge(campaign, run)
     if campaign.evidence is None or outcome.verdict not in _RECORDED:
         return outcome
-    restless = campaign.baseline.restless
-    ends = [end for end in run.ends if (run.round, end.test) not in restless]
+    nondeterministic = campaign.baseline.nondeterministic
+    ends = [end for end in run.ends if (run.round, end.test) not in nondeterministic]
     survived = outcome.verdict is Verdict.SURVIVED
     found = campaign.evidence.take(run.mutant.id, run.round, ends, survived=survived)[:_MOST_DIVERGED]
     is_elsewhere = any(one.apart for one in found)
@@ -367,7 +367,7 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
         key = (run.round, test)
         if test not in since_hit:
             continue
-        if key in baseline.restless:
+        if key in baseline.nondeterministic:
             return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
         if key in baseline.observations:
             known = (vocabulary.probes, vocabulary.operations)

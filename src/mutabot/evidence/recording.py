@@ -80,7 +80,7 @@ class RecordedMoment(NamedTuple):
     text: str
 
 
-class Told(NamedTuple):
+class RecordedCall(NamedTuple):
     """A call of an operation.
 
     Attributes:
@@ -123,7 +123,7 @@ class Recording:
     tracks: dict[str, Track] = field(default_factory=dict)
     blocks: tuple[Block, ...] = ()
     moments: list[RecordedMoment] = field(default_factory=list)
-    calls: list[Told] = field(default_factory=list)
+    calls: list[RecordedCall] = field(default_factory=list)
     fault: float | None = None
     faulty_call: int | None = None
     is_simulated: bool = True
@@ -160,7 +160,7 @@ def from_bytes(data: bytes) -> Recording:
         fields = {name: head[name] for name in _PLAIN_FIELDS}
         fields["blocks"] = tuple(Block(one[0], *map(_tuple, one[1:])) for one in fields["blocks"])
         fields["moments"] = [RecordedMoment(*one) for one in fields["moments"]]
-        fields["calls"] = [Told(*one) for one in fields["calls"]]
+        fields["calls"] = [RecordedCall(*one) for one in fields["calls"]]
         return Recording(times, tracks, **fields)
     except (zlib.error, LookupError, TypeError) as error:
         raise ValueError(f"no recording: {error}") from error

@@ -11,9 +11,9 @@ from math import inf, isclose
 from typing import Any
 
 from mutabot.model.outcome import Apart, Diverged
-from mutabot.model.quantity import is_number, told_apart, value_text
+from mutabot.model.quantity import distinct_texts, is_number, value_text
 
-from .recording import Recording, Told
+from .recording import RecordedCall, Recording
 from .tracks import TURNED, RecordedPaths, differences
 
 #: parts of a sentence, and differences that are kept
@@ -145,7 +145,9 @@ def amount(value: float, unit: str = "m") -> str:
     return f"{value:.3g} {unit}".strip()
 
 
-def _first_call(original: Sequence[Told], mutant: Sequence[Told]) -> tuple[str, float | None] | None:
+def _first_call(
+    original: Sequence[RecordedCall], mutant: Sequence[RecordedCall]
+) -> tuple[str, float | None] | None:
     """The first call that differs, in words, and when it began; None if all calls are the same."""
     for one, other in zip(original, mutant, strict=False):
         found = _difference(one, other)
@@ -160,14 +162,14 @@ def _first_call(original: Sequence[Told], mutant: Sequence[Told]) -> tuple[str, 
     return None
 
 
-def _difference(one: Told, other: Told) -> str:
+def _difference(one: RecordedCall, other: RecordedCall) -> str:
     """How a call differs from the original's; empty if it does not."""
     if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
         return f"{_name(other)} is called instead of {_name(one)}"
     for before, after, verb in ((one.written, other.written, "sends"), (one.read, other.read, "reads")):
         for name in {**before, **after}:
             if not _are_equal(before.get(name), after.get(name)):
-                usual, found = told_apart(before.get(name), after.get(name), value_text, 4)
+                usual, found = distinct_texts(before.get(name), after.get(name), value_text, 4)
                 return f"{_name(other)} {verb} {name} {found} instead of {usual}"
     return ""
 
@@ -183,5 +185,5 @@ def _are_equal(value: Any, other: Any) -> bool:
     return bool(value == other)
 
 
-def _name(call: Told) -> str:
+def _name(call: RecordedCall) -> str:
     return f"{call.place} {call.operation.rpartition(':')[2]}"

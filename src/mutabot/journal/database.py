@@ -214,7 +214,7 @@ def no_journal(path: Path) -> JournalError:
     return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it")
 
 
-def make_way(path: Path) -> Path | None:
+def set_aside(path: Path) -> Path | None:
     """Move aside what lies there and is no journal of this version; returns where to.
 
     A journal of another version gets that as part of its name, so that no later campaign overwrites it;

@@ -337,7 +337,7 @@ class Journal(JournalReader):
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
             opened.callback(lock.release)
-            moved = database.make_way(path)
+            moved = database.set_aside(path)
             file = opened.enter_context(closing(database.connect(path)))
             copy = opened.enter_context(closing(database.loaded(file)))
             journal = opened.enter_context(cls(path, copy, file, lock))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.model.call import Call, Middleware, Mishap, NotToldError, Proceed, Reply
+    from mutabot.model.call import Call, CallFault, Middleware, NotToldError, Proceed, Reply
     from mutabot.model.mutant import (
         FATAL,
         IDENTITY,
@@ -32,16 +32,51 @@ if TYPE_CHECKING:
     from mutabot.model.quantity import Kind, Mode, Quantity
 
 __all__ = [
-    "ANY", "FATAL", "IDENTITY", "Alternative", "By", "Call", "Case", "Check", "Choice", "Clock",
-    "Compared", "Diverged", "Instrumentation", "Kill", "Kind", "LeftOut", "Looked", "Middleware",
-    "Mishap", "Mode", "Moment", "Mutant", "NotToldError", "Operation", "Outcome", "Path", "Pattern",
-    "Probe", "Proceed", "ProgramText", "Quantity", "Reply", "Role", "Sighting", "Site", "Span",
-    "TextPlace", "Verdict", "Vocabulary", "Wait",
+    "ANY",
+    "FATAL",
+    "IDENTITY",
+    "Alternative",
+    "By",
+    "Call",
+    "CallFault",
+    "Case",
+    "Check",
+    "Choice",
+    "Clock",
+    "Compared",
+    "Diverged",
+    "Instrumentation",
+    "Kill",
+    "Kind",
+    "LeftOut",
+    "Looked",
+    "Middleware",
+    "Mode",
+    "Moment",
+    "Mutant",
+    "NotToldError",
+    "Operation",
+    "Outcome",
+    "Path",
+    "Pattern",
+    "Probe",
+    "Proceed",
+    "ProgramText",
+    "Quantity",
+    "Reply",
+    "Role",
+    "Sighting",
+    "Site",
+    "Span",
+    "TextPlace",
+    "Verdict",
+    "Vocabulary",
+    "Wait",
 ]  # fmt: skip
 _HOMES = {
     "path": ("Path",),
     "quantity": ("Kind", "Mode", "Quantity"),
-    "call": ("Call", "Middleware", "Mishap", "NotToldError", "Proceed", "Reply"),
+    "call": ("Call", "Middleware", "CallFault", "NotToldError", "Proceed", "Reply"),
     "mutant": (
         "FATAL", "IDENTITY", "Alternative", "Choice", "Instrumentation", "Moment", "Mutant", "ProgramText",
         "Role", "Sighting", "Site", "Span", "TextPlace",

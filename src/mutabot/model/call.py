@@ -12,10 +12,10 @@ from mutabot.model.operation import Operation, Pattern
 from mutabot.model.quantity import Quantity, Value
 
 
-class Mishap(StrEnum):
+class CallFault(StrEnum):
     """What can befall a call that has a name on a middleware, beside other values.
 
-    An operator that wants one first asks ``call.cannot(mishap)``.
+    An operator that wants one first asks ``call.cannot(call_fault)``.
     """
 
     #: it is carried out so many seconds of the program's clock later. The program waits for it only where it
@@ -128,7 +128,7 @@ class Call:
             that it asks (``Need.IDLE``).
         payload: what the door needs to perform the call; operators never look inside.
         away: why the operator left it as it is; empty if it does not say so.
-        mishaps: what befalls it, with seconds where it takes some.
+        call_faults: what befalls it, with seconds where it takes some.
         cannot: why something cannot befall it here; empty if it can.
         time: simulated seconds since the test's first tick; raises LookupError without a clock.
         wait: lets so many seconds pass on the program's clock; raises LookupError where nothing says how.
@@ -147,8 +147,8 @@ class Call:
     idle: Reply | None = None
     payload: Any = None
     away: str = ""
-    mishaps: Mapping[Mishap, float] = field(default_factory=dict)
-    cannot: Callable[[Mishap], str] = lambda mishap: ""
+    call_faults: Mapping[CallFault, float] = field(default_factory=dict)
+    cannot: Callable[[CallFault], str] = lambda call_fault: ""
     time: Callable[[], float] = _NO_CLOCK
     wait: Callable[[float], Awaitable[None]] = _NO_WAIT
     previous: Callable[[], Mapping[str, Value] | None] = _NO_PREVIOUS
@@ -166,9 +166,9 @@ class Call:
         """The same call with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})
 
-    def with_mishap(self, mishap: Mishap, seconds: float = 0.0) -> Call:
+    def with_call_fault(self, call_fault: CallFault, seconds: float = 0.0) -> Call:
         """The same call, which something befalls."""
-        return replace(self, mishaps={**self.mishaps, mishap: seconds})
+        return replace(self, call_faults={**self.call_faults, call_fault: seconds})
 
     def as_is(self, why: str) -> Call:
         """The same call, with the reason why the operator leaves it alone."""

@@ -279,10 +279,12 @@ class Quantity:
 
     def texts(self, one: Value, other: Value) -> tuple[str, str]:
         """Two values as reports print them side by side."""
-        return told_apart(one, other, self.text, 6)
+        return distinct_texts(one, other, self.text, 6)
 
 
-def told_apart(one: Value, other: Value, text: Callable[[Value, int], str], digits: int) -> tuple[str, str]:
+def distinct_texts(
+    one: Value, other: Value, text: Callable[[Value, int], str], digits: int
+) -> tuple[str, str]:
     """Two values as texts, with as many significant digits as tell them apart, but at least ``digits``."""
     for more in range(digits, _MOST_DIGITS + 1):
         texts = text(one, more), text(other, more)

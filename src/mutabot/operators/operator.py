@@ -46,7 +46,7 @@ _COUNTED = {
 }
 _STUDIES = "of the bugs on commands and readings in studies of ROS and PX4/ArduPilot software"
 #: how the paragraphs of a docstring begin that are attributes, and what these are called
-_PARAGRAPHS = {"Where": "where", "Stands for": "stands_for", "Published": "published"}
+_PARAGRAPHS = {"Where": "where", "Stands for": "rationale", "Published": "published"}
 
 
 class Rule(ABC):
@@ -58,13 +58,13 @@ class Rule(ABC):
         summary: one sentence for the documentation: what the docstring says first, unless it is given.
         examples: worked examples; they are tests and documentation at once.
         where: where it applies, in the words of vocabularies.
-        stands_for: the bug class that it stands for and the evidence of it, in one sentence, which
+        rationale: the bug class that it stands for and the evidence of it, in one sentence, which
             ``{timing}`` and the like stand for; may be empty for those that are published.
         published: rows of the table of published operators that it makes, ``7. original → mutant``, with
             semicolons between them; empty for all others.
         has_sizes: whether it plants each fault in several magnitudes, of which a threshold is sought.
 
-    ``where``, ``stands_for`` and ``published`` are paragraphs of the docstring, which begin with ``Where:``,
+    ``where``, ``rationale`` and ``published`` are paragraphs of the docstring, which begin with ``Where:``,
     ``Stands for:`` and ``Published:``, unless they are given.
     """
 
@@ -73,7 +73,7 @@ class Rule(ABC):
     summary: ClassVar[str] = ""
     examples: ClassVar[tuple[Any, ...]] = ()
     where: ClassVar[str] = ""
-    stands_for: ClassVar[str] = ""
+    rationale: ClassVar[str] = ""
     published: ClassVar[str] = ""
     has_sizes: ClassVar[bool] = False
 
@@ -187,7 +187,7 @@ class Example:
         replied: values the robot would answer.
         current: where the robot is, by quantity name, for operators that ask.
         performed: values of each call that reaches the robot, in order; ``reversed`` marks the opposite, and
-            the name of a mishap what befalls it, with its seconds.
+            the name of a call fault what befalls it, with its seconds.
         received: values the program receives; None if it receives the robot's own.
         earlier: values of calls of the same test that went before, and of their replies, for operators that
             remember them.

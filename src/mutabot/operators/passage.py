@@ -93,7 +93,7 @@ class CallRecord:
         if len(self.performed) != 1:
             return bool(self.performed) or self.received is not None
         performed = self.performed[0]
-        if performed.reversed != self.call.reversed or performed.mishaps:
+        if performed.reversed != self.call.reversed or performed.call_faults:
             return True
         meant = self.call.pattern or self.call.operation
         return not (

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
-from mutabot.model.quantity import told_apart, value_text
+from mutabot.model.quantity import distinct_texts, value_text
 
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
@@ -41,7 +41,7 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
     if mutant.quantity is None or outcome.example is None or len(outcome.example) != 2:
         return None
     text = quantity.text if quantity is not None else value_text
-    before, after = told_apart(*outcome.example, text, 6 if quantity is not None else 4)
+    before, after = distinct_texts(*outcome.example, text, 6 if quantity is not None else 4)
     if before == after:
         return None
     return f"{_verb(quantity)} {after} instead of {before}"

@@ -177,7 +177,7 @@ class Results:
     @property
     def tests(self) -> list[str]:
         """Node ids of all tests that are known: what mutants name is among them."""
-        named = (test for one in self.outcomes for test, _ in killers(one))
+        named = (test for one in self.outcomes for test, _ in killing_tests(one))
         baseline = (one.test.test for one in self.baseline)
         return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
 
@@ -246,7 +246,7 @@ class Results:
         return sum(len(result.outcomes) for result in self.mutants)
 
 
-def killers(outcome: Outcome) -> list[tuple[str, By | None]]:
+def killing_tests(outcome: Outcome) -> list[tuple[str, By | None]]:
     """The tests that noticed a mutant, as far as they are known, and by what."""
     if not outcome.verdict.is_killed:
         return []

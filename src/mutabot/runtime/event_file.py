@@ -14,7 +14,7 @@ from mutabot.model.events import Event, ForkEnded, Serving, TestEnd, TestStart
 _PROMPT = (TestStart, TestEnd, ForkEnded, Serving)
 
 
-class Sink(Protocol):
+class EventWriter(Protocol):
     """What takes the events of a process."""
 
     def send(self, event: Event) -> None:

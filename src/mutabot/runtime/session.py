@@ -15,12 +15,12 @@ from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSe
 from mutabot.model.job import Budget, Job
 from mutabot.model.operation import owner_of
 from mutabot.model.quantity import Value
-from mutabot.runtime.event_file import Sink
+from mutabot.runtime.event_file import EventWriter
 from mutabot.runtime.evidence import Evidence, Meter, together
 from mutabot.runtime.inspection import Inspection, Kinds
 from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
-from mutabot.runtime.interception.dispatcher import Aside, Dispatcher
+from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
 from mutabot.runtime.observation.clock import ClockReader, ProgramTime
 from mutabot.runtime.observation.instances import Instances
@@ -66,7 +66,7 @@ class Session:
     """
 
     job: Job
-    pipe: Sink
+    pipe: EventWriter
     locator: Locator
     recorder: Recorder = field(init=False)
     callables: Callables = field(init=False)
@@ -276,7 +276,7 @@ class Session:
             self.text.alternatives.on_place = None
             self.text.alternatives.activate(*choices)
 
-    def take_on(self, job: Job, pipe: Sink) -> None:
+    def take_on(self, job: Job, pipe: EventWriter) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
         self.inspection.is_asked, self.passing.on_end = job.inspect, self._on_end
@@ -316,10 +316,10 @@ class Session:
         has_clock = self.job.vocabulary.clock is not None
         self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
 
-    def _aside(self) -> Aside:
+    def _aside(self) -> Untracked:
         """What is done in this context is none of the program's doing."""
         is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
-        return Aside(self.returns if is_main else None)
+        return Untracked(self.returns if is_main else None)
 
     def _look_again(self) -> None:
         """What the program has made since the last test."""
@@ -376,7 +376,7 @@ class Session:
     def _read_probes(self, *, along: bool = False) -> Reading:
         meter, self.passing.meter = self.meter, None  # probes are no operations of the program's
         try:
-            with Aside(self.returns):
+            with Untracked(self.returns):
                 return take(self._probes(along=along), self.instances)
         finally:
             self.passing.meter = meter

@@ -10,7 +10,7 @@ from types import CodeType
 from typing import Any
 
 from mutabot.runtime.processes.member import note_node
-from mutabot.runtime.targets.target import Means, Names, Where
+from mutabot.runtime.targets.target import MiddlewareControls, Names, Where
 from mutabot_ros import simulation
 from mutabot_ros._patches import Patches
 
@@ -112,10 +112,10 @@ def where(
         node: the node; None if it is not known.
         code: the function that is called back.
         is_async: whether the call is a coroutine's.
-        lost, cancel: as in ``Means``.
+        lost, cancel: as in ``MiddlewareControls``.
     """
     sleep = _clock.pause(node) if is_async else _clock.sleep(node)
-    means = Means(
+    means = MiddlewareControls(
         sleep,
         _clock.later(node),
         lost,

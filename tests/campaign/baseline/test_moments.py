@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.comparison import Observation, TraceCall, compare, strides_of
+from mutabot.campaign.comparison import Observation, TraceCall, compare, probe_intervals_of
 from mutabot.campaign.run import run_campaign
 from mutabot.execution.processes import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary
@@ -139,10 +139,10 @@ def test_a_first_run_that_was_not_read_along_the_way_is_equal_to_one_that_was() 
     baseline.observations[0, "t"] = replace(read, moments=())
     vocabulary = Vocabulary((), probes=(Probe("w:p", 0.01),))
     baseline.compare_runs(0, TestEnd("t", "passed"), read, vocabulary)
-    assert baseline.unequal == set()
+    assert baseline.inexact == set()
     assert baseline.observations[0, "t"] == read
     baseline.compare_runs(0, TestEnd("t", "passed"), moved(0.0, 1.0 + 1e-9), vocabulary)
-    assert baseline.unequal == {(0, "t")}
+    assert baseline.inexact == {(0, "t")}
 
 
 def test_where_equal_runs_make_different_numbers_of_calls_only_time_limits_a_mutant() -> None:
@@ -164,7 +164,7 @@ def test_the_cost_of_a_reading_decides_how_often() -> None:
         return TestEnd("t", "passed", commands=commands, cpu=cpu, reading=reading, not_along=why)
 
     def stride(*ends: TestEnd) -> int | None:
-        return strides_of({(round, "t"): one for round, one in enumerate(ends)}).get(0, {}).get("t")
+        return probe_intervals_of({(round, "t"): one for round, one in enumerate(ends)}).get(0, {}).get("t")
 
     assert stride(end(0.0001)) == 1
     assert stride(end(0.0005)) == 4

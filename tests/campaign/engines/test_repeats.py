@@ -178,7 +178,7 @@ def test_kills_in_simulated_time_are_in_doubt_only_where_equal_runs_were_not_equ
     found = doubts({"t": [(3, 0)]}, 10, clock=2.0)
     assert numbers(found) == []
     assert found.is_certain(next(iter(found.kills())))
-    found.baseline.unequal.add((0, "t"))
+    found.baseline.inexact.add((0, "t"))
     again = Doubts(found.baseline, found.mutants, found.outcomes)
     assert numbers(again) == [(3, 0)]
     assert not again.is_certain(next(iter(again.kills())))

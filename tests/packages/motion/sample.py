@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, Track, TrackKind
+from mutabot.evidence.recording import Block, RecordedCall, RecordedMoment, Recording, Track, TrackKind
 from mutabot_motion.shown import Shown
 
 STEPS = 21
@@ -27,9 +27,9 @@ def recording(*, lets_go: bool = False, **changes: Any) -> Recording:
         "opening": Track("opening", TrackKind.VALUE, opening, "m"),
     }
     calls = [
-        Told(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 1.0, "dy": 0}, {}),
-        Told(2.0, 2.0, "robot:Camera.find", "tests/see.py:8", None, {}, {"x": 0.5}, "oracle"),
-        Told(None, None, "robot:Arm.home", "mission.py:4", None, {}, {}),
+        RecordedCall(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 1.0, "dy": 0}, {}),
+        RecordedCall(2.0, 2.0, "robot:Camera.find", "tests/see.py:8", None, {}, {"x": 0.5}, "oracle"),
+        RecordedCall(None, None, "robot:Arm.home", "mission.py:4", None, {}, {}),
     ]
     moments = [RecordedMoment(1.1, "part", "a box, fingers")] if lets_go else []
     found = Recording(times, tracks, (TABLE,), moments, calls)

@@ -10,7 +10,15 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from mutabot.evidence.recording import Block, RecordedMoment, Recording, Told, Track, TrackKind, to_bytes
+from mutabot.evidence.recording import (
+    Block,
+    RecordedCall,
+    RecordedMoment,
+    Recording,
+    Track,
+    TrackKind,
+    to_bytes,
+)
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model.outcome import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
@@ -37,9 +45,13 @@ def recording(*, off: float = 0.0, name: str = "box") -> Recording:
         tool.extend((0.1 * time, y, 0.5, 1.0, 0.0, 0.0, 0.0))
         box.extend((0.1 * time, y, 0.4))
     calls = [
-        Told(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 0.2}, {}),
-        Told(2.0, 9.0, "robot:Arm.move_by", "mission.py:4", None, {"dx": -0.3, "how": "slowly " * 9}, {}),
-        Told(9.5, 9.5, "tracker:box_position", "tests/sensors.py:2", None, {}, {".x": 0.5 + off}, "oracle"),
+        RecordedCall(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 0.2}, {}),
+        RecordedCall(
+            2.0, 9.0, "robot:Arm.move_by", "mission.py:4", None, {"dx": -0.3, "how": "slowly " * 9}, {}
+        ),
+        RecordedCall(
+            9.5, 9.5, "tracker:box_position", "tests/sensors.py:2", None, {}, {".x": 0.5 + off}, "oracle"
+        ),
     ]
     moments = [RecordedMoment(1.0, "touch", f"{name}, table")]
     if not off:  # the mutant has nothing beside it

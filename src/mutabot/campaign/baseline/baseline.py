@@ -281,14 +281,14 @@ class Baseline(Original):
         unstable: tests set aside as flaky, with the reason, by (round, test).
         flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
         exits: per round, the exit code of the suite on the original.
-        strides: after every how many commands probes are read along the way, by round and test.
+        probe_intervals: after every how many commands probes are read along the way, by round and test.
         refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
         written_through: places that return the robot's own memory, to which the program writes.
-        restless: (round, test) whose trace or probes differ between repetitions; never compared.
+        nondeterministic: (round, test) whose trace or probes differ between repetitions; never compared.
         doubted: tests that have failed once where equal runs pass.
-        unequal: (round, test) that were not the same to the last bit in all runs of the original.
-        uneven: (round, test) in which equal runs made different numbers of calls, as nodes do that look again
-            and again whether something has come: how many they make is a matter of time.
+        inexact: (round, test) that were not the same to the last bit in all runs of the original.
+        varying_calls: (round, test) in which equal runs made different numbers of calls, as nodes do that
+            look again and again whether something has come: how many they make is a matter of time.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
         prepared: what the providers have found out before, by their names.
@@ -308,11 +308,11 @@ class Baseline(Original):
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
-    strides: Mapping[int, Mapping[str, int]] = field(default_factory=dict)
+    probe_intervals: Mapping[int, Mapping[str, int]] = field(default_factory=dict)
     refused: dict[tuple[int, str], tuple[RefusedAt, ...]] = field(default_factory=dict)
     written_through: set[Place] = field(default_factory=set)
-    restless: set[tuple[int, str]] = field(default_factory=set)
-    unequal: set[tuple[int, str]] = field(default_factory=set)
+    nondeterministic: set[tuple[int, str]] = field(default_factory=set)
+    inexact: set[tuple[int, str]] = field(default_factory=set)
     doubted: set[str] = field(default_factory=set)
     flaky_reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     exits: dict[int, int] = field(default_factory=dict)
@@ -323,7 +323,7 @@ class Baseline(Original):
     remarks: tuple[Remark, ...] = ()
     known: tuple[tuple[Span, str], ...] = ()
     early: set[Place] = field(default_factory=set)
-    uneven: set[tuple[int, str]] = field(default_factory=set)
+    varying_calls: set[tuple[int, str]] = field(default_factory=set)
     shares_files: bool = False
 
     @property
@@ -390,17 +390,17 @@ class Baseline(Original):
         """
         key = (round, end.test)
         if end.operations != self.ends[key].operations:
-            self.uneven.add(key)
+            self.varying_calls.add(key)
         first = self.observations[key]
         if found == first and end.simulated == self.ends[key].simulated:
             return
         # the first run of all is not read along the way, so nothing differs there
         comparable = found if first.moments else replace(found, moments=first.moments)
         if comparable != first or end.simulated != self.ends[key].simulated:
-            self.unequal.add(key)
+            self.inexact.add(key)
         steady = as_steady(first, found, vocabulary.probes, vocabulary.operations)
         if steady is None:
-            self.restless.add(key)
+            self.nondeterministic.add(key)
         else:
             self.observations[key] = steady
 
@@ -441,7 +441,7 @@ class Baseline(Original):
         Where the number of calls is a matter of time, only time limits it.
         """
         end = self.ends[round, test]
-        is_even = (round, test) not in self.uneven
+        is_even = (round, test) not in self.varying_calls
         return Budget(
             operations=int(end.operations * factor) + SPARE_OPERATIONS if is_even else None,
             simulated=None if end.simulated is None else end.simulated * factor + SPARE_SIMULATED,

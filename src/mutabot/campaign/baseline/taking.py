@@ -22,7 +22,7 @@ from mutabot.campaign.baseline.baseline import (
     places_of,
     refused_of,
 )
-from mutabot.campaign.comparison import strides_of
+from mutabot.campaign.comparison import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.vocabulary import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
@@ -179,19 +179,19 @@ def take_baseline(
         progress.note(_KNOWN_LATER.format(len(suite.known)))
         suite.remarks.clear()
         suite.run(first_runs())
-    strides = strides_of(
+    probe_intervals = probe_intervals_of(
         {(run[0], end.test): end for run, result in suite.results.items() for end in result.ends}
     )
     if repetitions > 1:  # of the text as it stands: neither looking at it nor probes may change anything
         suite.run(
-            suite.task(round, repetition, moments=strides.get(round, {}))
+            suite.task(round, repetition, moments=probe_intervals.get(round, {}))
             for repetition in range(1, repetitions)
             for round in range(request.rounds)
         )
     else:  # was it chance, or the round's seed?
         failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
         suite.run(suite.task(round, 1) for round in failing)
-    baseline = _read(suite, prepared, strides)
+    baseline = _read(suite, prepared, probe_intervals)
     results = suite.results
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
@@ -205,13 +205,13 @@ def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progre
 
 
 def _read(
-    suite: _Suite, prepared: Mapping[str, Preparation], strides: Mapping[int, Mapping[str, int]]
+    suite: _Suite, prepared: Mapping[str, Preparation], probe_intervals: Mapping[int, Mapping[str, int]]
 ) -> Baseline:
     """What all runs tell, and what is to be said about it."""
     request, progress = suite.request, suite.progress
     remarks = tuple(dict.fromkeys(suite.remarks))
     known = tuple(suite.known.items())
-    baseline = Baseline(strides=strides, remarks=remarks, prepared=prepared, known=known)
+    baseline = Baseline(probe_intervals=probe_intervals, remarks=remarks, prepared=prepared, known=known)
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):

@@ -73,7 +73,7 @@ class Doubts:
     unreliable: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        self.unreliable.update(self.baseline.doubted, (test for _, test in self.baseline.unequal))
+        self.unreliable.update(self.baseline.doubted, (test for _, test in self.baseline.inexact))
         self.unreliable.update(
             test for (_, test), why in self.baseline.unstable.items() if not why.startswith(FAILS)
         )

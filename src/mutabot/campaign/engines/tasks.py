@@ -45,7 +45,7 @@ def job_of(
         record=True,
         reaching=campaign.reaching(mutants, round),
         budgets={test: baseline.budget(round, test, factor) for test in tests},
-        moments=baseline.strides.get(round, {}),
+        moments=baseline.probe_intervals.get(round, {}),
         refused=baseline.refused_in(round, tests),
         known=baseline.known,
         **details,

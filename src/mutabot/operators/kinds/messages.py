@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from mutabot.families import MIDDLEWARE
-from mutabot.model import Call, Mishap, Proceed, Reply
+from mutabot.model import Call, CallFault, Proceed, Reply
 from mutabot.model.operation import COMING, WRITTEN, Form
 from mutabot.model.quantity import Value
 from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
@@ -167,11 +167,11 @@ class Delay(MessageOperator):
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         seconds = context.subject.magnitude or 0.0
-        why = call.cannot(Mishap.LATE)
+        why = call.cannot(CallFault.LATE)
         if why:
             raise Unchanged(why)
         if form_of(call.operation) in WRITTEN:
-            return await proceed(call.with_mishap(Mishap.LATE, seconds))
+            return await proceed(call.with_call_fault(CallFault.LATE, seconds))
         return (await proceed(call)).later(seconds)
 
 
@@ -208,27 +208,27 @@ class Reorder(MessageOperator):
 
 
 class _Mishap(MessageOperator):
-    """Lets a mishap befall a call, wherever it can.
+    """Makes a fault befall a call, wherever it can.
 
     Class attributes:
-        mishap: what befalls it.
-        variants: a mutant each, with the seconds that the mishap takes.
+        call_fault: what befalls it.
+        variants: a mutant each, with the seconds that the fault takes.
         once: whether it befalls only the first call of a test.
     """
 
     needs = frozenset({Need.PROGRAM})
     variants: ClassVar[Mapping[str, Any]] = {"": 0.0}
-    mishap: ClassVar[Mishap]
+    call_fault: ClassVar[CallFault]
 
     once: ClassVar[bool] = False
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        why = call.cannot(self.mishap) or ("it has happened already" if context.memory else "")
+        why = call.cannot(self.call_fault) or ("it has happened already" if context.memory else "")
         if why:
             raise Unchanged(why)
         if self.once:
             context.memory.append(True)
-        return await proceed(call.with_mishap(self.mishap, context.option))
+        return await proceed(call.with_call_fault(self.call_fault, context.option))
 
 
 class _Death(_Mishap):
@@ -246,7 +246,7 @@ class KillNode(_Death):
     """
 
     name = "kill-node"
-    mishap = Mishap.KILLED
+    call_fault = CallFault.KILLED
     fault = "the node is killed"
     examples = _dead("killed")
 
@@ -257,7 +257,7 @@ class RestartNode(_Death):
     """
 
     name = "restart-node"
-    mishap = Mishap.RESTARTED
+    call_fault = CallFault.RESTARTED
     fault = "the node is killed and begins anew"
     examples = _dead("restarted")
 
@@ -266,7 +266,7 @@ class CancelGoal(_Mishap):
     """Somebody cancels the action as soon as its goal is sent."""
 
     name = "cancel-goal"
-    mishap = Mishap.CANCELLED
+    call_fault = CallFault.CANCELLED
     forms = frozenset({Form.GOAL})
     fault = "each {what} is cancelled as soon as it is sent"
     examples = (Example(Subject(GOAL), performed=({"cancelled": 0.0},)),)
@@ -277,7 +277,7 @@ class JumpClock(_Mishap):
 
     name = "jump-clock"
     needs = frozenset({Need.MEMORY, Need.COPIES, Need.PROGRAM})
-    mishap = Mishap.JUMPED
+    call_fault = CallFault.JUMPED
     forms = frozenset({Form.TICK, Form.SLEEP})
     once = True
     variants: ClassVar[Mapping[str, float]] = {"10": 10.0, "-10": -10.0}

@@ -14,7 +14,7 @@ from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
 from mutabot.report.texts import reason_of, status_of
-from mutabot.results.results import MutantResult, killers
+from mutabot.results.results import MutantResult, killing_tests
 
 _SCHEMA_VERSION = "2.0"
 #: in percent; what the page paints green and red. They are the schema's customary ones, and no limit of ours
@@ -68,7 +68,7 @@ def _files(material: Material) -> dict[str, Any]:
 
 def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
     mutant = result.mutant
-    killed_by = dict.fromkeys(test for outcome in result.outcomes for test, _ in killers(outcome))
+    killed_by = dict.fromkeys(test for outcome in result.outcomes for test, _ in killing_tests(outcome))
     return {
         "id": mutant.id,
         "mutatorName": mutant.operator,

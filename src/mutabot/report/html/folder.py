@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.errors import UsageError
-from mutabot.evidence.recording import Recording, Told, Track, TrackKind
+from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
 from mutabot.evidence.tracks import TrackPath
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
@@ -28,7 +28,7 @@ from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.mutant import check_on_page
 from mutabot.report.texts import effect_text, mapped, status_of
 from mutabot.results.divergence import worst_of
-from mutabot.results.results import MutantResult, Results, killers, unlooked
+from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestions
 from mutabot.results.thresholds import line_of, thresholds_of
@@ -85,7 +85,7 @@ def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
     """A mutant as the results document has it, with one letter per round, and the tests that noticed it."""
     kills: dict[str, list[int]] = {}
     for outcome in result.outcomes:
-        for test, by in dict(killers(outcome)).items():
+        for test, by in dict(killing_tests(outcome)).items():
             counts = kills.setdefault(test, [tests[test], 0, 0])
             counts[1] += 1
             counts[2] += by is By.CHECK
@@ -411,7 +411,7 @@ def _data(recording: Recording) -> dict[str, Any]:
     }
 
 
-def _call(call: Told) -> list[Any]:
+def _call(call: RecordedCall) -> list[Any]:
     sides = ([[name, _value(value)] for name, value in side.items()] for side in (call.written, call.read))
     return [call.began, call.ended, call.operation, call.place, call.pattern, *sides, call.role]
 

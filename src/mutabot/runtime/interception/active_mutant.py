@@ -341,14 +341,14 @@ class _MutatedCall:
     async def _perform(self, call: Call) -> Any:
         action = partial(self.adapter.perform, call, self.passage.call)
         try:
-            if call.mishaps:
+            if call.call_faults:
                 await call_faults.before(call, self._last_words)
-            result = call_faults.perform(call, action) if call.mishaps else action()
+            result = call_faults.perform(call, action) if call.call_faults else action()
             if self.made.is_async and inspect.isawaitable(result):
                 result = await result
         except StopIteration as error:
             raise Carried(error) from None
-        if call.mishaps:
+        if call.call_faults:
             await call_faults.after(call, result)
         return result
 

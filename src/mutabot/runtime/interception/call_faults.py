@@ -13,11 +13,11 @@ from functools import partial
 from importlib import import_module
 from typing import Any, NoReturn
 
-from mutabot.model import Call, Mishap, Reply
+from mutabot.model import Call, CallFault, Reply
 from mutabot.model.operation import ANSWERED, COMING
 from mutabot.runtime.interception.live import copied
 from mutabot.runtime.targets.messages import Delivery
-from mutabot.runtime.targets.target import Means, resolve
+from mutabot.runtime.targets.target import MiddlewareControls, resolve
 
 #: says to a process that it was begun anew, by its id, which stays the same
 RESTARTED = "MUTABOT_RESTARTED"
@@ -26,15 +26,15 @@ _FOLDER = os.getcwd()
 _SAYS = "no reading (planted by mutabot)"
 
 
-def why_not(means: Means | None, mishap: Mishap) -> str:
+def why_not(means: MiddlewareControls | None, call_fault: CallFault) -> str:
     """Say why something cannot befall a call here; empty if it can."""
     if means is None:
         return "it is no call of a middleware"
-    if mishap is Mishap.CANCELLED and means.cancel is None:
+    if call_fault is CallFault.CANCELLED and means.cancel is None:
         return "what it begins cannot be cancelled"
-    if mishap is Mishap.JUMPED and means.jump is None:
+    if call_fault is CallFault.JUMPED and means.jump is None:
         return "the program's clock cannot be moved"
-    if mishap in (Mishap.KILLED, Mishap.RESTARTED):
+    if call_fault in (CallFault.KILLED, CallFault.RESTARTED):
         if means.end is None and not _is_node():
             return "the program runs in the tests' own process"
         if os.environ.get(RESTARTED) == str(os.getpid()):
@@ -45,36 +45,36 @@ def why_not(means: Means | None, mishap: Mishap) -> str:
 async def before(call: Call, at_end: Callable[[], None]) -> None:
     """Let happen what befalls a call before it is made; ``at_end`` is told before this process dies of it."""
     means = _means(call)
-    if Mishap.JUMPED in call.mishaps and means.jump is not None:
-        means.jump(call.mishaps[Mishap.JUMPED])
-    if Mishap.KILLED in call.mishaps or Mishap.RESTARTED in call.mishaps:
+    if CallFault.JUMPED in call.call_faults and means.jump is not None:
+        means.jump(call.call_faults[CallFault.JUMPED])
+    if CallFault.KILLED in call.call_faults or CallFault.RESTARTED in call.call_faults:
         at_end()
-        anew = Mishap.RESTARTED in call.mishaps
+        anew = CallFault.RESTARTED in call.call_faults
         if means.end is not None:
             means.end(anew)
         else:
             _end(anew=anew)
-    if Mishap.LATE in call.mishaps and _is_answered(call):
-        await means.sleep(call.mishaps[Mishap.LATE])
+    if CallFault.LATE in call.call_faults and _is_answered(call):
+        await means.sleep(call.call_faults[CallFault.LATE])
 
 
 def perform(call: Call, action: Callable[[], Any]) -> Any:
     """Make a call, or have it made later: what goes out without an answer is not waited for."""
-    if Mishap.LATE not in call.mishaps or _is_answered(call):
+    if CallFault.LATE not in call.call_faults or _is_answered(call):
         return action()
-    return _means(call).goes_out(call.mishaps[Mishap.LATE], partial(_quietly, action))
+    return _means(call).goes_out(call.call_faults[CallFault.LATE], partial(_quietly, action))
 
 
 async def after(call: Call, result: Any) -> None:
     """Let happen what befalls what a call began; ``result`` is what it returned."""
-    cancel = _means(call).cancel if Mishap.CANCELLED in call.mishaps else None
+    cancel = _means(call).cancel if CallFault.CANCELLED in call.call_faults else None
     if cancel is not None:
         await cancel(result)
 
 
 def heard_of(call: Call, reply: Reply) -> Reply:
     """Return what the program hears of a reply: who waits for one message hears no other after it."""
-    means: Means | None = call.payload.where.means
+    means: MiddlewareControls | None = call.payload.where.means
     if means is None or not means.once or not reply.more:
         return reply
     first = replace(reply.parts[0], more=()) if reply.parts else reply
@@ -136,8 +136,8 @@ async def _given(result: Any) -> Any:
     return result
 
 
-def _means(call: Call) -> Means:
-    means: Means | None = call.payload.where.means
+def _means(call: Call) -> MiddlewareControls:
+    means: MiddlewareControls | None = call.payload.where.means
     if means is None:
         raise LookupError(f"nobody knows what can befall {call.operation.name}")
     return means

@@ -44,7 +44,7 @@ _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default
 is_under_way = _under_way.get
 
 
-class Aside:
+class Untracked:
     """Calls of operations in this context, and in this thread alone, are none of the program's.
 
     A simulator enters it at every step, so it is no generator.

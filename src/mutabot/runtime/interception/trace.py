@@ -12,7 +12,7 @@ from functools import cache
 from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.evidence.recording import Told
+from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.front_end import SourcePosition, front_ends
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.model import Call, Reply, Role, Span
@@ -85,7 +85,7 @@ class Recorder:
             self.on_site(self.sites[-1])
         return index
 
-    def told(self) -> list[Told]:
+    def told(self) -> list[RecordedCall]:
         """Return the calls of the running test with their times, as far as they are recorded."""
         return [
             self.told_of(index, written, read, began, ended)
@@ -94,13 +94,13 @@ class Recorder:
 
     def told_of(
         self, index: int, written: Any, read: Any, began: float | None, ended: float | None = None
-    ) -> Told:
+    ) -> RecordedCall:
         """Return one call at the site of this index; ``ended`` is ``began`` where that is not known."""
         site = self.sites[index]
         place = f"{site.span.file}:{site.span.line}"
         role = Role.ORACLE if site.oracle else Role.PROGRAM
         ended = began if ended is None else ended
-        return Told(began, ended, site.operation, place, site.pattern, written, read, role)
+        return RecordedCall(began, ended, site.operation, place, site.pattern, written, read, role)
 
     def sites_of(self, trace: Iterable[Any]) -> tuple[SiteSeen, ...]:
         """Return the sites that a trace refers to, those of processes below the tests as well."""

@@ -27,7 +27,7 @@ from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.evidence import tape as tapes
-from mutabot.evidence.recording import Told, to_text
+from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.evidence.tape import FilmWriter, Tape
 from mutabot.model import Probe
 from mutabot.model.job import Pictures
@@ -434,7 +434,7 @@ class TestRecording:
             self._tape.recording.faulty_call = calls
             self._tape.recording.fault = time
 
-    def text(self, calls: Sequence[Told]) -> str | None:
+    def text(self, calls: Sequence[RecordedCall]) -> str | None:
         """All of it and the calls, as ``TestEnd.recording``; None where nothing is recorded."""
         if self._tape is None:
             return None

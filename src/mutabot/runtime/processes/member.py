@@ -48,7 +48,7 @@ from mutabot.runtime.program_text.session_text import SessionText
 if TYPE_CHECKING:
     from mutabot.model import Call
     from mutabot.model.quantity import Value
-    from mutabot.runtime.event_file import Sink
+    from mutabot.runtime.event_file import EventWriter
     from mutabot.runtime.session import Session  # of no use to a job that has nothing to do with calls
 
 
@@ -75,7 +75,7 @@ class TextOnly:
     sites: tuple[SiteSeen, ...] = ()
     is_fork = False
 
-    def __init__(self, job: Job, pipe: Sink) -> None:
+    def __init__(self, job: Job, pipe: EventWriter) -> None:
         self.job, self.pipe = job, pipe
         self.text: SessionText | None = None
         self.test = ""

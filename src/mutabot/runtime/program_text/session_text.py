@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot.model.events import Event, NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.job import Job
 from mutabot.model.mutant import Instrumentation, ProgramText
-from mutabot.runtime.event_file import Sink
+from mutabot.runtime.event_file import EventWriter
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.foresee import Forms
@@ -52,7 +52,7 @@ class SessionText:
         self,
         root: str,
         instrumentation: Instrumentation,
-        pipe: Sink | None = None,
+        pipe: EventWriter | None = None,
         on_act: Callable[[], None] = lambda: None,
     ) -> None:
         texts = instrumentation.texts
@@ -78,7 +78,7 @@ class SessionText:
         self._unknown = False
 
     @classmethod
-    def of(cls, job: Job, pipe: Sink, on_act: Callable[[], None]) -> SessionText | None:
+    def of(cls, job: Job, pipe: EventWriter, on_act: Callable[[], None]) -> SessionText | None:
         """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None

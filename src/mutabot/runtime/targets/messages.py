@@ -31,8 +31,8 @@ from mutabot.model.operation import Form, Named, Refused, named_of
 from mutabot.runtime.targets.target import (
     Finding,
     Handler,
-    Means,
     Middleware,
+    MiddlewareControls,
     Tell,
     TypedMiddleware,
     Where,
@@ -228,7 +228,7 @@ def wait_for(handler: Handler, wait: Callable[[], Any], where: Where) -> Any:
 
     A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
     whole, and raises what the program is to see when that is over. Who has a message waits no more, and the
-    next wait subscribes anew: a mutant can let nothing come after it (``Means.once``).
+    next wait subscribes anew: a mutant can let nothing come after it (``MiddlewareControls.once``).
     """
     where = replace(where, means=replace(_means(where), once=True))
     while True:
@@ -262,8 +262,8 @@ def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool]) -> Callable[[]
     return wait_for_another
 
 
-def _means(where: Where) -> Means:
-    return where.means if where.means is not None else Means()
+def _means(where: Where) -> MiddlewareControls:
+    return where.means if where.means is not None else MiddlewareControls()
 
 
 def _done(awaitable: Awaitable[None]) -> None:

@@ -19,9 +19,9 @@ of it is imported before it is needed: a ``Middleware`` when the program imports
 
 What hooks keep to, so that all operators mean the same in every middleware:
 
-- Each use gives the handler a ``Where`` with ``means`` (``target.Means``): how the node sleeps, does
-  something later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of
-  it by the clock of the node, so that simulated time counts.
+- Each use gives the handler a ``Where`` with ``means`` (``target.MiddlewareControls``): how the node sleeps,
+  does something later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps.
+  All of it by the clock of the node, so that simulated time counts.
 - What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``messages``:
   ``deliver`` calls the program's callback, ``wait_for`` stands around a wait. A handler's own result
   may be a ``Delivery`` there and nowhere else.
@@ -63,7 +63,7 @@ def _later(seconds: float, action: Callable[[], object]) -> None:
 
 
 @frozen
-class Means:
+class MiddlewareControls:
     """How a call of a middleware comes late, or its answer never; the hook that has the call knows.
 
     Seconds are those of the node's own clock, so that simulated time counts.
@@ -112,7 +112,7 @@ class Where:
 
     code: CodeType | None = None
     node: str | None = None
-    means: Means | None = None
+    means: MiddlewareControls | None = None
     is_again: bool = False
     site: tuple[Span, Role] | None = None
     handed: tuple[Span, Role] | None = None

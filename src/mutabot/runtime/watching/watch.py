@@ -25,7 +25,7 @@ from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.path import class_name
 from mutabot.model.watched import Command, Use, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
-from mutabot.runtime.interception.dispatcher import Aside, is_under_way
+from mutabot.runtime.interception.dispatcher import Untracked, is_under_way
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
@@ -116,7 +116,7 @@ class NamesSeen(Messages):
                 self._look(use.written, args[0])
             if inspect.iscoroutinefunction(wrapped):
                 return self._awaited(use, wrapped(*args, **kwargs))
-            with Aside(None):  # only the outermost counts, as in a campaign
+            with Untracked(None):  # only the outermost counts, as in a campaign
                 result = wrapped(*args, **kwargs)
             self._answer(use, result)
             return result
