@@ -86,6 +86,53 @@ def test_an_exact_value_is_no_check() -> None:
     assert refused[MUTANT.id].startswith("only an exact value would notice it: assert box.x == ")
 
 
+@pytest.mark.parametrize(
+    ("value", "apart", "statement"),
+    [
+        (0.025, 2e-5, None),
+        (0.0, 2e-5, None),
+        (0.025, 0.01, "assert box.x == pytest.approx(0.025, abs=0.005)"),
+        (0.0, 0.01, "assert box.x == pytest.approx(0.0, abs=0.005)"),
+    ],
+)
+def test_few_digits_with_a_tiny_tolerance_are_an_exact_value(
+    value: float, apart: float, statement: str | None
+) -> None:
+    found = of([{"box.x": value}] * 3, {"box.x": value + apart}, "box.x")
+    found.readings[PLACE] = [ReadExpression("box.x", PROBE, 1e-6)]
+    checks, refused = candidates(PROJECT, found)
+    assert [check.statement for check in checks] == ([statement] if statement else [])
+    assert bool(refused) == (statement is None)
+
+
+def test_a_relation_is_no_more_exact_than_a_value() -> None:
+    read = {"target.x": 0.4, "box.x": 0.4}
+    found = of([read] * 3, {"target.x": 0.4, "box.x": 0.40002}, "box.x", "target.x")
+    found.readings[PLACE] = [ReadExpression(text, PROBE, 1e-6) for text in read]
+    assert candidates(PROJECT, found)[0] == []
+
+
+def test_a_count_is_equal_and_not_near() -> None:
+    ((check,), _) = candidates(PROJECT, of([{"parts": 3}] * 3, {"parts": 4}, "parts"))
+    assert check.statement == "assert parts == 3"
+
+
+def test_the_expression_that_the_suite_reads_comes_first_and_a_clock_last() -> None:
+    found = of([dict.fromkeys(("arm.x", "arm.z()", "arm.time"), 1.0)] * 3, {}, "arm.x", "arm.z()", "arm.time")
+    found.mutants[PLACE][MUTANT.id] = {(0, PLACE.node): dict.fromkeys(("arm.x", "arm.z()", "arm.time"), 9.0)}
+    checks, _ = candidates(_Project("assert arm.z() > 0 and arm.time < 3"), found)  # type: ignore[arg-type]
+    ranked = sorted(checks, key=lambda check: check.worth, reverse=True)
+    assert [check.reading.text for check in ranked] == ["arm.z()", "arm.x", "arm.time"]
+
+
+def test_what_the_tests_allow_holds_under_any_name() -> None:
+    found = of([{"arm.x": 0.4, "arm.place()": 0.4}] * 3, {"arm.x": 0.45, "arm.place()": 0.45}, "arm.place()")
+    stated = _Project("assert arm.x == pytest.approx(0.4, abs=0.1)")
+    checks, refused = candidates(stated, found)  # type: ignore[arg-type]
+    assert checks == []
+    assert "less than the tests allow" in refused[MUTANT.id]
+
+
 def test_the_tolerance_is_that_of_the_suite_where_it_notices_as_much() -> None:
     found = of([{"box.x": 0.3}] * 3, {"box.x": 0.9}, "box.x")
     stated = _Project("assert cup.x == pytest.approx(0.5, abs=0.03)")
