@@ -125,6 +125,19 @@ def test_the_expression_that_the_suite_reads_comes_first_and_a_clock_last() -> N
     assert [check.reading.text for check in ranked] == ["arm.z()", "arm.x", "arm.time"]
 
 
+def test_a_check_stands_in_the_test_that_looks_at_the_same_thing() -> None:
+    text = "def test_ends(end):\n    assert end\n\ndef test_x(end):\n    assert end[0] == 1.0\n"
+    found = of([{"end[1]": 2.0}] * 3, {"end[1]": 9.0}, "end[1]")
+    places = [PlaceInTest("pytest", PLACE.file, f"{PLACE.file}::{name}") for name in ("test_ends", "test_x")]
+    both = Measured(
+        originals=dict.fromkeys(places, found.originals[PLACE]),
+        mutants=dict.fromkeys(places, found.mutants[PLACE]),
+        readings=dict.fromkeys(places, found.readings[PLACE]),
+    )
+    checks, _ = candidates(_Project(text), both)  # type: ignore[arg-type]
+    assert max(checks, key=lambda check: check.worth).place == places[1]
+
+
 def test_what_the_tests_allow_holds_under_any_name() -> None:
     found = of([{"arm.x": 0.4, "arm.place()": 0.4}] * 3, {"arm.x": 0.45, "arm.place()": 0.45}, "arm.place()")
     stated = _Project("assert arm.x == pytest.approx(0.4, abs=0.1)")

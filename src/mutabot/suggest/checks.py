@@ -10,11 +10,12 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from typing import Any
 
 from mutabot.frozen import frozen
 
-from .project import Addition, PlaceInTest, ProjectFiles, equal, within
+from .project import Addition, PlaceInTest, ProjectFiles, equal, function_of, within
 from .readings import ORACLE, Measured, Read, ReadExpression, is_number, known
 
 CONFIDENCE = 0.95
@@ -117,6 +118,7 @@ class ProposedCheck:
         trials: the mutants and rounds that it would notice.
         is_clear: whether all of these are far off: ten times what the original may be.
         is_exact: whether it asks for more digits than the suite justifies.
+        alike: how much its reading has in common with what its test looks at already.
     """
 
     place: PlaceInTest
@@ -128,6 +130,7 @@ class ProposedCheck:
     trials: Trials = frozenset()
     is_clear: bool = True
     is_exact: bool = False
+    alike: int = 0
 
     @property
     def worth(self) -> tuple[int, ...]:
@@ -136,8 +139,8 @@ class ProposedCheck:
         rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
         digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
-        is_place = not _CLOCK.search(name)
-        return is_place, -self.reading.way, is_relation, -rank, self.is_clear, -digits, -len(self.statement)
+        kind = not _CLOCK.search(name), -self.reading.way, is_relation, -rank
+        return *kind, self.is_clear, -digits, self.alike, -len(self.statement)
 
     @property
     def statement(self) -> str:
@@ -176,13 +179,17 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
             continue
         readings = [known(measured, place, text) for text in runs[0] if all(text in read for read in runs)]
         given = [one for one in readings if _is_given(one.text, originals, mutants)]
-        compared, stated = _stated(project.module(place.file))
+        module = project.module(place.file)
+        compared, stated = _stated(module)
+        beside, _ = _stated(function_of(module, place))
         readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
         seen = _ReadAtEnd(place, runs, mutants, given, stated)
         for check in (check for reading in readings for check in seen.checks(reading)):
             why = _why_not(check, compared, seen.allowed(check.reading.text))
             if why is None:
-                found.append(check)
+                pairs = (zip(check.reading.text, one, strict=False) for one in beside)
+                common = (len([*takewhile(lambda pair: pair[0] == pair[1], each)]) for each in pairs)
+                found.append(replace(check, alike=max(common, default=0)))
             else:
                 refused.update((mutant, why) for mutant, _ in check.trials)
     return found, refused
@@ -318,7 +325,7 @@ def _last(reading: ReadExpression) -> str:
     return found[1] if found else reading.text
 
 
-def _stated(module: ast.Module | None) -> tuple[set[str], dict[str, float]]:
+def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
     """What tests compare, and the largest tolerances that they state, as in ``_ReadAtEnd``."""
     compared: set[str] = set()
     tolerances: dict[str, float] = {}
