@@ -112,6 +112,17 @@ def test_a_relation_is_no_more_exact_than_a_value() -> None:
     assert candidates(PROJECT, found)[0] == []
 
 
+def test_two_items_of_a_list_and_two_quantities_are_no_relation() -> None:
+    read = dict.fromkeys(("places[0][2]", "places[2][2]", 'said["gaps"][2]', "goal[2]"), 0.4)
+    found = of([read] * 3, read | {"places[2][2]": 0.9}, *read)
+    said = of([{'said["angles"][2]': 3.0, **read}] * 3, {'said["angles"][2]': 9.0, **read}, *read)
+    near = "assert places[2][2] == pytest.approx({}, abs=0.2)"
+    statements = {check.statement for check in candidates(PROJECT, found)[0]}
+    assert near.format("goal[2]") in statements
+    assert near.format("places[0][2]") not in statements
+    assert not any("gaps" in check.statement for check in candidates(PROJECT, said)[0])
+
+
 def test_a_count_is_equal_and_not_near() -> None:
     ((check,), _) = candidates(PROJECT, of([{"parts": 3}] * 3, {"parts": 4}, "parts"))
     assert check.statement == "assert parts == 3"

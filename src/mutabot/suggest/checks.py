@@ -226,7 +226,7 @@ class _ReadAtEnd:
     def checks(self, reading: ReadExpression) -> Iterator[ProposedCheck]:
         """The checks of a reading: that it equals what the test was given, or a value."""
         text = reading.text
-        partners = [one for one in self.given if one.text != text and _last(one) == _last(reading)]
+        partners = [one for one in self.given if _are_related(one, reading)]
         for other in [*partners[:_PARTNERS], None]:
             texts = [text] if other is None else [text, other.text]
             values = [read[one] for read in self.runs for one in texts]
@@ -318,6 +318,13 @@ def _why_not(check: ProposedCheck, compared: set[str], own: float) -> str | None
     if check.is_exact:
         return f"only an exact value would notice it: {check.statement}"
     return None
+
+
+def _are_related(one: ReadExpression, other: ReadExpression) -> bool:
+    """Whether two readings are the same part of two things: not two items of a list, or angles and gaps."""
+    first, second = _NAME.findall(one.text), _NAME.findall(other.text)
+    are_apart = first[0] != second[0] or (first != second and first[-1] == second[-1])
+    return are_apart and _last(one) == _last(other)
 
 
 def _last(reading: ReadExpression) -> str:
