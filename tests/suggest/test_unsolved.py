@@ -123,6 +123,13 @@ def test_two_items_of_a_list_and_two_quantities_are_no_relation() -> None:
     assert not any("gaps" in check.statement for check in candidates(PROJECT, said)[0])
 
 
+def test_the_suites_tolerance_for_a_list_holds_for_all_items() -> None:
+    found = of([{"places[2][0]": 300}] * 3, {"places[2][0]": 450}, "places[2][0]")
+    stated = _Project("assert places[0] == pytest.approx([1, 2, 3], abs=2)")
+    ((check,), _) = candidates(stated, found)  # type: ignore[arg-type]
+    assert check.statement == "assert places[2][0] == pytest.approx(300.0, abs=2.0)"
+
+
 def test_a_count_is_equal_and_not_near() -> None:
     ((check,), _) = candidates(PROJECT, of([{"parts": 3}] * 3, {"parts": 4}, "parts"))
     assert check.statement == "assert parts == 3"

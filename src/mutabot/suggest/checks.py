@@ -29,8 +29,10 @@ _CLOCK = re.compile(
 )
 #: names of what a person would rather look at, the best first
 _RANKS = (
-    re.compile(r"(?:^|_)(?:[xyz]|pos|position|place|height|distance|depth|gap|width)(?:_|$)", re.I),
-    re.compile(r"(?:^|_)(?:angle|theta|yaw|pitch|roll|tilt|heading|rot\w*|r[xyz]|j\d+|q\d*)(?:_|$)", re.I),
+    re.compile(r"(?:^|_)(?:[xyz]|pos|pose|position|place|height|distance|depth|gap|width)s?(?:_|$)", re.I),
+    re.compile(
+        r"(?:^|_)(?:angle|theta|yaw|pitch|roll|tilt|heading|joint|rot\w*|r[xyz]|j\d+|q\d*)s?(?:_|$)", re.I
+    ),
 )
 
 #: what mutants made tests read: per mutant id, by (round, node id)
@@ -135,7 +137,7 @@ class ProposedCheck:
     @property
     def worth(self) -> tuple[int, ...]:
         """What a person would rather write: no clock, the suite's reader, a relation, a place, few digits."""
-        name = _last(self.reading)
+        name = _last(self.reading.text)
         rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
         digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
@@ -231,7 +233,8 @@ class _ReadAtEnd:
             texts = [text] if other is None else [text, other.text]
             values = [read[one] for read in self.runs for one in texts]
             are_counts = all(isinstance(value, int) for value in values) and len(set(values)) == 1
-            is_near = not are_counts and all(is_number(value) for value in values)
+            is_near = all(is_number(value) for value in values)
+            is_near &= not are_counts or _last(text) in self.stated
             check = self._near(reading, other) if is_near else self._equal(reading, other)
             if check is not None and check.trials:
                 yield check
@@ -256,7 +259,7 @@ class _ReadAtEnd:
         outside = sorted({size for size in sizes.values() if size > band.tolerance})
         if not outside:
             return None
-        stated = self.stated.get(_last(reading), 0.0)
+        stated = self.stated.get(_last(reading.text), 0.0)
         written = [(size, *readable(band, size, stated)) for size in outside]
         # let through what only many digits would notice, or less than the tests allow, if there are others
         own, size = self.allowed(reading.text), float(self.runs[0][reading.text])
@@ -310,7 +313,7 @@ def _why_not(check: ProposedCheck, compared: set[str], own: float) -> str | None
 
     ``compared``, ``own``: the names that the tests compare, and the tolerance that they state for it.
     """
-    text, name = check.reading.text, _last(check.reading)
+    text, name = check.reading.text, _last(check.reading.text)
     if _CLOCK.search(name) and name not in compared:
         return f"only its time differs ({text}), and the tests set no deadline"
     if check.tolerance is not None and check.tolerance < own:
@@ -324,12 +327,13 @@ def _are_related(one: ReadExpression, other: ReadExpression) -> bool:
     """Whether two readings are the same part of two things: not two items of a list, or angles and gaps."""
     first, second = _NAME.findall(one.text), _NAME.findall(other.text)
     are_apart = first[0] != second[0] or (first != second and first[-1] == second[-1])
-    return are_apart and _last(one) == _last(other)
+    parts = [_LAST.findall(text) for text in (one.text, other.text)]
+    return are_apart and parts[0] == parts[1]
 
 
-def _last(reading: ReadExpression) -> str:
-    found = _LAST.search(reading.text)
-    return found[1] if found else reading.text
+def _last(text: str) -> str:
+    """The last name in it, of what may be a list: ``places`` of ``places[0][2]``."""
+    return str([text, *_NAME.findall(text)][-1])
 
 
 def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
@@ -355,9 +359,8 @@ def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
             case _:
                 continue
         text = ast.unparse(looked)
-        last = _LAST.search(text)
         sizes = [one.value for one in allowed if isinstance(one, ast.Constant)]
         for size in (float(size) for size in sizes if is_number(size)):
-            for name in (f"={text}", *([last[1]] if last else [])):
+            for name in (f"={text}", _last(text)):
                 tolerances[name] = max(tolerances.get(name, 0.0), size)
     return compared, tolerances
