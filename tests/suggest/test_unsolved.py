@@ -130,6 +130,13 @@ def test_the_suites_tolerance_for_a_list_holds_for_all_items() -> None:
     assert check.statement == "assert places[2][0] == pytest.approx(300.0, abs=2.0)"
 
 
+def test_the_one_tolerance_of_a_test_holds_for_its_other_places() -> None:
+    found = of([{"arm.z": 0.4, "arm.turn": 0.4}] * 3, {"arm.z": 0.7, "arm.turn": 0.7}, "arm.z", "arm.turn")
+    stated = _Project("def test_it(arm):\n    assert arm.x == pytest.approx(0.3, abs=0.05)\n")
+    checks, _ = candidates(stated, found)  # type: ignore[arg-type]
+    assert {check.reading.text: check.tolerance for check in checks} == {"arm.z": 0.05, "arm.turn": 0.1}
+
+
 def test_a_count_is_equal_and_not_near() -> None:
     ((check,), _) = candidates(PROJECT, of([{"parts": 3}] * 3, {"parts": 4}, "parts"))
     assert check.statement == "assert parts == 3"

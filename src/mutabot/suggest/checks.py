@@ -183,9 +183,10 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
         given = [one for one in readings if _is_given(one.text, originals, mutants)]
         module = project.module(place.file)
         compared, stated = _stated(module)
-        beside, _ = _stated(function_of(module, place))
+        beside, own = _stated(function_of(module, place))
+        usual = max(own.values()) if len(set(own.values())) == 1 else 0.0
         readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
-        seen = _ReadAtEnd(place, runs, mutants, given, stated)
+        seen = _ReadAtEnd(place, runs, mutants, given, stated, usual)
         for check in (check for reading in readings for check in seen.checks(reading)):
             why = _why_not(check, compared, seen.allowed(check.reading.text))
             if why is None:
@@ -217,6 +218,7 @@ class _ReadAtEnd:
         given: the readings of what the test was given.
         stated: the largest tolerance that the tests state, by the last name of what they look at, and by
             all of it with an equals sign before it.
+        usual: the one tolerance that this test states, which then holds for other places too; or 0.
     """
 
     place: PlaceInTest
@@ -224,6 +226,7 @@ class _ReadAtEnd:
     mutants: Mutants
     given: Sequence[ReadExpression]
     stated: Mapping[str, float]
+    usual: float = 0.0
 
     def checks(self, reading: ReadExpression) -> Iterator[ProposedCheck]:
         """The checks of a reading: that it equals what the test was given, or a value."""
@@ -259,7 +262,8 @@ class _ReadAtEnd:
         outside = sorted({size for size in sizes.values() if size > band.tolerance})
         if not outside:
             return None
-        stated = self.stated.get(_last(reading.text), 0.0)
+        name = _last(reading.text)
+        stated = self.stated.get(name, self.usual if _RANKS[0].search(name) else 0.0)
         written = [(size, *readable(band, size, stated)) for size in outside]
         # let through what only many digits would notice, or less than the tests allow, if there are others
         own, size = self.allowed(reading.text), float(self.runs[0][reading.text])
