@@ -11,7 +11,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.suggest.checks import ProposedCheck
 from mutabot.suggest.project import OTHER, ProjectFiles, place_of
-from mutabot.suggest.readings import PROBE, ReadExpression
+from mutabot.suggest.readings import ORACLE, PROBE, ReadExpression, readings_at
 from mutabot.suggest.suggest import texts_with
 
 from .projects import STYLES, make, passes, patched
@@ -62,3 +62,13 @@ def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: ProjectFiles) -> 
     after = text.splitlines(keepends=True)
     assert [line for line in after if line in before] == before
     assert all(line.endswith("\r\n") for line in after[:-1])
+
+
+def test_what_the_tests_compare_is_read_where_its_names_are_at_hand(project: ProjectFiles) -> None:
+    place = place_of(project, NODES["pytest"])
+    assert place is not None
+    file = project.root / place.file
+    added = "\n\ndef test_more(arm, cup):\n    assert arm.z > 0 and cup.z > 0 and arm.state()['x'] > 0\n"
+    file.write_text(file.read_text() + added)
+    texts = {one.text for one in readings_at(ProjectFiles(project.request), place) if one.way == ORACLE}
+    assert texts == {"arm.x", "arm.z"}

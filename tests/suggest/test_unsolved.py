@@ -86,6 +86,91 @@ def test_an_exact_value_is_no_check() -> None:
     assert refused[MUTANT.id].startswith("only an exact value would notice it: assert box.x == ")
 
 
+@pytest.mark.parametrize(
+    ("value", "apart", "statement"),
+    [
+        (0.025, 2e-5, None),
+        (0.0, 2e-5, None),
+        (0.025, 0.01, "assert box.x == pytest.approx(0.025, abs=0.005)"),
+        (0.0, 0.01, "assert box.x == pytest.approx(0.0, abs=0.005)"),
+    ],
+)
+def test_few_digits_with_a_tiny_tolerance_are_an_exact_value(
+    value: float, apart: float, statement: str | None
+) -> None:
+    found = of([{"box.x": value}] * 3, {"box.x": value + apart}, "box.x")
+    found.readings[PLACE] = [ReadExpression("box.x", PROBE, 1e-6)]
+    checks, refused = candidates(PROJECT, found)
+    assert [check.statement for check in checks] == ([statement] if statement else [])
+    assert bool(refused) == (statement is None)
+
+
+def test_a_relation_is_no_more_exact_than_a_value() -> None:
+    read = {"target.x": 0.4, "box.x": 0.4}
+    found = of([read] * 3, {"target.x": 0.4, "box.x": 0.40002}, "box.x", "target.x")
+    found.readings[PLACE] = [ReadExpression(text, PROBE, 1e-6) for text in read]
+    assert candidates(PROJECT, found)[0] == []
+
+
+def test_two_items_of_a_list_and_two_quantities_are_no_relation() -> None:
+    read = dict.fromkeys(("places[0][2]", "places[2][2]", 'said["gaps"][2]', "goal[2]"), 0.4)
+    found = of([read] * 3, read | {"places[2][2]": 0.9}, *read)
+    said = of([{'said["angles"][2]': 3.0, **read}] * 3, {'said["angles"][2]': 9.0, **read}, *read)
+    near = "assert places[2][2] == pytest.approx({}, abs=0.2)"
+    statements = {check.statement for check in candidates(PROJECT, found)[0]}
+    assert near.format("goal[2]") in statements
+    assert near.format("places[0][2]") not in statements
+    assert not any("gaps" in check.statement for check in candidates(PROJECT, said)[0])
+
+
+def test_the_suites_tolerance_for_a_list_holds_for_all_items() -> None:
+    found = of([{"places[2][0]": 300}] * 3, {"places[2][0]": 450}, "places[2][0]")
+    stated = _Project("assert places[0] == pytest.approx([1, 2, 3], abs=2)")
+    ((check,), _) = candidates(stated, found)  # type: ignore[arg-type]
+    assert check.statement == "assert places[2][0] == pytest.approx(300.0, abs=2.0)"
+
+
+def test_the_one_tolerance_of_a_test_holds_for_its_other_places() -> None:
+    found = of([{"arm.z": 0.4, "arm.turn": 0.4}] * 3, {"arm.z": 0.7, "arm.turn": 0.7}, "arm.z", "arm.turn")
+    stated = _Project("def test_it(arm):\n    assert arm.x == pytest.approx(0.3, abs=0.05)\n")
+    checks, _ = candidates(stated, found)  # type: ignore[arg-type]
+    assert {check.reading.text: check.tolerance for check in checks} == {"arm.z": 0.05, "arm.turn": 0.1}
+
+
+def test_a_count_is_equal_and_not_near() -> None:
+    ((check,), _) = candidates(PROJECT, of([{"parts": 3}] * 3, {"parts": 4}, "parts"))
+    assert check.statement == "assert parts == 3"
+
+
+def test_the_expression_that_the_suite_reads_comes_first_and_a_clock_last() -> None:
+    found = of([dict.fromkeys(("arm.x", "arm.z()", "arm.time"), 1.0)] * 3, {}, "arm.x", "arm.z()", "arm.time")
+    found.mutants[PLACE][MUTANT.id] = {(0, PLACE.node): dict.fromkeys(("arm.x", "arm.z()", "arm.time"), 9.0)}
+    checks, _ = candidates(_Project("assert arm.z() > 0 and arm.time < 3"), found)  # type: ignore[arg-type]
+    ranked = sorted(checks, key=lambda check: check.worth, reverse=True)
+    assert [check.reading.text for check in ranked] == ["arm.z()", "arm.x", "arm.time"]
+
+
+def test_a_check_stands_in_the_test_that_looks_at_the_same_thing() -> None:
+    text = "def test_ends(end):\n    assert end\n\ndef test_x(end):\n    assert end[0] == 1.0\n"
+    found = of([{"end[1]": 2.0}] * 3, {"end[1]": 9.0}, "end[1]")
+    places = [PlaceInTest("pytest", PLACE.file, f"{PLACE.file}::{name}") for name in ("test_ends", "test_x")]
+    both = Measured(
+        originals=dict.fromkeys(places, found.originals[PLACE]),
+        mutants=dict.fromkeys(places, found.mutants[PLACE]),
+        readings=dict.fromkeys(places, found.readings[PLACE]),
+    )
+    checks, _ = candidates(_Project(text), both)  # type: ignore[arg-type]
+    assert max(checks, key=lambda check: check.worth).place == places[1]
+
+
+def test_what_the_tests_allow_holds_under_any_name() -> None:
+    found = of([{"arm.x": 0.4, "arm.place()": 0.4}] * 3, {"arm.x": 0.45, "arm.place()": 0.45}, "arm.place()")
+    stated = _Project("assert arm.x == pytest.approx(0.4, abs=0.1)")
+    checks, refused = candidates(stated, found)  # type: ignore[arg-type]
+    assert checks == []
+    assert "less than the tests allow" in refused[MUTANT.id]
+
+
 def test_the_tolerance_is_that_of_the_suite_where_it_notices_as_much() -> None:
     found = of([{"box.x": 0.3}] * 3, {"box.x": 0.9}, "box.x")
     stated = _Project("assert cup.x == pytest.approx(0.5, abs=0.03)")

@@ -9,16 +9,17 @@ import ast
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import takewhile
 from typing import Any
 
 from mutabot.frozen import frozen
 
-from .project import Addition, PlaceInTest, ProjectFiles, equal, within
-from .readings import Measured, Read, ReadExpression, is_number, known
+from .project import Addition, PlaceInTest, ProjectFiles, equal, function_of, within
+from .readings import ORACLE, Measured, Read, ReadExpression, is_number, known
 
 CONFIDENCE = 0.95
-#: digits of a value above which it is no more than what the original happened to read
+#: digits of a value, down to its tolerance, above which it is no more than what the original happened to read
 _DIGITS = 3
 _PARTNERS = 8
 _NAME = re.compile(r"[^\W\d]\w*")
@@ -28,8 +29,10 @@ _CLOCK = re.compile(
 )
 #: names of what a person would rather look at, the best first
 _RANKS = (
-    re.compile(r"(?:^|_)(?:[xyz]|pos|position|place|height|distance|depth|gap|width)(?:_|$)", re.I),
-    re.compile(r"(?:^|_)(?:angle|theta|yaw|pitch|roll|tilt|heading|rot\w*|r[xyz]|j\d+|q\d*)(?:_|$)", re.I),
+    re.compile(r"(?:^|_)(?:[xyz]|pos|pose|position|place|height|distance|depth|gap|width)s?(?:_|$)", re.I),
+    re.compile(
+        r"(?:^|_)(?:angle|theta|yaw|pitch|roll|tilt|heading|joint|rot\w*|r[xyz]|j\d+|q\d*)s?(?:_|$)", re.I
+    ),
 )
 
 #: what mutants made tests read: per mutant id, by (round, node id)
@@ -98,6 +101,11 @@ def digits_of(value: float) -> int:
     return len(f"{value!r}".partition("e")[0].replace(".", "").strip("-0")) if value else 1
 
 
+def precision_of(value: float, tolerance: float) -> int:
+    """How many digits of a value a check asks for, down to that of its tolerance; zero counts like 0.1."""
+    return math.floor(math.log10(abs(value) or 0.1)) - math.floor(math.log10(tolerance) + 1e-9) + 1
+
+
 @dataclass(frozen=True, eq=False)
 class ProposedCheck:
     """A check at the end of a test.
@@ -111,6 +119,8 @@ class ProposedCheck:
         tolerance: greatest distance; None if both must be equal.
         trials: the mutants and rounds that it would notice.
         is_clear: whether all of these are far off: ten times what the original may be.
+        is_exact: whether it asks for more digits than the suite justifies.
+        alike: how much its reading has in common with what its test looks at already.
     """
 
     place: PlaceInTest
@@ -121,15 +131,18 @@ class ProposedCheck:
     tolerance: float | None = None
     trials: Trials = frozenset()
     is_clear: bool = True
+    is_exact: bool = False
+    alike: int = 0
 
     @property
     def worth(self) -> tuple[int, ...]:
-        """What a person would rather write: the suite's reader, a relation, a place, far off, few digits."""
-        name = _last(self.reading)
+        """What a person would rather write: no clock, the suite's reader, a relation, a place, few digits."""
+        name = _last(self.reading.text)
         rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
         digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
-        return -self.reading.way, is_relation, -rank, self.is_clear, -digits, -len(self.statement)
+        kind = not _CLOCK.search(name), -self.reading.way, is_relation, -rank
+        return *kind, self.is_clear, -digits, self.alike, -len(self.statement)
 
     @property
     def statement(self) -> str:
@@ -168,12 +181,18 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
             continue
         readings = [known(measured, place, text) for text in runs[0] if all(text in read for read in runs)]
         given = [one for one in readings if _is_given(one.text, originals, mutants)]
-        compared, stated = _stated(project.module(place.file))
-        seen = _ReadAtEnd(place, runs, mutants, given, stated)
+        module = project.module(place.file)
+        compared, stated = _stated(module)
+        beside, own = _stated(function_of(module, place))
+        usual = max(own.values()) if len(set(own.values())) == 1 else 0.0
+        readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
+        seen = _ReadAtEnd(place, runs, mutants, given, stated, usual)
         for check in (check for reading in readings for check in seen.checks(reading)):
-            why = _why_not(check, compared, stated)
+            why = _why_not(check, compared, seen.allowed(check.reading.text))
             if why is None:
-                found.append(check)
+                pairs = (zip(check.reading.text, one, strict=False) for one in beside)
+                common = (len([*takewhile(lambda pair: pair[0] == pair[1], each)]) for each in pairs)
+                found.append(replace(check, alike=max(common, default=0)))
             else:
                 refused.update((mutant, why) for mutant, _ in check.trials)
     return found, refused
@@ -199,6 +218,7 @@ class _ReadAtEnd:
         given: the readings of what the test was given.
         stated: the largest tolerance that the tests state, by the last name of what they look at, and by
             all of it with an equals sign before it.
+        usual: the one tolerance that this test states, which then holds for other places too; or 0.
     """
 
     place: PlaceInTest
@@ -206,17 +226,28 @@ class _ReadAtEnd:
     mutants: Mutants
     given: Sequence[ReadExpression]
     stated: Mapping[str, float]
+    usual: float = 0.0
 
     def checks(self, reading: ReadExpression) -> Iterator[ProposedCheck]:
         """The checks of a reading: that it equals what the test was given, or a value."""
         text = reading.text
-        partners = [one for one in self.given if one.text != text and _last(one) == _last(reading)]
+        partners = [one for one in self.given if _are_related(one, reading)]
         for other in [*partners[:_PARTNERS], None]:
             texts = [text] if other is None else [text, other.text]
-            are_numbers = all(is_number(read[one]) for read in self.runs for one in texts)
-            check = self._near(reading, other) if are_numbers else self._equal(reading, other)
+            values = [read[one] for read in self.runs for one in texts]
+            are_counts = all(isinstance(value, int) for value in values) and len(set(values)) == 1
+            is_near = all(is_number(value) for value in values)
+            is_near &= not are_counts or _last(text) in self.stated
+            check = self._near(reading, other) if is_near else self._equal(reading, other)
             if check is not None and check.trials:
                 yield check
+
+    def allowed(self, text: str) -> float:
+        """The tolerance that the tests state for what a reading reads, under whatever name."""
+        reads = [*self.runs, *(read for found in self.mutants.values() for read in found.values())]
+        names = (name for name in self.stated if name.startswith("="))
+        same = (name for name in names if all(read.get(name[1:]) == read.get(text) for read in reads))
+        return max((self.stated[name] for name in {*same, f"={text}"} if name in self.stated), default=0.0)
 
     def _near(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
         """The check that a number is near another reading, or near a value."""
@@ -231,11 +262,17 @@ class _ReadAtEnd:
         outside = sorted({size for size in sizes.values() if size > band.tolerance})
         if not outside:
             return None
-        stated = self.stated.get(_last(reading), 0.0)
+        name = _last(reading.text)
+        stated = self.stated.get(name, self.usual if _RANKS[0].search(name) else 0.0)
         written = [(size, *readable(band, size, stated)) for size in outside]
         # let through what only many digits would notice, or less than the tests allow, if there are others
-        own = self.stated.get(f"={reading.text}", 0.0)
-        fitting = (one for one in written if digits_of(one[1]) <= _DIGITS and one[2] >= own)
+        own, size = self.allowed(reading.text), float(self.runs[0][reading.text])
+
+        def is_exact(value: float, wide: float) -> bool:
+            digits = max(digits_of(value), precision_of(value if other is None else size, wide))
+            return digits > _DIGITS and not 0 < stated <= wide
+
+        fitting = (one for one in written if not is_exact(*one[1:]) and one[2] >= own)
         nearest, value, wide = next(fitting, written[0])
         if other is not None and abs(band.middle) > wide - band.tolerance:
             return None  # it is always as far from it, but not there
@@ -243,8 +280,9 @@ class _ReadAtEnd:
         trials = _beyond(self._furthest(lambda read: abs(apart(read) - middle)), wide)
         expected = value if other is None else other
         is_clear = nearest >= 10 * band.tolerance
+        exact = is_exact(value, wide)
         return ProposedCheck(
-            self.place, reading, expected, len(self.runs), band.spread, wide, trials, is_clear
+            self.place, reading, expected, len(self.runs), band.spread, wide, trials, is_clear, exact
         )
 
     def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
@@ -274,34 +312,42 @@ def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
     return frozenset(trial for trial, size in sizes.items() if size > tolerance)
 
 
-def _why_not(check: ProposedCheck, compared: set[str], stated: Mapping[str, float]) -> str | None:
+def _why_not(check: ProposedCheck, compared: set[str], own: float) -> str | None:
     """Why a person would not merge it; None if one may.
 
-    ``compared``, ``stated``: the names that the tests compare, and the tolerances that they state.
+    ``compared``, ``own``: the names that the tests compare, and the tolerance that they state for it.
     """
-    text, name = check.reading.text, _last(check.reading)
+    text, name = check.reading.text, _last(check.reading.text)
     if _CLOCK.search(name) and name not in compared:
         return f"only its time differs ({text}), and the tests set no deadline"
-    own = stated.get(f"={text}", 0.0)
     if check.tolerance is not None and check.tolerance < own:
         return f"{text} differs by less than the tests allow: {own!r}"
-    if is_number(check.value) and digits_of(float(check.value)) > _DIGITS:
+    if check.is_exact:
         return f"only an exact value would notice it: {check.statement}"
     return None
 
 
-def _last(reading: ReadExpression) -> str:
-    found = _LAST.search(reading.text)
-    return found[1] if found else reading.text
+def _are_related(one: ReadExpression, other: ReadExpression) -> bool:
+    """Whether two readings are the same part of two things: not two items of a list, or angles and gaps."""
+    first, second = _NAME.findall(one.text), _NAME.findall(other.text)
+    are_apart = first[0] != second[0] or (first != second and first[-1] == second[-1])
+    parts = [_LAST.findall(text) for text in (one.text, other.text)]
+    return are_apart and parts[0] == parts[1]
 
 
-def _stated(module: ast.Module | None) -> tuple[set[str], dict[str, float]]:
-    """The names that tests compare, and the largest tolerances that they state: see ``_ReadAtEnd``."""
+def _last(text: str) -> str:
+    """The last name in it, of what may be a list: ``places`` of ``places[0][2]``."""
+    return str([text, *_NAME.findall(text)][-1])
+
+
+def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
+    """What tests compare, and the largest tolerances that they state, as in ``_ReadAtEnd``."""
     compared: set[str] = set()
     tolerances: dict[str, float] = {}
     for node in ast.walk(module) if module is not None else ():
         if isinstance(node, ast.Compare):
             compared.update(_NAME.findall(ast.unparse(node)))
+            compared.update(ast.unparse(one) for one in ast.walk(node) if isinstance(one, ast.expr))
         match node:
             case ast.Compare(left=looked, comparators=[ast.Call(keywords=keywords)]):
                 allowed = [one.value for one in keywords if one.arg == "abs"]
@@ -317,9 +363,8 @@ def _stated(module: ast.Module | None) -> tuple[set[str], dict[str, float]]:
             case _:
                 continue
         text = ast.unparse(looked)
-        last = _LAST.search(text)
         sizes = [one.value for one in allowed if isinstance(one, ast.Constant)]
         for size in (float(size) for size in sizes if is_number(size)):
-            for name in (f"={text}", *([last[1]] if last else [])):
+            for name in (f"={text}", _last(text)):
                 tolerances[name] = max(tolerances.get(name, 0.0), size)
     return compared, tolerances

@@ -182,15 +182,21 @@ def place_of(project: ProjectFiles, test: str) -> PlaceInTest | None:
     module = project.module(file)
     if module is None or len(path) not in (1, 2):
         return None
-    owner = module if len(path) == 1 else _defined(module, path[0])
-    found = _defined(owner, path[-1]) if owner is not None else None
-    function = found if isinstance(found, Function) else None
+    function = function_of(module, PlaceInTest(OTHER, file, node))
     if len(path) == 1 and (function is None or _is_scenario(function)):
         return PlaceInTest(OTHER, file, node, _given_around(project, file))
     if function is None or not _has_end(function):
         return None
     is_case = len(path) == 2 and _is_test_case(module, path[0])
     return PlaceInTest(UNITTEST if is_case else PYTEST, file, node, _names(function))
+
+
+def function_of(module: ast.Module | None, place: PlaceInTest) -> Function | None:
+    """The function of a place in its parsed file; None where it has none."""
+    found: ast.Module | Definition | None = module
+    for name in place.path:
+        found = _defined(found, name) if found is not None else None
+    return found if isinstance(found, Function) else None
 
 
 def _is_scenario(function: Function) -> bool:

@@ -21,9 +21,10 @@ from mutabot.campaign.run import as_it_is_now, open_executor
 from mutabot.frozen import frozen
 from mutabot.model import Mutant, Operation, Probe
 from mutabot.model.events import TestEnd
+from mutabot.model.operation import owner_of
 from mutabot.model.quantity import step_of
 
-from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in
+from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in, top_names
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
@@ -60,11 +61,8 @@ def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpressio
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
     found = [*_by_oracle(project, place, module, coarse)]
-    calls = [
-        (one.target, ["()", ""], one.tolerance)
-        for one in vocabulary.probes
-        if "." not in one.target.partition(":")[2]
-    ]
+    found += [ReadExpression(text, ORACLE, coarse) for text in _by_tests(place, module)]
+    calls = [(one.target, ["()", ""], one.tolerance) for one in vocabulary.probes if not owner_of(one.target)]
     calls += [(one.target, list(_calls(one)), coarse) for one in vocabulary.operations]
     for target, endings, tolerance in calls:
         where, _, attribute = target.partition(":")
@@ -78,9 +76,7 @@ def of_objects(project: ProjectFiles) -> list[tuple[str, float]]:
     """Readings of objects, ``module:Class.name``, each with its tolerance."""
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
-    found = {
-        probe.target: probe.tolerance for probe in vocabulary.probes if "." in probe.target.partition(":")[2]
-    }
+    found = {probe.target: probe.tolerance for probe in vocabulary.probes if owner_of(probe.target)}
     for one in vocabulary.operations:
         if _only_reads(one) and not one.patterns and "." in one.qualname:
             found.setdefault(one.target, coarse)
@@ -104,6 +100,19 @@ def _by_oracle(
                 continue
             name, needs = name_in(module, project.import_name(file), node.name, place.names)
             yield ReadExpression(f"{name}({', '.join(needed)})", ORACLE, tolerance, needs)
+
+
+def _by_tests(place: PlaceInTest, module: ast.Module) -> Iterator[str]:
+    """What the tests of a file compare and nothing is called for, where all of its names are at hand."""
+    at_hand = {*place.names, *top_names(module)}
+    for compared in (node for node in ast.walk(module) if isinstance(node, ast.Compare)):
+        called = [node.func for node in ast.walk(compared) if isinstance(node, ast.Call)]
+        for one in ast.walk(compared):
+            parts = [*ast.walk(one)]
+            names = {part.id for part in parts if isinstance(part, ast.Name)}
+            is_plain = one not in called and not any(isinstance(part, ast.Call | ast.Slice) for part in parts)
+            if isinstance(one, ast.Attribute | ast.Subscript) and names <= at_hand and is_plain:
+                yield ast.unparse(one)
 
 
 def _only_reads(operation: Operation) -> bool:
