@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER
@@ -34,6 +35,20 @@ class GuardCondition(Waitable):
 KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
 
 
+def _adder(kind: str) -> Callable[[WaitSet, Any], int]:
+    """A method of a wait set: adds a member of a kind. An executor calls it for each of its entities."""
+
+    def add(self: WaitSet, member: Any) -> int:
+        members = self._members[kind]
+        index = len(members)
+        if index >= self._sizes[kind]:
+            raise RCLError(f"failed to add {kind} to wait set: {kind}s set is full")
+        members.append(member)
+        return index
+
+    return add
+
+
 class WaitSet(Destroyable):
     """What an executor waits for."""
 
@@ -51,31 +66,12 @@ class WaitSet(Destroyable):
         self._members = {kind: [] for kind in KINDS}
         self._ready = {}
 
-    def _add(self, kind: str, member: Any) -> int:
-        members = self._members[kind]
-        index = len(members)
-        if index >= self._sizes[kind]:
-            raise RCLError(f"failed to add {kind} to wait set: {kind}s set is full")
-        members.append(member)
-        return index
-
-    def add_subscription(self, member: Any) -> int:
-        return self._add("subscription", member)
-
-    def add_guard_condition(self, member: GuardCondition) -> int:
-        return self._add("guard_condition", member)
-
-    def add_timer(self, member: Any) -> int:
-        return self._add("timer", member)
-
-    def add_client(self, member: Any) -> int:
-        return self._add("client", member)
-
-    def add_service(self, member: Any) -> int:
-        return self._add("service", member)
-
-    def add_event(self, member: Any) -> int:
-        return self._add("event", member)
+    add_subscription = _adder("subscription")
+    add_guard_condition = _adder("guard_condition")
+    add_timer = _adder("timer")
+    add_client = _adder("client")
+    add_service = _adder("service")
+    add_event = _adder("event")
 
     def wait(self, timeout: int) -> None:
         """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
@@ -84,11 +80,13 @@ class WaitSet(Destroyable):
             raise RCLError("failed to wait on wait set: wait set is empty")
         if timeout == 0:
             SCHEDULER.poll()
-        elif not any(member.is_ready for member in members):
+        self._look()
+        if timeout and not any(map(any, self._ready.values())):
             self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
-        elif SCHEDULER.is_preemptive:
+            self._look()
+        elif timeout and SCHEDULER.is_preemptive:
             SCHEDULER.pause()
-        self._ready = {kind: [member.is_ready for member in self._members[kind]] for kind in KINDS}
+            self._look()
         if SCHEDULER.is_preemptive:
             self._keep_some()
         for guard, is_ready in zip(
@@ -97,15 +95,22 @@ class WaitSet(Destroyable):
             if is_ready:
                 guard.reset()
 
+    def _look(self) -> None:
+        """Note which members are ready."""
+        self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
+
     def _park(self, members: list[Any], end: int | None) -> None:
+        """Wait until one of the members is ready, which none is now, or until the end."""
         task = SCHEDULER.current
         for member in members:
             member.watchers.append(task)
         try:
-            while not any(member.is_ready for member in members) and (end is None or SCHEDULER.now < end):
+            while end is None or SCHEDULER.now < end:
                 dues = [timer.deadline for timer in self._members["timer"]]
                 deadlines = [due for due in (*dues, end) if due is not None]
                 SCHEDULER.park(min(deadlines, default=None), "waits for ROS")
+                if any(member.is_ready for member in members):
+                    break
         finally:
             for member in members:
                 member.watchers.remove(task)
@@ -121,15 +126,14 @@ class WaitSet(Destroyable):
 
     def is_ready(self, kind: str, index: int) -> bool:
         """Whether a member was ready after the wait; before one, whether there is a member."""
-        size = self._sizes.get(kind)
-        if size is None:
-            raise RuntimeError(f"'{kind}' is not a known entity")
-        if index >= size:
-            raise IndexError("wait set index too big")
         flags = self._ready.get(kind)
-        if flags is None:
-            return index < len(self._members[kind])
-        return index < len(flags) and flags[index]
+        if flags is not None and index < len(flags):
+            return flags[index]
+        if kind not in self._sizes:
+            raise RuntimeError(f"'{kind}' is not a known entity")
+        if index >= self._sizes[kind]:
+            raise IndexError("wait set index too big")
+        return flags is None and index < len(self._members[kind])
 
     def get_ready_entities(self, kind: str) -> list[int]:
         if kind not in KINDS or kind == "event":
