@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
+from weakref import ref
 
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER
 from mutabot_ros.simulation.middleware.graph import Destroyable, Participant, Waitable
@@ -19,6 +21,9 @@ class GuardCondition(Waitable):
     def __init__(self, context: Participant) -> None:
         super().__init__()
         self._is_triggered = False
+        maker = sys._getframe(2)  # below it, rclpy's own class of guard conditions
+        is_of_executor = maker.f_globals.get("__name__") == "rclpy.executors"
+        self._executor = ref(maker.f_locals["self"]) if is_of_executor else None
 
     def trigger_guard_condition(self) -> None:
         self._is_triggered = True
@@ -30,6 +35,28 @@ class GuardCondition(Waitable):
 
     def reset(self) -> None:
         self._is_triggered = False
+
+    @property
+    def tells_nothing_new(self) -> bool:
+        """Whether an executor that begins to wait would look at the same again if this woke it.
+
+        An executor triggers a guard condition of its own after each callback. One with a single thread that
+        has no task under way has gathered everything since then, without a switch of threads. Waitables that
+        are not rclpy's may count on being looked at once more.
+        """
+        executor = None if self._executor is None else self._executor()
+        return (
+            executor is not None
+            and type(executor).__qualname__ == "SingleThreadedExecutor"
+            and type(executor).__module__ == "rclpy.executors"
+            and not executor._tasks
+            and _are_rclpys(sys.modules["rclpy.waitable"].Waitable)
+        )
+
+
+def _are_rclpys(kind: Any) -> bool:
+    """Whether all that is derived from a class is part of rclpy."""
+    return all(one.__module__.startswith("rclpy.") and _are_rclpys(one) for one in kind.__subclasses__())
 
 
 KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
@@ -81,6 +108,8 @@ class WaitSet(Destroyable):
         if timeout == 0:
             SCHEDULER.poll()
         self._look()
+        if timeout and not SCHEDULER.is_preemptive:
+            self._pass_over_what_is_known()
         if timeout and not any(map(any, self._ready.values())):
             self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
             self._look()
@@ -98,6 +127,15 @@ class WaitSet(Destroyable):
     def _look(self) -> None:
         """Note which members are ready."""
         self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
+
+    def _pass_over_what_is_known(self) -> None:
+        """Wait on if all that is ready is a guard condition that tells nothing new."""
+        flags = self._ready["guard_condition"]
+        if any(flags) and sum(map(sum, self._ready.values())) == 1:
+            guard = self._members["guard_condition"][flags.index(True)]
+            if guard.tells_nothing_new:
+                guard.reset()
+                self._look()
 
     def _park(self, members: list[Any], end: int | None) -> None:
         """Wait until one of the members is ready, which none is now, or until the end."""
