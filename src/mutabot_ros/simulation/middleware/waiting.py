@@ -108,7 +108,10 @@ class WaitSet(Destroyable):
         if timeout == 0:
             SCHEDULER.poll()
         self._look()
-        if timeout and not SCHEDULER.is_preemptive:
+        timers = self._members["timer"]
+        # the last timer is that of the executor's time-out: it runs already if tasks came before this wait
+        has_just_begun = timeout < 0 or (timers and timers[-1].time_until_next_call() == timeout)
+        if timeout and has_just_begun and not SCHEDULER.is_preemptive:
             self._pass_over_what_is_known()
         if timeout and not any(map(any, self._ready.values())):
             self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
