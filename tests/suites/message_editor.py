@@ -67,6 +67,13 @@ class MessageEditor:
 
     def _wrapping(self, wrapper: str) -> list[Edit]:
         """The calls' edits; ``wrapper`` is the text of a function that takes a callable and gives another."""
+        definition = self._definition()
+        if definition is not None:
+            if not wrapper.startswith(f"{MESSAGES}.with_reply("):
+                raise CannotWriteError("only what a callback is given can be changed at its definition")
+            start, _ = self.source.range(definition)
+            indentation = " " * definition.col_offset
+            return [Edit(self.source.name, start, start, f"@{MESSAGES}.given({wrapper})\n{indentation}")]
         call = self._call_of_the_program()
         file, text = self.facts.hints.get("raw", {}).get(self.target, (None, None))
         if file is None:
@@ -80,6 +87,12 @@ class MessageEditor:
             self._replaced(self.source, call.func, f'{MESSAGES}.armed("site", ', ")"),
             *(self._replaced(raw, one.func, below, f", {wrapper})") for one in found),
         ]
+
+    def _definition(self) -> ast.FunctionDef | None:
+        """The callback that the mutant is about, if it stands at one."""
+        line = self.mutant["span"]["line"]
+        found = (node for node in self.source.nodes(ast.FunctionDef) if node.lineno == line)
+        return next(found, None) if self.form == "receive" else None
 
     def _call_of_the_program(self) -> ast.Call:
         span = self.mutant["span"]

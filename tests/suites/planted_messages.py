@@ -358,6 +358,19 @@ def callback(what: Callable[[Any], list[Any]]) -> Wrapper:
     return decorated
 
 
+def given(wrapper: Wrapper) -> Wrapper:
+    """A decorator of a callback: its last argument, a message, comes as ``wrapper`` changes a reply."""
+
+    def decorated(function: Any) -> Any:
+        @functools.wraps(function)
+        def called(*given: Any) -> Any:
+            return function(*given[:-1], wrapper(lambda: given[-1])())
+
+        return called
+
+    return decorated
+
+
 # set up
 
 

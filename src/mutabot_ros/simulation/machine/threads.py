@@ -77,7 +77,7 @@ class Lock:
         self._is_held = True
         return True
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object = None, error: object = None, trace: object = None) -> None:
         if self._waiting or not self._is_held:
             self.release()
         self._is_held = False

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
 from typing import Any
+from weakref import ref
 
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER
 from mutabot_ros.simulation.middleware.graph import Destroyable, Participant, Waitable
@@ -18,6 +21,9 @@ class GuardCondition(Waitable):
     def __init__(self, context: Participant) -> None:
         super().__init__()
         self._is_triggered = False
+        maker = sys._getframe(2)  # below it, rclpy's own class of guard conditions
+        is_of_executor = maker.f_globals.get("__name__") == "rclpy.executors"
+        self._executor = ref(maker.f_locals["self"]) if is_of_executor else None
 
     def trigger_guard_condition(self) -> None:
         self._is_triggered = True
@@ -30,8 +36,44 @@ class GuardCondition(Waitable):
     def reset(self) -> None:
         self._is_triggered = False
 
+    @property
+    def tells_nothing_new(self) -> bool:
+        """Whether an executor that begins to wait would look at the same again if this woke it.
+
+        An executor triggers a guard condition of its own after each callback. One with a single thread that
+        has no task under way has gathered everything since then, without a switch of threads. Waitables that
+        are not rclpy's may count on being looked at once more.
+        """
+        executor = None if self._executor is None else self._executor()
+        return (
+            executor is not None
+            and type(executor).__qualname__ == "SingleThreadedExecutor"
+            and type(executor).__module__ == "rclpy.executors"
+            and not executor._tasks
+            and _are_rclpys(sys.modules["rclpy.waitable"].Waitable)
+        )
+
+
+def _are_rclpys(kind: Any) -> bool:
+    """Whether all that is derived from a class is part of rclpy."""
+    return all(one.__module__.startswith("rclpy.") and _are_rclpys(one) for one in kind.__subclasses__())
+
 
 KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
+
+
+def _adder(kind: str) -> Callable[[WaitSet, Any], int]:
+    """A method of a wait set: adds a member of a kind. An executor calls it for each of its entities."""
+
+    def add(self: WaitSet, member: Any) -> int:
+        members = self._members[kind]
+        index = len(members)
+        if index >= self._sizes[kind]:
+            raise RCLError(f"failed to add {kind} to wait set: {kind}s set is full")
+        members.append(member)
+        return index
+
+    return add
 
 
 class WaitSet(Destroyable):
@@ -51,31 +93,12 @@ class WaitSet(Destroyable):
         self._members = {kind: [] for kind in KINDS}
         self._ready = {}
 
-    def _add(self, kind: str, member: Any) -> int:
-        members = self._members[kind]
-        index = len(members)
-        if index >= self._sizes[kind]:
-            raise RCLError(f"failed to add {kind} to wait set: {kind}s set is full")
-        members.append(member)
-        return index
-
-    def add_subscription(self, member: Any) -> int:
-        return self._add("subscription", member)
-
-    def add_guard_condition(self, member: GuardCondition) -> int:
-        return self._add("guard_condition", member)
-
-    def add_timer(self, member: Any) -> int:
-        return self._add("timer", member)
-
-    def add_client(self, member: Any) -> int:
-        return self._add("client", member)
-
-    def add_service(self, member: Any) -> int:
-        return self._add("service", member)
-
-    def add_event(self, member: Any) -> int:
-        return self._add("event", member)
+    add_subscription = _adder("subscription")
+    add_guard_condition = _adder("guard_condition")
+    add_timer = _adder("timer")
+    add_client = _adder("client")
+    add_service = _adder("service")
+    add_event = _adder("event")
 
     def wait(self, timeout: int) -> None:
         """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
@@ -84,11 +107,18 @@ class WaitSet(Destroyable):
             raise RCLError("failed to wait on wait set: wait set is empty")
         if timeout == 0:
             SCHEDULER.poll()
-        elif not any(member.is_ready for member in members):
+        self._look()
+        timers = self._members["timer"]
+        # the last timer is that of the executor's time-out: it runs already if tasks came before this wait
+        has_just_begun = timeout < 0 or (timers and timers[-1].time_until_next_call() == timeout)
+        if timeout and has_just_begun and not SCHEDULER.is_preemptive:
+            self._pass_over_what_is_known()
+        if timeout and not any(map(any, self._ready.values())):
             self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
-        elif SCHEDULER.is_preemptive:
+            self._look()
+        elif timeout and SCHEDULER.is_preemptive:
             SCHEDULER.pause()
-        self._ready = {kind: [member.is_ready for member in self._members[kind]] for kind in KINDS}
+            self._look()
         if SCHEDULER.is_preemptive:
             self._keep_some()
         for guard, is_ready in zip(
@@ -97,15 +127,31 @@ class WaitSet(Destroyable):
             if is_ready:
                 guard.reset()
 
+    def _look(self) -> None:
+        """Note which members are ready."""
+        self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
+
+    def _pass_over_what_is_known(self) -> None:
+        """Wait on if all that is ready is a guard condition that tells nothing new."""
+        flags = self._ready["guard_condition"]
+        if any(flags) and sum(map(sum, self._ready.values())) == 1:
+            guard = self._members["guard_condition"][flags.index(True)]
+            if guard.tells_nothing_new:
+                guard.reset()
+                self._look()
+
     def _park(self, members: list[Any], end: int | None) -> None:
+        """Wait until one of the members is ready, which none is now, or until the end."""
         task = SCHEDULER.current
         for member in members:
             member.watchers.append(task)
         try:
-            while not any(member.is_ready for member in members) and (end is None or SCHEDULER.now < end):
+            while end is None or SCHEDULER.now < end:
                 dues = [timer.deadline for timer in self._members["timer"]]
                 deadlines = [due for due in (*dues, end) if due is not None]
                 SCHEDULER.park(min(deadlines, default=None), "waits for ROS")
+                if any(member.is_ready for member in members):
+                    break
         finally:
             for member in members:
                 member.watchers.remove(task)
@@ -121,15 +167,14 @@ class WaitSet(Destroyable):
 
     def is_ready(self, kind: str, index: int) -> bool:
         """Whether a member was ready after the wait; before one, whether there is a member."""
-        size = self._sizes.get(kind)
-        if size is None:
-            raise RuntimeError(f"'{kind}' is not a known entity")
-        if index >= size:
-            raise IndexError("wait set index too big")
         flags = self._ready.get(kind)
-        if flags is None:
-            return index < len(self._members[kind])
-        return index < len(flags) and flags[index]
+        if flags is not None and index < len(flags):
+            return flags[index]
+        if kind not in self._sizes:
+            raise RuntimeError(f"'{kind}' is not a known entity")
+        if index >= self._sizes[kind]:
+            raise IndexError("wait set index too big")
+        return flags is None and index < len(self._members[kind])
 
     def get_ready_entities(self, kind: str) -> list[int]:
         if kind not in KINDS or kind == "event":
