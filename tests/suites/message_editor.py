@@ -58,6 +58,8 @@ class MessageEditor:
 
         Raises CannotWriteError where this editor knows none.
         """
+        if self.form == "parameter":
+            raise CannotWriteError("what a parameter reads")
         method: Callable[[], str] | None = getattr(
             self, "_" + self.mutant["operator"].replace("-", "_"), None
         )
