@@ -78,7 +78,10 @@ def a_process_has_its_own_arguments() -> Any:
     arguments = ("--ros-args", "-p", "offset:=5", "-r", "__ns:=/arm", "-r", "add:=sum")
     with adder(*arguments, name="/arm/sum") as (graph, client, _):
         (asker,) = graph
-        return ask(graph, client, 2), sorted(asker.get_fully_qualified_node_names())
+        answer = ask(graph, client, 2)
+        # a service is found through its endpoints, a node by what its participant tells later
+        graph.until(lambda: "/arm/adder" in asker.get_fully_qualified_node_names())
+        return answer, sorted(asker.get_fully_qualified_node_names())
 
 
 @behaviour()
