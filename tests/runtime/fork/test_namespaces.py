@@ -1,12 +1,18 @@
 """A fork has the process id of its parent, and its clock leaves out what the parent has waited."""
 
+import json
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.skipif(os.geteuid() != 0, reason="an ordinary user needs a user namespace")
+SUITES = Path(__file__).parents[2] / "suites" / "projects"
+PRIVILEGED = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a fork the id of its parent")
+#: as an ordinary user: without any right, in a user namespace
+ORDINARY = ["unshare", "--user", "--map-user=1000", "--map-group=1000"]
 
 FORKED = """
 import os, subprocess
@@ -54,9 +60,34 @@ def said_by(script: str) -> list[str]:
     return done.stdout.splitlines()
 
 
+@PRIVILEGED
 def test_a_fork_has_the_id_of_its_parent_and_all_that_it_leaves_ends() -> None:
     assert said_by(FORKED) == ["(True, True)", "7", "no other child", "held", "gone"]
 
 
+@PRIVILEGED
 def test_the_clock_leaves_out_what_passed() -> None:
     assert said_by(CLOCK) == ["True", "True True", "True"]
+
+
+@pytest.mark.skipif(
+    subprocess.run([*ORDINARY, "true"], check=False, capture_output=True).returncode != 0,
+    reason="no user namespaces here",
+)
+@pytest.mark.parametrize(
+    ("project", "engine"), [("deadline_over_the_call", "fork"), ("process_id_checked", "replay")]
+)
+def test_an_ordinary_user_forks_what_does_not_ask_for_its_id(
+    project: str, engine: str, tmp_path: Path
+) -> None:
+    """Nobody but root can give a fork its parent's id: such a program runs in processes of its own."""
+    folder = tmp_path / project
+    shutil.copytree(SUITES / project, folder)
+    command = [*ORDINARY, sys.executable, "-m", "mutabot", "-C", str(folder), "run", "--json", "-j", "1"]
+    done = subprocess.run(
+        [*command, "--sample", "4"], check=False, capture_output=True, text=True, timeout=120
+    )
+    found = [one for mutant in json.loads(done.stdout)["mutants"] for one in mutant["rounds"]]
+    assert {one["engine"] for one in found} == {engine}, done.stderr
+    assert {one["verdict"] for one in found} <= {"killed", "survived"}
+    assert ("asks for the process id" in done.stderr) == (engine == "replay")

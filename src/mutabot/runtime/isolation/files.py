@@ -26,6 +26,7 @@ from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.runtime.isolation.forkable import go_on_running, own_event_loops, running_loop
+from mutabot.runtime.isolation.namespaces import asks_for_id, keeps_ids
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
@@ -110,7 +111,8 @@ class PrivateFiles:
         if _libc().setns(self._bare, _CLONE_NEWNS) != 0:
             raise _last_error("there is no way back to the files on disk")
         _leave_namespace()
-        _mount("proc", "/proc", None, 0, kind="proc")  # that of its process namespace
+        if keeps_ids():
+            _mount("proc", "/proc", None, 0, kind="proc")  # that of its process namespace
         self._own = folder
         self._lay()
         os.chdir(place)
@@ -393,6 +395,8 @@ class Isolation:
                 return f"{path} is open for reading and writing"
             if not any(is_below(path, one) for one in folders):
                 return f"{path} is open for writing"
+        if not keeps_ids() and (file := asks_for_id(self.files.root)) is not None:
+            return f"{file} asks for the process id, and a fork of an ordinary user has one of its own"
         return None
 
     def enter(self, name: str) -> str:

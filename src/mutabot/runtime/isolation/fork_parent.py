@@ -213,7 +213,7 @@ class ForkParent:
             self._places = None
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
-            own = (pid for child in self._children.values() for pid in child.pids)
+            own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
             reason = STARTED if self._is_overtaken() else self.isolation.reason() or why_not(own, self._known)
             if reason is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))

@@ -11,6 +11,7 @@ import ctypes
 import errno
 import os
 import signal
+import sys
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -25,10 +26,10 @@ _left_out = 0.0
 
 
 class ForkedPids(NamedTuple):
-    """A fork as its parent sees it: its process, and the first one of its namespace."""
+    """A fork as its parent sees it: its process, and the first one of its namespace; None if it has none."""
 
     fork: int
-    first: int
+    first: int | None
 
 
 def left_out() -> float:
@@ -52,11 +53,43 @@ def leave_out(seconds: float) -> None:
     _left_out += seconds
 
 
+@cache
+def keeps_ids() -> bool:
+    """Whether forks can have the id of this process.
+
+    An ordinary user's process could enter another process namespace, but its later children could not return.
+    """
+    try:
+        _enter("/proc/self/ns/pid", _CLONE_NEWPID)
+    except OSError:
+        return False
+    return True
+
+
+def asks_for_id(root: str) -> str | None:
+    """A file of the project that is loaded and asks for its process's id, as its text says."""
+    files = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
+    own = (file for file in files if file.startswith(f"{root}/") and "/site-packages/" not in file)
+    return next((file[len(root) + 1 :] for file in sorted(own) if _mentions_id(file)), None)
+
+
+@cache
+def _mentions_id(file: str) -> bool:
+    try:
+        with open(file, "rb") as text:
+            return b"getpid" in text.read()
+    except OSError:
+        return False
+
+
 def fork() -> ForkedPids | None:
-    """Fork a process with the id of this one; None in that process.
+    """Fork a process, with the id of this one if ``keeps_ids``; None in that process.
 
     Raises OSError if that is not possible.
     """
+    if not keeps_ids():
+        pid = os.fork()
+        return ForkedPids(pid, None) if pid else None
     first = _start_first()
     try:
         _enter(f"/proc/{first}/ns/pid", _CLONE_NEWPID)
@@ -70,10 +103,11 @@ def fork() -> ForkedPids | None:
     return ForkedPids(pid, first) if pid else None
 
 
-def end_first(first: int) -> None:
-    """End the first process of a namespace, and with it whatever a fork has left there."""
-    os.kill(first, signal.SIGKILL)
-    os.waitpid(first, _WCLONE)
+def end_first(first: int | None) -> None:
+    """End the first process of a namespace, if there is one, and with it whatever a fork has left there."""
+    if first is not None:
+        os.kill(first, signal.SIGKILL)
+        os.waitpid(first, _WCLONE)
 
 
 def _start_first() -> int:
