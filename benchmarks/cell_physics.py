@@ -48,12 +48,6 @@ def _grip_aside(cell: Cell, force: float) -> None:
     cell.gripper.command(1, wait=True)
 
 
-def declare(cell: Cell, mass: float) -> None:
-    """Tell the controller what the gripper holds, if it wants to know."""
-    if hasattr(cell.arm, "set_payload"):
-        cell.arm.set_payload(mass)
-
-
 def slip(cell: Cell) -> tuple[float, float, float]:
     """Where the box is in the tool's frame, m."""
     data = cell.simulation.data
@@ -131,7 +125,7 @@ def coulomb() -> Iterator[str]:
         for friction in ladder:
             cell = Cell(1, scene=Scene(boxes=(Box(mass=mass, friction=friction),)))
             grip(cell)
-            declare(cell, mass)
+            cell.arm.set_payload(mass)
             try:
                 cell.arm.move_by(z=0.1, speed=0.05)
                 cell.wait(1.0)
@@ -149,7 +143,7 @@ def payload() -> Iterator[str]:
         cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
         try:
             grip(cell, 235.0)
-            declare(cell, mass)
+            cell.arm.set_payload(mass)
             before = slip(cell)
             cell.arm.move_by(z=0.15)
             cell.arm.move_by(theta_z=60)
@@ -170,7 +164,7 @@ def holding() -> Iterator[str]:
             cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
             try:
                 _grip_aside(cell, force)
-                declare(cell, mass)
+                cell.arm.set_payload(mass)
                 cell.arm.move_by(z=0.15)
                 cell.arm.move_joints(BEHIND)
             except CellError:
@@ -190,7 +184,7 @@ def creep() -> Iterator[str]:
     for mass in (0.1, 0.5):
         cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
         grip(cell)
-        declare(cell, mass)
+        cell.arm.set_payload(mass)
         told = []
         for name, move in (("up 0.2 m", {"z": 0.2}), ("across 0.4 m", {"y": -0.4}),
                            ("turned 60 deg", {"theta_z": 60.0}), ("carried over", {})):  # fmt: skip

@@ -106,10 +106,7 @@ def begin(
     refuse_unhooked(request.vocabulary)
     prepared = prepare(request.project)
 
-    def take(
-        request: Request, executor: Executor | None = None, least: int = 0
-    ) -> tuple[Campaign, list[Result]]:
-        executor = executor or stack.enter_context(open_executor(request, progress))  # type: ignore[union-attr]
+    def take(request: Request, executor: Executor, least: int = 0) -> tuple[Campaign, list[Result]]:
         repetitions = max(request.repetitions, least)
         baseline, results = take_baseline(
             request, executor, progress, prepared=prepared, repetitions=repetitions
@@ -117,7 +114,11 @@ def begin(
         refuse_unfit(baseline, request.vocabulary)
         return Campaign(request, baseline, executor, progress, evidence), results
 
-    tried = simulation.try_original(request, take) if stack is not None else None
+    tried = None
+    if stack is not None:
+        tried = simulation.try_original(
+            request, lambda other: take(other, stack.enter_context(open_executor(other, progress)))
+        )
     is_compared = tried is not None and tried.campaign is not None
     campaign, results = take(request, executor, 2 if is_compared else 0)
     if tried is not None:
