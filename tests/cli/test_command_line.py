@@ -245,6 +245,7 @@ def test_a_wrong_setting_is_2_and_names_the_option(
         ("run --order 2", "--order is gone; a mutant is one fault"),
         ("thresholds --steps", "`mutabot thresholds --json`"),
         ("report --compare old", "`mutabot.open`"),
+        ("results --all", "`mutabot list --all`"),
         ("replay 1 --video a.mp4", "--video is gone; use `mutabot motion MUTANT`"),
         ("compare", "the command compare is gone; `make comparison`"),
     ],

@@ -62,6 +62,7 @@ _GONE = {
     "--write": "apply the diff that `mutabot suggest` prints",
     **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
     "--suggest-demands": "write a demand with a magnitude that `mutabot thresholds` shows",
+    "--all": "`mutabot list --all` lists what is left out as well",
     "--compare": "`mutabot.open` reads both campaigns in Python",
     **dict.fromkeys(("--steps", "--sort", "--picture"), "`mutabot thresholds --json` has every magnitude"),
     **dict.fromkeys(("--video", "--rerun", "--rrd", "--mcap"), "use `mutabot motion MUTANT`"),
