@@ -20,7 +20,7 @@ import numpy as np
 
 from mutabot_cell import Box, Cell, CellError, Scene
 from mutabot_cell.models import kinova
-from mutabot_cell.models.model import build_arm
+from mutabot_cell.models.assembly import build_arm
 
 GRAVITY = 9.81
 DOWN = (0.0, 26.0, 180.0, -78.0, 0.0, -76.0, 90.0)
@@ -86,14 +86,9 @@ def _noting(cell: Cell, places: list[np.ndarray]) -> Callable[[], None]:
 def encoders() -> Iterator[str]:
     """Joint 2 calibrated wrongly by one degree: what the tool does, and what the robot says of itself."""
     cell = Cell(1, noise=False)
-    calibrate = getattr(cell.simulation, "set_encoder_error", None)
     before, said = cell.truth.tool_position(), cell.sensors.tool_pose().position
-    if calibrate is None:
-        cell.simulation.data.qpos[1] -= math.radians(1)
-        mujoco.mj_forward(cell.simulation.model, cell.simulation.data)
-    else:
-        calibrate((0.0, math.radians(1), 0.0, 0.0, 0.0, 0.0, 0.0))
-        cell.wait(1)
+    cell.simulation.robot.set_encoder_error((0.0, math.radians(1), 0.0, 0.0, 0.0, 0.0, 0.0))
+    cell.wait(1)
     moved = math.dist(_xyz(before), _xyz(cell.truth.tool_position()))
     seen = math.dist(_xyz(said), _xyz(cell.sensors.tool_pose().position))
     yield f"1 deg at joint 2: tool moved by {1000 * moved:.2f} mm, tool_pose() by {1000 * seen:.2f} mm"
@@ -318,12 +313,13 @@ def sight() -> Iterator[str]:
 
 def energy() -> Iterator[str]:
     """Energy of the arm that swings freely for 5 s from home, J."""
-    model = build_arm()
+    model = build_arm(kinova.gen3())
     data = mujoco.MjData(model)
     data.qpos[:] = kinova.HOME
     data.qpos[1] += 0.5
     model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_LIMIT | mujoco.mjtDisableBit.mjDSBL_CONTACT
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
     model.body_gravcomp[:] = 0
     mujoco.mj_forward(model, data)
     start = float(data.energy.sum())

@@ -9,32 +9,28 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from mutabot_cell.models import kinova
-from mutabot_cell.models.model import PHYSICS_STEP
-from mutabot_cell.motion.kinematics import Kinematics, Line
+from mutabot_cell.models.assembly import compensation_of
+from mutabot_cell.models.options import PHYSICS_STEP
+from mutabot_cell.motion.kinematics import Kinematics
+from mutabot_cell.motion.line import Line
 from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
 from .errors import BadArgument, MotionRefused, ProtectiveStop
 from .geometry import Array, Pose, pose_of, rotation_from_euler
+from .robot import Robot
 from .simulation import STEPS_PER_TICK, TICK, Simulation
-
-EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
-"""External torque on a joint that stops the arm when it lasts two ticks, Nm."""
-FOLLOWING_ERROR_LIMIT = 0.03
-"""Distance between setpoint and joint that stops the arm, rad."""
 
 WARMING_TIME = 30.0
 """In this time a joint warms up by two thirds of what its torque makes of it in the end, s (our choice)."""
 
 _WARMING_TICKS = 10
-_LOWEST_TORQUE_LIMIT = min(EXTERNAL_TORQUE_LIMIT)
 _RELAXING_TICKS = 20
 _SETTLED = 0.001
 _SETTLING_TICKS = 50
 
 
 class Arm:
-    """Kinova Gen3 with a servo per joint.
+    """An arm with a servo per joint.
 
     Poses are in the base frame: m, and Euler angles x, y, z in degrees (R = Rz·Ry·Rx). Joint angles are in
     degrees.
@@ -44,24 +40,26 @@ class Arm:
         kinematics: the controller's model of the arm; it also turns encoder readings into a tool pose.
     """
 
-    def __init__(self, simulation: Simulation) -> None:
+    def __init__(self, simulation: Simulation, robot: Robot) -> None:
         self._simulation = simulation
-        self.kinematics = Kinematics()
-        self._setpoint: Array = np.array(kinova.HOME)
+        self._robot = robot
+        self._model, limits = robot.model, robot.model.limits
+        self.kinematics = Kinematics(self._model)
+        self._setpoint: Array = np.array(self._model.home)
         self._stream: Array | None = None
         self._streamed = 0
         self._pressed_ticks = 0
         self._first_contact = ("", "", 0.0)
         self._stop: ProtectiveStop | None = None
-        self._lag = np.array(kinova.SERVO_LAG)
-        self._torque_limit = np.array(EXTERNAL_TORQUE_LIMIT)
+        self._lag = robot.lag()
+        self._torque_limit = np.array(limits.external_torque)
+        self._lowest_torque_limit, self._following_limit = min(limits.external_torque), limits.following_error
         self._payload = 0.0
-        self._payload_body = simulation.id_of("body", "payload")
-        self._heat = np.zeros(kinova.JOINT_COUNT)
-        self._continuous = np.array([joint.torque for joint in kinova.JOINTS])
+        self._heat = np.zeros(len(self._setpoint))
+        self._continuous = np.array(limits.torque)
         # views of the physics' own memory
-        self._constraints: Array = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
-        self._motors = simulation.data.qfrc_actuator[: kinova.JOINT_COUNT]
+        self._constraints: Array = simulation.data.qfrc_constraint[robot.dofs]
+        self._motors = simulation.data.qfrc_actuator[robot.dofs]
         self.set_payload(0.0)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
@@ -81,39 +79,43 @@ class Arm:
         Raises:
             ProtectiveStop: something was in the way.
         """
-        self.move_joints(kinova.HOME_DEGREES)
+        self._check_ready()
+        self._move_joints(np.array(self._model.home), 1.0)
 
     def move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> None:
-        """Move all joints to `angles` (7 values, degrees) at once, arriving together.
+        """Move all joints to `angles` (one each, degrees) at once, arriving together.
 
         Args:
             speed: part of the joints' speed limits, 0..1.
 
         Raises:
-            BadArgument: not seven finite numbers.
+            BadArgument: not one finite number per joint.
             MotionRefused: an angle is beyond its joint's limit.
             ProtectiveStop: something was in the way.
         """
-        _check_numbers("angles", angles, kinova.JOINT_COUNT)
+        _check_numbers("angles", angles, len(self._setpoint))
         _check_speed(speed)
         self._check_ready()
-        target = np.radians(np.array(angles, dtype=float))
-        for index, joint in enumerate(kinova.JOINTS):
-            if math.isinf(joint.limit):
+        self._move_joints(np.radians(np.array(angles, dtype=float)), speed)
+
+    def _move_joints(self, target: Array, speed: float) -> None:
+        for index, (low, high) in enumerate(self._model.ranges):
+            if math.isinf(high - low):
                 turns = round((self._setpoint[index] - target[index]) / (2 * math.pi))
                 target[index] += turns * 2 * math.pi
-            elif abs(target[index]) > joint.limit:
-                excess = math.degrees(abs(target[index]) - joint.limit)
+            elif not low <= target[index] <= high:
+                allowed = low if target[index] < low else high
+                excess = math.degrees(abs(target[index] - allowed))
                 raise MotionRefused(
-                    f"motion refused: joint {index + 1} would go to {angles[index]:.1f} deg, "
-                    f"{excess:.1f} deg beyond its limit of {math.degrees(joint.limit):.1f} deg",
+                    f"motion refused: joint {index + 1} would go to {math.degrees(target[index]):.1f} deg, "
+                    f"{excess:.1f} deg beyond its limit of {math.degrees(allowed):.1f} deg",
                     limit=f"joint {index + 1}",
-                    value=float(angles[index]),
-                    allowed=math.copysign(math.degrees(joint.limit), target[index]),
+                    value=math.degrees(target[index]),
+                    allowed=math.degrees(allowed),
                     excess=excess,
                     unit="deg",
                 )
-        self._run(joint_motion(self._setpoint, target, PHYSICS_STEP, speed))
+        self._run(joint_motion(self._setpoint, target, PHYSICS_STEP, self._model.limits, speed))
 
     def move_to(self, pose: Pose, *, speed: float = 1.0) -> None:
         """Move the tool in a straight line to `pose`, turning evenly on the way.
@@ -136,7 +138,8 @@ class Arm:
         if line.length < 1e-7 and line.angle < 1e-7:
             return
         knots = self.kinematics.follow(self._setpoint, line)
-        self._run(line_motion(knots, line.length, line.angle, PHYSICS_STEP, speed))
+        lengths, limits = (line.length, line.angle), (self._model.limits, self._model.tool_limits)
+        self._run(line_motion(knots, *lengths, PHYSICS_STEP, *limits, speed))
 
     def move_by(
         self,
@@ -174,21 +177,22 @@ class Arm:
             centre: of mass, in the tool frame, m.
 
         Raises:
-            BadArgument: not numbers, or more than the arm is rated for (`kinova.PAYLOAD`).
+            BadArgument: not numbers, or more than the arm is rated for (`RobotModel.payload`).
         """
         _check_numbers("payload", (mass, *centre), 4)
-        if not 0.0 <= mass <= kinova.PAYLOAD:
-            raise BadArgument(f"Expected 0 <= payload <= {kinova.PAYLOAD} kg but got mass={mass!r}")
+        rated = self._model.payload
+        if not 0.0 <= mass <= rated:
+            raise BadArgument(f"Expected 0 <= payload <= {rated} kg but got mass={mass!r}")
         self._payload = float(mass)
-        self._simulation.model.body_gravcomp[self._payload_body] = kinova.compensation_of(self._payload)
-        self._simulation.model.body_ipos[self._payload_body] = centre
+        self._simulation.model.body_gravcomp[self._robot.payload] = compensation_of(self._payload)
+        self._simulation.model.body_ipos[self._robot.payload] = centre
 
     def acknowledge_stop(self) -> None:
         """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
         if self._stop is None:
             return
         for _ in range(_RELAXING_TICKS):
-            self._setpoint = self._simulation.encoders()
+            self._setpoint = self._robot.encoders()
             self._simulation.tick()
         self._stop = None
         self._pressed_ticks = 0
@@ -216,9 +220,9 @@ class Arm:
             self._simulation.tick()
 
     def _drive(self) -> None:
-        setpoints = self._simulation.setpoints[:, : kinova.JOINT_COUNT]
+        setpoints = self._simulation.setpoints[:, self._robot.servos]
         # a servo brings its encoder to the setpoint, so the joint to where the encoder reads that
-        error = self._simulation.encoder_error
+        error = self._robot.encoder_error
         if self._stream is None:
             setpoints[:] = self._setpoint - error
             return
@@ -230,7 +234,7 @@ class Arm:
             self._stream = None
 
     def _following_error(self) -> Array:
-        error: Array = self._setpoint - self._simulation.encoders()
+        error: Array = self._setpoint - self._robot.encoders()
         return error
 
     def _guard(self) -> None:
@@ -241,18 +245,21 @@ class Arm:
             return
         external, error = self._external(), self._following_error()
         # this runs at every tick, and nearly always the lengths are below the lowest limits of their parts
-        if external.dot(external) <= _LOWEST_TORQUE_LIMIT**2 and error.dot(error) <= FOLLOWING_ERROR_LIMIT**2:
+        if (
+            external.dot(external) <= self._lowest_torque_limit**2
+            and error.dot(error) <= self._following_limit**2
+        ):
             self._pressed_ticks = 0
             return
-        pressed = any(map(operator.gt, map(abs, external.tolist()), EXTERNAL_TORQUE_LIMIT))
+        pressed = any(map(operator.gt, map(abs, external.tolist()), self._model.limits.external_torque))
         self._pressed_ticks = self._pressed_ticks + 1 if pressed else 0
         if pressed and self._pressed_ticks == 1:
-            self._first_contact = strongest_contact(self._simulation)
-        lagging = max(map(abs, error.tolist())) > FOLLOWING_ERROR_LIMIT
+            self._first_contact = strongest_contact(self._simulation, self._robot)
+        lagging = max(map(abs, error.tolist())) > self._following_limit
         if self._pressed_ticks < 2 and not lagging:
             return
         joint = int(np.argmax(np.abs(external) / self._torque_limit if pressed else np.abs(error)))
-        contacts = [strongest_contact(self._simulation)]
+        contacts = [strongest_contact(self._simulation, self._robot)]
         if pressed:
             contacts.append(self._first_contact)
         first, second, force = max(contacts, key=lambda contact: contact[2])
@@ -271,7 +278,7 @@ class Arm:
     def _stopped(self, stop: ProtectiveStop) -> ProtectiveStop:
         self._stop = stop
         self._stream = None
-        self._setpoint = self._simulation.encoders()
+        self._setpoint = self._robot.encoders()
         return stop
 
     def _external(self) -> Array:
@@ -286,10 +293,11 @@ class Arm:
     def _friction(self) -> Array:
         """Torque on each joint from dry friction in it, which MuJoCo counts among the constraints, Nm."""
         data = self._simulation.data
-        torque = np.zeros(kinova.JOINT_COUNT)
+        torque = np.zeros(len(self._setpoint))
         for row in range(data.ne, data.ne + data.nf):  # rows of friction follow those of equalities
-            joint = int(data.efc_id[row])
-            if data.efc_type[row] == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF and joint < kinova.JOINT_COUNT:
+            joint = int(data.efc_id[row]) - self._robot.dofs.start
+            of_joint = data.efc_type[row] == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
+            if of_joint and 0 <= joint < len(torque):
                 torque[joint] = data.efc_force[row]
         return torque
 
@@ -299,10 +307,10 @@ class Arm:
         mujoco.mj_rnePostConstraint(cell_model, data)
         # acceleration minus gravity of the payload's centre of mass, as an accelerometer there would read it
         felt = np.zeros(6)
-        mujoco.mj_objectAcceleration(cell_model, data, mujoco.mjtObj.mjOBJ_BODY, self._payload_body, felt, 0)
+        mujoco.mj_objectAcceleration(cell_model, data, mujoco.mjtObj.mjOBJ_BODY, self._robot.payload, felt, 0)
         moves = np.zeros((3, cell_model.nv))
-        mujoco.mj_jacBodyCom(cell_model, data, moves, None, self._payload_body)
-        torque: Array = np.dot(-self._payload * felt[3:], moves[:, : kinova.JOINT_COUNT])
+        mujoco.mj_jacBodyCom(cell_model, data, moves, None, self._robot.payload)
+        torque: Array = np.dot(-self._payload * felt[3:], moves[:, self._robot.dofs])
         return torque
 
     def _warm(self) -> None:
@@ -321,26 +329,26 @@ class Arm:
                 joint=joint + 1,
                 torque=float(self._motors[joint]),
                 following_error=float(self._following_error()[joint]),
-                overload=kinova.JOINTS[joint].torque,
+                overload=float(self._continuous[joint]),
             )
         )
 
 
-def strongest_contact(simulation: Simulation) -> tuple[str, str, float]:
+def strongest_contact(simulation: Simulation, robot: Robot) -> tuple[str, str, float]:
     """The robot's part, what it touches, and the normal force (N) of the robot's strongest contact.
 
     A box between the fingers counts as the robot's part; ("", "", 0.0) without a contact.
     """
     cell_model, data = simulation.model, simulation.data
-    robot = cell_model.body("robot").id
+    body = int(cell_model.body_rootid[robot.body])
     found: tuple[str, str, float] = ("", "", 0.0)
     wrench = np.zeros(6)
     for index in range(data.ncon):
         geoms = [int(geom) for geom in data.contact[index].geom]
         roots = [int(cell_model.body_rootid[cell_model.geom_bodyid[geom]]) for geom in geoms]
-        if robot not in roots:
+        if body not in roots:
             continue
-        if roots[1] == robot and roots[0] != robot:
+        if roots[1] == body and roots[0] != body:
             geoms.reverse()
         mujoco.mj_contactForce(cell_model, data, index, wrench)
         if abs(wrench[0]) > found[2]:

@@ -8,8 +8,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from types import TracebackType
 
+from mutabot_cell.models.kinova import gen3
 from mutabot_cell.models.noise import SeededNoise
-from mutabot_cell.models.robotiq import STROKE
+from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.shown.feed import tell_of
 
 from .arm import Arm
@@ -17,8 +18,9 @@ from .errors import BadArgument
 from .geometry import Pose, Position
 from .gripper import Gripper
 from .monitors import Condition, Monitors, Values
+from .robot import Robot
 from .scene import Box, Scene
-from .sensors import Sensors, true_box_position, true_box_tilt, true_tool_pose, true_tool_position
+from .sensors import Sensors, true_box_position, true_box_tilt
 from .simulation import Simulation
 
 _current: weakref.ref[Cell] | None = None
@@ -27,17 +29,19 @@ _current: weakref.ref[Cell] | None = None
 class Truth:
     """The cell's exact state: for tests, monitors and mutabot. A robot program has sensors instead."""
 
-    def __init__(self, simulation: Simulation, boxes: tuple[Box, ...]) -> None:
+    def __init__(self, simulation: Simulation, robot: Robot, boxes: tuple[Box, ...]) -> None:
         self._simulation = simulation
+        self._robot = robot
+        self._stroke = 0.0 if robot.model.tool is None else robot.model.tool.effector.stroke
         self._boxes = {box.name: box for box in boxes}
 
     def tool_pose(self) -> Pose:
         """Exact tool pose, base frame."""
-        return true_tool_pose(self._simulation)
+        return self._robot.tool_pose()
 
     def tool_position(self) -> Position:
         """Exact tool position, base frame; quicker than the whole pose."""
-        return true_tool_position(self._simulation)
+        return self._robot.tool_position()
 
     def box_position(self, name: str = "box") -> Position:
         """Exact middle of the box's bottom face, world frame."""
@@ -49,7 +53,7 @@ class Truth:
 
     def opening(self) -> float:
         """Distance between the pads, m."""
-        return STROKE - float(self._simulation.data.ten_length[0])
+        return self._stroke - self._robot.closed_path()
 
     def world(self) -> dict[str, float]:
         """All of the above and the simulated time, flat: "box.x", "tool.z", "opening", "time" and so on."""
@@ -85,6 +89,7 @@ class Cell:
 
     Args:
         seed: of the round; box placement, colours and sensor noise are drawn from it.
+        robot: with its tool; the published experiment's Kinova Gen3 by default.
         scene: what stands around the robot; the published experiment's cell by default.
         noise: False makes all sensors exact (placement and colours are still drawn).
         grip_force: N at each pad, 20..235.
@@ -101,6 +106,7 @@ class Cell:
         self,
         seed: int = 0,
         *,
+        robot: RobotModel | None = None,
         scene: Scene | None = None,
         noise: bool = True,
         grip_force: float = 60.0,
@@ -111,14 +117,17 @@ class Cell:
             raise BadArgument(f"Expected a whole number but got seed={seed!r}")
         draws = SeededNoise(seed, enabled=noise)
         placed, numbers = _placed(scene or Scene(), draws)
-        self.simulation = Simulation(placed, grip_force)
-        self.arm = Arm(self.simulation)
-        self.gripper = Gripper(self.simulation, draws, grip_force, finger_speed)
+        self.simulation = Simulation(placed, {"": robot or gen3()})
+        body = self.simulation.robot
+        self.arm = Arm(self.simulation, body)
+        if body.model.tool is not None:
+            fingers = body.model.tool.effector
+            self.gripper = Gripper(self.simulation, body, fingers, draws, grip_force, finger_speed)
         self.sensors = Sensors(
-            self.simulation, self.arm.kinematics, draws, placed.boxes, numbers, placed.camera
+            self.simulation, body, self.arm.kinematics, draws, placed.boxes, numbers, placed.camera
         )
-        self.truth = Truth(self.simulation, placed.boxes)
-        self.feed = tell_of(self.simulation, placed)
+        self.truth = Truth(self.simulation, body, placed.boxes)
+        self.feed = tell_of(self.simulation, body, placed)
         self.monitors = Monitors(self.simulation, self.truth.world)
         _current = weakref.ref(self)
 

@@ -4,28 +4,39 @@ from __future__ import annotations
 
 import math
 
-from mutabot_cell.models import robotiq
 from mutabot_cell.models.noise import SeededNoise
+from mutabot_cell.models.tool import Fingers
 
 from .errors import BadArgument
+from .robot import Robot
 from .simulation import TICK, Simulation
 
 _BLOCKED = 0.003
 _STANDING = 0.004
-_SERVO = "fingers"
 _LONGEST_TICKS = 600
 _SURE_TICKS = 3
 """How long the fingers must be blocked, or free, until the gripper reports it."""
 
 
 class Gripper:
-    """Robotiq 2F-85. Position 0 is open (85 mm), 1 is closed."""
+    """A parallel gripper. Position 0 is open, 1 is closed."""
 
-    def __init__(self, simulation: Simulation, noise: SeededNoise, force: float, speed: float) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        robot: Robot,
+        fingers: Fingers,
+        noise: SeededNoise,
+        force: float,
+        speed: float,
+    ) -> None:
         self._simulation = simulation
+        self._robot = robot
+        self._fingers = fingers
         self._noise = noise
-        self._servo = simulation.model.actuator(_SERVO).id
-        self._tendon = simulation.model.tendon("closing").id
+        self._servo = robot.fingers
+        start, end = fingers.controls
+        self._open, self._per_metre = start, (end - start) / fingers.stroke
         self._target = 0.0
         self._setpoint = 0.0
         self._holding = False
@@ -37,24 +48,24 @@ class Gripper:
         simulation.after_tick.append(self._detect)
 
     def set_force(self, newtons: float) -> None:
-        """Grip force at each pad, 20..235 N.
+        """Grip force at each pad, N; the 2F-85 gives 20..235 N.
 
         Raises:
             BadArgument: outside that range.
         """
-        low, high = robotiq.FORCE_RANGE
+        low, high = self._fingers.force_range
         if not low <= newtons <= high:
             raise BadArgument(f"Expected {low} <= force <= {high} N but got force={newtons!r}")
-        self._force = float(newtons)
+        self._force = float(newtons) * self._fingers.force_ratio
         self._simulation.model.actuator_forcerange[self._servo] = (-self._force, self._force)
 
     def set_speed(self, metres_per_second: float) -> None:
-        """Speed at which the opening changes, 0.020..0.150 m/s.
+        """Speed at which the opening changes, m/s; that of the 2F-85 is 0.020..0.150 m/s.
 
         Raises:
             BadArgument: outside that range.
         """
-        low, high = robotiq.SPEED_RANGE
+        low, high = self._fingers.speed_range
         if not low <= metres_per_second <= high:
             raise BadArgument(f"Expected {low} <= speed <= {high} m/s but got speed={metres_per_second!r}")
         self._speed = float(metres_per_second)
@@ -72,11 +83,11 @@ class Gripper:
         """
         if not isinstance(position, (int, float)) or isinstance(position, bool) or not 0.0 <= position <= 1.0:
             raise BadArgument(f"Expected 0 <= position <= 1 but got position={position!r}")
-        target = position * robotiq.STROKE
+        target = position * self._fingers.stroke
         if target != self._target:
             self._target = target
             # blocked fingers start from where they are, not from where they wanted to be
-            self._setpoint = self._closed()
+            self._setpoint = self._robot.closed_path()
         if wait:
             for _ in range(_LONGEST_TICKS):
                 self._simulation.tick()
@@ -85,13 +96,13 @@ class Gripper:
 
     def commanded(self) -> float:
         """The last command, 0..1."""
-        return self._target / robotiq.STROKE
+        return self._target / self._fingers.stroke
 
     def opening(self) -> float:
         """Measured distance between the pads, m, with noise; one reading per tick."""
         ticks, reading = self._read
         if ticks != self._simulation.ticks:
-            reading = self._noise.add("opening", robotiq.STROKE - self._closed())
+            reading = self._noise.add("opening", self._fingers.stroke - self._robot.closed_path())
             self._read = self._simulation.ticks, reading
         return reading
 
@@ -104,7 +115,7 @@ class Gripper:
         return self._holding
 
     def _detect(self) -> None:
-        blocked = abs(self._target - self._closed()) > _BLOCKED
+        blocked = abs(self._target - self._robot.closed_path()) > _BLOCKED
         pressing = abs(float(self._simulation.data.actuator_force[self._servo])) > 0.9 * self._force
         if (blocked and pressing and self._stands()) == self._holding:
             self._other_ticks = 0
@@ -113,13 +124,10 @@ class Gripper:
         if self._other_ticks == _SURE_TICKS:
             self._holding, self._other_ticks = not self._holding, 0
 
-    def _closed(self) -> float:
-        return float(self._simulation.data.ten_length[self._tendon])
-
     def _stands(self) -> bool:
-        return abs(float(self._simulation.data.ten_velocity[self._tendon])) < _STANDING
+        return abs(self._robot.closing_speed()) < _STANDING
 
     def _drive(self) -> None:
         missing = self._target - self._setpoint
         self._setpoint += math.copysign(min(self._speed * TICK, abs(missing)), missing)
-        self._simulation.setpoints[:, self._servo] = self._setpoint
+        self._simulation.setpoints[:, self._servo] = self._open + self._setpoint * self._per_metre

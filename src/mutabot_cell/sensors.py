@@ -7,24 +7,21 @@ import math
 import mujoco
 import numpy as np
 
-from mutabot_cell.models import kinova
 from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.motion.kinematics import Kinematics
 
 from .errors import SensorError
 from .geometry import Pose, Position, pose_of
-from .scene import BASE_POSITION, Box
+from .robot import Robot
+from .scene import Box
 from .simulation import Simulation
 
 DISTANCE_RANGE = (0.02, 2.0)
 """Range of the distance sensor, m; further away it reads its upper end."""
-_DISTANCE_START = 0.085
 _SOLID = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 """Groups of shapes that hide what is behind them: all but those that are only there to look at."""
 _LOOKED_AT = 0.9 * np.array([(0, 0, 0), *((x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1))])
 """Points of a box of edge 2: its middle, and near its corners."""
-_BASE = np.array(BASE_POSITION)
-"""The distance sensor sits in the gripper's palm, this far beyond the interface, m."""
 
 
 class Sensors:
@@ -33,6 +30,7 @@ class Sensors:
     def __init__(
         self,
         simulation: Simulation,
+        robot: Robot,
         kinematics: Kinematics,
         noise: SeededNoise,
         boxes: tuple[Box, ...],
@@ -40,11 +38,14 @@ class Sensors:
         camera: tuple[float, float, float],
     ) -> None:
         self._simulation = simulation
+        self._robot = robot
+        tool = robot.model.tool
+        self._palm = 0.0 if tool is None else tool.palm
+        self._own_body = -1 if tool is None else simulation.id_of("body", robot.prefix + tool.body)
         self._kinematics = kinematics
         self._noise = noise
         self._boxes = {box.name: box for box in boxes}
         self._numbers = numbers
-        self._tool = simulation.model.site("tool").id
         self._geom = np.zeros(1, dtype=np.int32)
         self._read: tuple[int, tuple[float, ...]] = (-1, ())
         self._seen_at = -1
@@ -134,17 +135,18 @@ class Sensors:
 
     def _range(self) -> float:
         data = self._simulation.data
-        axis = data.site_xmat[self._tool].reshape(3, 3)[:, 2].copy()
-        start = data.site_xpos[self._tool] - (kinova.TOOL_LENGTH - _DISTANCE_START) * axis
-        own_body = self._simulation.model.body("gripper").id
-        found = mujoco.mj_ray(self._simulation.model, data, start, axis, _SOLID, 1, own_body, self._geom)
+        axis = data.site_xmat[self._robot.site].reshape(3, 3)[:, 2].copy()
+        start = data.site_xpos[self._robot.site] + self._palm * axis
+        found = mujoco.mj_ray(
+            self._simulation.model, data, start, axis, _SOLID, 1, self._own_body, self._geom
+        )
         return DISTANCE_RANGE[1] if found < 0 else float(found)
 
     def _encoders(self) -> tuple[float, ...]:
         """One reading of all encoders per tick, with noise, degrees, not wrapped."""
         ticks, read = self._read
         if ticks != self._simulation.ticks:
-            angles = np.degrees(self._simulation.encoders()).tolist()
+            angles = np.degrees(self._robot.encoders()).tolist()
             read = tuple(self._noise.add("joint angle", angle) for angle in angles)
             self._read = self._simulation.ticks, read
         return read
@@ -156,19 +158,6 @@ class Sensors:
             known = ", ".join(self._boxes) or "none"
             raise SensorError(f"no box named {name!r} in the cell; there are: {known}")
         return self._boxes[name]
-
-
-def true_tool_pose(simulation: Simulation) -> Pose:
-    """Exact tool pose in the base frame."""
-    site = simulation.id_of("site", "tool")
-    position = simulation.data.site_xpos[site] - _BASE
-    return pose_of(position, simulation.data.site_xmat[site].reshape(3, 3))
-
-
-def true_tool_position(simulation: Simulation) -> Position:
-    """Exact tool position in the base frame; quicker than the whole pose, for checks at every tick."""
-    place = simulation.data.site_xpos[simulation.id_of("site", "tool")] - _BASE
-    return Position(*place.tolist())
 
 
 def true_box_position(simulation: Simulation, box: Box) -> Position:

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from typing import Literal
 
 import mujoco
 import numpy as np
 
-from mutabot_cell.models import kinova, model
+from mutabot_cell.models.assembly import build_cell
+from mutabot_cell.models.options import PHYSICS_STEP
+from mutabot_cell.models.robot import RobotModel
 
 from .errors import SimulationDiverged
 from .geometry import Array
+from .robot import Robot
 from .scene import Scene
 
 STEPS_PER_TICK = 5
-TICK = STEPS_PER_TICK * model.PHYSICS_STEP
+TICK = STEPS_PER_TICK * PHYSICS_STEP
 """Length of one control tick, s."""
 
 FRAME_TICKS = 4
@@ -37,25 +40,26 @@ class Simulation:
     """Model and state of the cell, and its time.
 
     Attributes:
+        robots: by the prefix of their names.
         setpoints: wanted inputs of all servos for the coming tick, shape (STEPS_PER_TICK, servos): joints in
-            rad, then the fingers' closed path in m. Drivers fill it before each tick.
+            rad, fingers in the unit of their servo. Drivers fill it before each tick.
         before_tick: called before each tick, in order; they write `setpoints`.
         after_tick: called after each tick, in order; they may raise.
-        encoder_error: what each joint's encoder reads too much, rad; zero for a well calibrated arm. Servos,
-            protective stop, planner and sensors know the encoders alone. Set it by `set_encoder_error`.
     """
 
-    def __init__(self, scene: Scene, grip_force: float) -> None:
+    def __init__(self, scene: Scene, robots: Mapping[str, RobotModel]) -> None:
         mujoco.set_mju_user_warning(_ignore_warning)
-        self.model = model.build_cell(scene, grip_force)
+        self.model = build_cell(scene, robots)
         self.data = mujoco.MjData(self.model)
-        self.data.qpos[: kinova.JOINT_COUNT] = kinova.HOME
-        self.data.ctrl[: kinova.JOINT_COUNT] = kinova.HOME
+        self.robots = {
+            prefix: Robot(self.model, self.data, robot, prefix) for prefix, robot in robots.items()
+        }
+        for robot in self.robots.values():
+            robot.place_at_home()
         mujoco.mj_forward(self.model, self.data)
         self.setpoints: Array = np.tile(self.data.ctrl, (STEPS_PER_TICK, 1))
         self.before_tick: list[Callable[[], None]] = []
         self.after_tick: list[Callable[[], None]] = []
-        self.encoder_error: Array = np.zeros(kinova.JOINT_COUNT)
         self._ticks = 0
         self._frames: deque[tuple[int, Array]] = deque([(0, self.data.qpos.copy())], maxlen=_KEPT_FRAMES)
         self._ids: dict[tuple[str, str], int] = {}
@@ -76,21 +80,10 @@ class Simulation:
         latest = self._ticks - LATENCY_TICKS
         return next((frame for frame in reversed(self._frames) if frame[0] <= latest), self._frames[0])
 
-    def encoders(self) -> Array:
-        """Joint angles as the encoders tell them to the controller, shape (7,), rad, without noise."""
-        read: Array = self._places[: kinova.JOINT_COUNT] + self.encoder_error
-        return read
-
-    def set_encoder_error(self, error: Sequence[float]) -> None:
-        """Calibrate the encoders wrongly: the joints move to where the encoders read what they read now.
-
-        Args:
-            error: encoder minus joint, rad, one per joint.
-        """
-        read = self.encoders()
-        self.encoder_error[:] = error
-        self._places[: kinova.JOINT_COUNT] = read - self.encoder_error
-        mujoco.mj_forward(self.model, self.data)
+    @property
+    def robot(self) -> Robot:
+        """The first robot, which mostly is the only one."""
+        return next(iter(self.robots.values()))
 
     def id_of(self, kind: Literal["body", "site"], name: str) -> int:
         """Number of a body or site of the model; looked up once, since checks ask for it at every tick."""

@@ -8,6 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
+
+import mujoco
+
+from . import robotiq
+from .options import HEAD
+from .robot import JointLimits, RobotModel, SphericalWrist, ToolLimits
 
 CONTINUOUS = math.inf
 
@@ -74,12 +81,9 @@ JOINTS: tuple[Joint, ...] = (
 )  # fmt: skip
 JOINT_COUNT = len(JOINTS)
 INTERFACE_OFFSET = (0.0, 0.0, -0.0615250)
-TOOL_LENGTH = 0.12
 BASE_MASS = 1.697
 PAYLOAD = 4.0
 """What the maker rates the arm for at mid-range, without end and without a gripper, kg."""
-_PAYLOAD_MARKER = 1e-6
-"""Mass of the empty body at which the controller compensates the declared payload's weight, kg."""
 JERK_RATIO = 10.0
 """Jerk limit of a joint divided by its acceleration limit, 1/s (our choice: reached within 0.1 s)."""
 
@@ -97,8 +101,8 @@ TOOL_TURN_JERK = math.radians(2400.0)
 _STIFFNESS = (6000.0, 6000.0, 4000.0, 4000.0, 1500.0, 1500.0, 1000.0)
 _ROTOR_INERTIA = (0.5, 0.5, 0.3, 0.3, 0.1, 0.1, 0.1)
 _DAMPING = (180.0, 180.0, 110.0, 110.0, 30.0, 30.0, 20.0)
-SERVO_LAG = tuple(damping / stiffness for damping, stiffness in zip(_DAMPING, _STIFFNESS, strict=True))
-"""Damping over stiffness, s: adding this times the wanted speed to a setpoint removes the servo's lag."""
+EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
+"""External torque on a joint that stops the arm, Nm (our choice)."""
 
 _LINK_RADIUS = (0.045, 0.045, 0.042, 0.042, 0.037, 0.037, 0.037)
 _LIGHT = "0.92 0.92 0.93 1"
@@ -124,11 +128,8 @@ def _link_shape(number: int, end: tuple[float, float, float]) -> str:
     )
 
 
-def arm_xml(tool: str = "") -> str:
-    """MJCF of the arm with its base at the parent's origin; `tool` is MJCF put into the interface frame.
-
-    The interface frame holds a site "tool", `TOOL_LENGTH` beyond the interface.
-    """
+def arm_xml() -> str:
+    """MJCF of the arm with its base at the parent's origin; site "flange" is the maker's interface frame."""
     opening: list[str] = [
         f'<body name="base"><geom name="base" class="arm" type="cylinder" size="0.05 0.06" pos="0 0 0.06" '
         f'mass="{BASE_MASS}" rgba="{_LIGHT}"/><geom class="looks" type="cylinder" size="0.0515 0.012" '
@@ -152,16 +153,9 @@ def arm_xml(tool: str = "") -> str:
     )
     interface = (
         f'<body name="interface" pos="{_numbers(INTERFACE_OFFSET)}" quat="{_turn(math.pi)}" gravcomp="1">'
-        f'<site name="tool" pos="0 0 {TOOL_LENGTH}" size="0.002" rgba="0 0 0 0"/>{tool}'
-        f'<body name="payload" pos="0 0 {TOOL_LENGTH}" gravcomp="1"><inertial pos="0 0 0" '
-        f'mass="{_PAYLOAD_MARKER}" diaginertia="1e-9 1e-9 1e-9"/></body></body>'
+        '<site name="flange" size="0.002" rgba="0 0 0 0"/></body>'
     )
     return "".join(opening) + camera + interface + "</body>" * (JOINT_COUNT + 1)
-
-
-def compensation_of(payload: float) -> float:
-    """The `gravcomp` of body "payload" that carries `payload` kg."""
-    return payload / _PAYLOAD_MARKER
 
 
 def actuators_xml() -> str:
@@ -170,4 +164,40 @@ def actuators_xml() -> str:
         f'<position name="servo {index + 1}" joint="joint {index + 1}" kp="{_STIFFNESS[index]}" '
         f'kv="{_DAMPING[index]}"/>'
         for index in range(JOINT_COUNT)
+    )
+
+
+@cache
+def gen3() -> RobotModel:
+    """The Kinova Gen3 with the Robotiq 2F-85: the robot of the published experiment."""
+    accelerations = tuple(joint.acceleration for joint in JOINTS)
+    return RobotModel(
+        name="Kinova Gen3",
+        spec=mujoco.MjSpec.from_string(
+            f'<mujoco model="arm">{HEAD}<worldbody>{arm_xml()}</worldbody>'
+            f"<actuator>{actuators_xml()}</actuator></mujoco>"
+        ),
+        joints=tuple(f"joint {number}" for number in range(1, JOINT_COUNT + 1)),
+        servos=tuple(f"servo {number}" for number in range(1, JOINT_COUNT + 1)),
+        home=HOME,
+        ranges=tuple((-joint.limit, joint.limit) for joint in JOINTS),
+        limits=JointLimits(
+            speed=tuple(joint.speed for joint in JOINTS),
+            acceleration=accelerations,
+            jerk=tuple(value * JERK_RATIO for value in accelerations),
+            torque=tuple(joint.torque for joint in JOINTS),
+            peak_torque=tuple(joint.peak_torque for joint in JOINTS),
+            external_torque=EXTERNAL_TORQUE_LIMIT,
+        ),
+        tool_limits=ToolLimits(
+            TOOL_SPEED, TOOL_TURN_SPEED, TOOL_ACCELERATION, TOOL_TURN_ACCELERATION, TOOL_JERK, TOOL_TURN_JERK
+        ),
+        flange="flange",
+        payload=PAYLOAD,
+        tool=robotiq.gripper(),
+        reach=SphericalWrist(
+            shoulder=(0.0, 0.0, JOINTS[0].origin[2] - JOINTS[1].origin[2]),
+            length=-(JOINTS[2].origin[1] + JOINTS[3].origin[2] + JOINTS[4].origin[1] + JOINTS[5].origin[2]),
+            to_flange=-JOINTS[6].origin[1] - INTERFACE_OFFSET[2],
+        ),
     )

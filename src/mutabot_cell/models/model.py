@@ -1,13 +1,15 @@
-"""The cell as a MuJoCo model: MJCF text, written here and compiled once per process."""
+"""What stands in the cell, as MJCF text."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import mujoco
+import numpy as np
 
+from mutabot_cell.geometry import Pose, rotation_from_euler
 from mutabot_cell.scene import (
-    BASE_POSITION,
     BLUE_RGBA,
     FRICTION_ON_SILICONE,
     FRICTION_ON_STEEL,
@@ -18,38 +20,16 @@ from mutabot_cell.scene import (
     Scene,
 )
 
-from . import kinova, robotiq
+from .options import HEAD, PHYSICS_STEP
+from .robot import RobotModel
 
-PHYSICS_STEP = 0.002
-"""Length of one physics step, s."""
+ROBOT_BODY = "robot"
+"""Behind a robot's prefix, the name of the body that stands at its base."""
 
 _GRIP_BRAKE = 1.8
 _LANDING = "0.008 0.8"
 """Time constant (s) and damping ratio of what a box lands on: it rebounds with a tenth of its speed, as
 cardboard does on rubber."""
-
-# Collision classes: fixtures (1), arm (2), gripper (4), boxes (8).
-_DEFAULTS = """
-<default>
-  <default class="fixture"><geom contype="1" conaffinity="14" friction="1 0.005 0.0001"/></default>
-  <default class="arm"><geom contype="2" conaffinity="13"/></default>
-  <default class="gripper"><geom contype="4" conaffinity="11"/></default>
-  <default class="box"><geom contype="8" conaffinity="15"/></default>
-  <default class="looks"><geom contype="0" conaffinity="0" mass="0" group="1"/></default>
-</default>
-"""
-
-# impratio: friction is ten times as stiff as what presses. With more, boxes held on one edge chatter between
-# the pads; with less, they creep.
-# The dense Jacobian is right for this size; it also avoids a fault of MuJoCo 4.0.0's sparse factorisation
-# (its issue 3767: wrong accelerations; repaired in 4.0.1).
-_OPTIONS = f"""
-<option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"
-        solver="Newton" iterations="20" tolerance="1e-8">
-  <flag autoreset="disable" island="disable"/>
-</option>
-<compiler angle="radian" autolimits="false"/>
-"""
 
 _LOOKS = """
 <visual>
@@ -124,10 +104,11 @@ def _friction(box: Box, material: float) -> float:
     return material if box.friction is None else box.friction
 
 
-def _surface_xml(box: Box, fixtures: tuple[Fixture, ...]) -> str:
+def _surface_xml(box: Box, fixtures: tuple[Fixture, ...], robots: Mapping[str, RobotModel]) -> str:
     """Contacts of a box with each fixture: friction belongs to the pair of materials."""
     surfaces = [(fixture.name, fixture.friction) for fixture in fixtures]
-    surfaces += [("floor", FRICTION_ON_STEEL), ("pedestal", FRICTION_ON_STEEL)]
+    surfaces += [("floor", FRICTION_ON_STEEL)]
+    surfaces += [(f"{prefix}pedestal", FRICTION_ON_STEEL) for prefix in robots if _stands(robots[prefix])]
     return "".join(
         f'<pair geom1="{name}" geom2="{box.name}" condim="3" solref="{_LANDING}" solimp="0.95 0.99 0.001" '
         f'friction="{_pair_friction(_friction(box, friction))}"/>'
@@ -139,7 +120,7 @@ def _pair_friction(friction: float) -> str:
     return f"{friction} {friction} 0.005 0.0001 0.0001"
 
 
-def _grip_xml(box: Box) -> str:
+def _grip_xml(box: Box, pads: list[str]) -> str:
     # Stiffer than other contacts: what is gripped must turn with the fingers. As stiff as this, a falling box
     # would bounce, for numerical reasons.
     # Friction brakes slip by `_GRIP_BRAKE` of itself per step. MuJoCo's constraint leaves out how the contact
@@ -149,40 +130,52 @@ def _grip_xml(box: Box) -> str:
         f'<pair geom1="{pad}" geom2="{box.name}" condim="3" solref="0.004 1" solimp="0.95 0.99 0.001" '
         f'solreffriction="0 {-_GRIP_BRAKE / PHYSICS_STEP}" '
         f'friction="{_pair_friction(_friction(box, FRICTION_ON_SILICONE))}"/>'
-        for pad in ("left pad", "right pad")
+        for pad in pads
     )
 
 
-def cell_xml(scene: Scene, grip_force: float) -> str:
-    """MJCF of the whole cell. `grip_force` in N."""
+def _stands(robot: RobotModel) -> bool:
+    """Whether its base is above the floor, on a pedestal."""
+    return robot.base.z > 0.0
+
+
+def _robot_xml(prefix: str, robot: RobotModel) -> str:
+    """The pedestal, and the body to which the robot is attached."""
+    base = robot.base
+    x, y, half = base.x, base.y, base.z / 2
+    pedestal = (
+        f'<geom name="{prefix}pedestal" class="fixture" type="cylinder" size="0.09 {half}" '
+        f'pos="{_numbers((x, y, half))}" rgba="0.33 0.35 0.38 1"/>'
+    )
+    return (pedestal if _stands(robot) else "") + (
+        f'<body name="{prefix}{ROBOT_BODY}" pos="{_numbers((x, y, base.z))}" quat="{_quaternion(base)}"/>'
+    )
+
+
+def _quaternion(pose: Pose) -> str:
+    quaternion = np.zeros(4)
+    turned = rotation_from_euler(pose.theta_x, pose.theta_y, pose.theta_z)
+    mujoco.mju_mat2Quat(quaternion, turned.flatten())
+    return _numbers(tuple(quaternion.tolist()))
+
+
+def cell_xml(scene: Scene, robots: Mapping[str, RobotModel]) -> str:
+    """MJCF of what stands in the cell, with an empty body for each robot."""
     things = "".join(_fixture_xml(fixture) + _legs_xml(fixture) for fixture in scene.fixtures)
     things += "".join(_mark_xml(mark) for mark in scene.marks)
     things += "".join(_box_xml(box) for box in scene.boxes)
-    contacts = "".join(_grip_xml(box) + _surface_xml(box, scene.fixtures) for box in scene.boxes)
-    height = BASE_POSITION[2]
-    return f"""<mujoco model="cell">{_OPTIONS}{_DEFAULTS}{_LOOKS}
+    pads = [
+        prefix + pad for prefix, robot in robots.items() if robot.tool for pad in robot.tool.effector.pads
+    ]
+    contacts = "".join(
+        _grip_xml(box, pads) + _surface_xml(box, scene.fixtures, robots) for box in scene.boxes
+    )
+    stands = "".join(_robot_xml(prefix, robot) for prefix, robot in robots.items())
+    return f"""<mujoco model="cell">{HEAD}{_LOOKS}
 <worldbody>
   <light pos="1.5 -1.5 4" dir="-0.3 0.35 -1" diffuse="0.55 0.55 0.55" castshadow="true"/>
   <geom name="floor" class="fixture" type="plane" size="4 4 0.1" material="floor"/>
-  <geom name="pedestal" class="fixture" type="cylinder" size="0.09 {height / 2}" pos="0 0 {height / 2}"
-        rgba="0.33 0.35 0.38 1"/>
-  <body name="robot" pos="{_numbers(BASE_POSITION)}">{kinova.arm_xml(robotiq.gripper_xml())}</body>
-  {things}
+  {stands}{things}
 </worldbody>
-<tendon>{robotiq.tendon_xml()}</tendon>
 <contact>{contacts}</contact>
-<equality>{robotiq.coupling_xml()}</equality>
-<actuator>{kinova.actuators_xml()}{robotiq.actuator_xml(grip_force)}</actuator>
 </mujoco>"""
-
-
-def build_cell(scene: Scene, grip_force: float) -> mujoco.MjModel:
-    """Compile the whole cell."""
-    return mujoco.MjModel.from_xml_string(cell_xml(scene, grip_force))
-
-
-def build_arm() -> mujoco.MjModel:
-    """Compile the arm alone (base frame = world frame), for kinematics and planning."""
-    return mujoco.MjModel.from_xml_string(
-        f'<mujoco model="arm">{_OPTIONS}{_DEFAULTS}<worldbody>{kinova.arm_xml()}</worldbody></mujoco>'
-    )

@@ -7,6 +7,17 @@ The real fingers hang on linkages and stay parallel; slides give the pads the sa
 
 from __future__ import annotations
 
+from functools import cache
+
+import mujoco
+
+from .options import HEAD
+from .tool import Fingers, Tool
+
+TOOL_LENGTH = 0.12
+"""From the interface to the tool point, m."""
+_DISTANCE_START = 0.085
+"""The distance sensor sits in the gripper's palm, this far beyond the interface, m."""
 STROKE = 0.085
 FORCE_RANGE = (20.0, 235.0)
 SPEED_RANGE = (0.020, 0.150)
@@ -66,9 +77,34 @@ def tendon_xml() -> str:
     )
 
 
-def actuator_xml(force: float) -> str:
-    """MJCF of the finger servo with a grip force of `force` N at each pad."""
+def actuator_xml() -> str:
+    """MJCF of the finger servo, with the largest grip force."""
     return (
         f'<position name="fingers" tendon="closing" kp="{_STIFFNESS}" kv="{_DAMPING}" '
-        f'forcelimited="true" forcerange="{-force} {force}"/>'
+        f'forcelimited="true" forcerange="{-FORCE_RANGE[1]} {FORCE_RANGE[1]}"/>'
+    )
+
+
+@cache
+def gripper() -> Tool:
+    """The gripper as a tool."""
+    return Tool(
+        name="Robotiq 2F-85",
+        spec=mujoco.MjSpec.from_string(
+            f'<mujoco model="gripper">{HEAD}<worldbody>{gripper_xml()}</worldbody>'
+            f"<tendon>{tendon_xml()}</tendon><equality>{coupling_xml()}</equality>"
+            f"<actuator>{actuator_xml()}</actuator></mujoco>"
+        ),
+        body="gripper",
+        point=(0.0, 0.0, TOOL_LENGTH),
+        palm=_DISTANCE_START - TOOL_LENGTH,
+        effector=Fingers(
+            actuator="fingers",
+            pads=("left pad", "right pad"),
+            stroke=STROKE,
+            controls=(0.0, STROKE),
+            lengths=(0.0, STROKE),
+            force_range=FORCE_RANGE,
+            speed_range=SPEED_RANGE,
+        ),
     )

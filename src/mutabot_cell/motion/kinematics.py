@@ -6,16 +6,19 @@ Forward kinematics comes from MuJoCo, inverse kinematics from mink.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from copy import copy
 
 import mink
 import mujoco
 import numpy as np
 
 from mutabot_cell.errors import MotionRefused
-from mutabot_cell.geometry import Array, rotation_about, rotation_vector
-from mutabot_cell.models import kinova, model
+from mutabot_cell.geometry import Array
+from mutabot_cell.models.assembly import TOOL_SITE, build_arm
+from mutabot_cell.models.robot import RobotModel
 
+from .line import Line
+from .reach import WristReach
 from .trajectory import Spline
 
 LIMIT_MARGIN = 0.005
@@ -32,97 +35,33 @@ _KNOT_ANGLE = math.radians(5.0)
 _MOST_KNOTS = 512
 _RETRIED_KNOTS = 64
 _LARGEST_KNOT_STEP = 0.5
-_REACH_CHECKS = 41
-_NO_TURN = 1e-9
 _ITERATIONS = 40
 _POSTURE_COST = 1e-3
 _ORIENTATION_COST = 0.3
-
-_SHOULDER = np.array([0.0, 0.0, kinova.JOINTS[0].origin[2] - kinova.JOINTS[1].origin[2]])
-_WRIST_TO_TOOL = -kinova.JOINTS[6].origin[1] - kinova.INTERFACE_OFFSET[2] + kinova.TOOL_LENGTH
-REACH = -(
-    kinova.JOINTS[2].origin[1]
-    + kinova.JOINTS[3].origin[2]
-    + kinova.JOINTS[4].origin[1]
-    + kinova.JOINTS[5].origin[2]
-)
-"""Largest distance between shoulder and wrist, m."""
-
-
-def wrist_distance(position: Array, rotation: Array) -> float:
-    """Distance between shoulder and wrist, m.
-
-    Args:
-        position: of the tool, shape (3,), m.
-        rotation: of the tool, shape (3, 3).
-    """
-    wrist = position - _WRIST_TO_TOOL * rotation[:, 2]
-    return float(np.linalg.norm(wrist - _SHOULDER))
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """A straight tool motion in the base frame: from `start` by `shift` (m), turning by `turn`.
-
-    Attributes:
-        start: position, shape (3,), m.
-        rotation: orientation at the start, shape (3, 3).
-        shift: shape (3,), m.
-        turn: rotation vector in the tool frame, shape (3,), rad.
-    """
-
-    start: Array
-    rotation: Array
-    shift: Array
-    turn: Array
-
-    @classmethod
-    def between(cls, start: Array, rotation: Array, end: Array, end_rotation: Array) -> Line:
-        """The line from one tool pose to another, turning the shorter way."""
-        return cls(start, rotation, end - start, rotation_vector(rotation.T @ end_rotation))
-
-    @property
-    def length(self) -> float:
-        """m."""
-        return float(np.linalg.norm(self.shift))
-
-    @property
-    def angle(self) -> float:
-        """rad."""
-        return float(np.linalg.norm(self.turn))
-
-    def position_at(self, fraction: float) -> Array:
-        """Shape (3,), m."""
-        result: Array = self.start + fraction * self.shift
-        return result
-
-    def rotation_at(self, fraction: float) -> Array:
-        """Shape (3, 3)."""
-        result: Array = self.rotation @ rotation_about(fraction * self.turn)
-        return result
 
 
 class Kinematics:
     """The arm without the cell around it. The base frame is the world frame here."""
 
-    def __init__(self) -> None:
-        self._model = model.build_arm()
+    def __init__(self, robot: RobotModel) -> None:
+        self._model = build_arm(robot)
         self._data = mujoco.MjData(self._model)
-        self._site = self._model.site("tool").id
+        self._site = self._model.site(TOOL_SITE).id
+        self._reach = WristReach(robot)
         self._solver: _Solver | None = None
 
     def tool(self, joints: Array) -> tuple[Array, Array]:
         """Tool position (shape (3,), m) and rotation (shape (3, 3)) in the base frame.
 
         Args:
-            joints: shape (7,), rad.
+            joints: shape (joints,), rad.
         """
         self._data.qpos[:] = joints
         mujoco.mj_kinematics(self._model, self._data)
         return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
 
     def follow(self, joints: Array, line: Line) -> Array:
-        """Joint angles at evenly spaced points of `line`, starting at `joints`: shape (knots, 7), rad.
+        """Joint angles at evenly spaced points of `line`, starting at `joints`: shape (knots, joints), rad.
 
         Between the knots a cubic spline (`trajectory.Spline`) keeps the tool on the line, within
         `STRAIGHTNESS`.
@@ -130,7 +69,7 @@ class Kinematics:
         Raises:
             MotionRefused: some point of the line cannot be reached within the joint limits.
         """
-        self._check_reach(line)
+        self._reach.check(line)
         count = max(4, math.ceil(line.length / _KNOT_DISTANCE), math.ceil(line.angle / _KNOT_ANGLE))
         while True:
             try:
@@ -154,31 +93,6 @@ class Kinematics:
                 )
             count *= 2
 
-    @staticmethod
-    def _check_reach(line: Line) -> None:
-        """Refuse a line on which the wrist would be further from the shoulder than the arm is long."""
-        if line.angle < _NO_TURN:  # the wrist goes straight, so it is farthest at one of the ends
-            ends = (wrist_distance(line.position_at(part), line.rotation) for part in (0.0, 1.0))
-            if max(ends) <= REACH:
-                return
-        fractions = np.linspace(0.0, 1.0, _REACH_CHECKS).tolist()
-        distances = [wrist_distance(line.position_at(part), line.rotation_at(part)) for part in fractions]
-        farthest = max(distances)
-        if farthest <= REACH:
-            return
-        fraction = next(part for part, distance in zip(fractions, distances, strict=True) if distance > REACH)
-        raise MotionRefused(
-            f"motion refused: out of reach from {fraction:.0%} of the line: the wrist would be "
-            f"{farthest:.3f} m from the shoulder, {(farthest - REACH) * 1000:.0f} mm more than the arm's "
-            f"{REACH:.3f} m",
-            limit="reach",
-            value=farthest,
-            allowed=REACH,
-            excess=farthest - REACH,
-            unit="m",
-            fraction=fraction,
-        )
-
     def _is_straight(self, spline: Spline, line: Line, count: int) -> bool:
         fractions = (np.arange(count) + 0.5) / count
         for fraction, joints in zip(fractions.tolist(), spline.value(fractions), strict=True):
@@ -192,8 +106,8 @@ class Kinematics:
 
     def _knots(self, joints: Array, line: Line, count: int) -> Array:
         if self._solver is None:
-            self._solver = _Solver()
-        knots = np.empty((count + 1, kinova.JOINT_COUNT))
+            self._solver = _Solver(self._model)
+        knots = np.empty((count + 1, len(joints)))
         knots[0] = joints
         for index in range(1, count + 1):
             guess = knots[index - 1] if index == 1 else 2 * knots[index - 1] - knots[index - 2]
@@ -208,22 +122,22 @@ class Kinematics:
 class _Solver:
     """mink set up for this arm: the tool's pose first, near a posture second, inside the joint limits."""
 
-    def __init__(self) -> None:
-        arm = model.build_arm()
+    def __init__(self, model: mujoco.MjModel) -> None:
+        arm = copy(model)
         arm.jnt_range[:, 0] += LIMIT_MARGIN
         arm.jnt_range[:, 1] -= LIMIT_MARGIN
         limited = arm.jnt_limited.astype(bool)
         self._lower = np.where(limited, arm.jnt_range[:, 0], -np.inf)
         self._upper = np.where(limited, arm.jnt_range[:, 1], np.inf)
         self._configuration = mink.Configuration(arm)
-        self._frame = mink.FrameTask("tool", "site", position_cost=1.0, orientation_cost=_ORIENTATION_COST)
+        self._frame = mink.FrameTask(TOOL_SITE, "site", position_cost=1.0, orientation_cost=_ORIENTATION_COST)
         self._posture = mink.PostureTask(arm, cost=_POSTURE_COST)
         self._limits: list[mink.Limit] = [mink.ConfigurationLimit(arm, gain=0.95)]
 
     def solve(
         self, position: Array, rotation: Array, guess: Array, *, near: Array, limited: bool = True
     ) -> Array | None:
-        """Joint angles, shape (7,), rad, that put the tool there; None if there are none nearby."""
+        """Joint angles, shape (joints,), rad, that put the tool there; None if there are none nearby."""
         transform = np.eye(4)
         transform[:3, :3] = rotation
         transform[:3, 3] = position

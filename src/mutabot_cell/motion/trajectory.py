@@ -14,16 +14,13 @@ import numpy as np
 import ruckig
 
 from mutabot_cell.geometry import Array
-from mutabot_cell.models import kinova
+from mutabot_cell.models.robot import JointLimits, ToolLimits
 
 _GRID = 0.01
 """Spacing of the grid on which time laws are computed, s."""
 _SMOOTHING = 0.15
 """Half width of the window over which slowing down is spread, s."""
 
-_SPEED = np.array([joint.speed for joint in kinova.JOINTS])
-_ACCELERATION = np.array([joint.acceleration for joint in kinova.JOINTS])
-_JERK = _ACCELERATION * kinova.JERK_RATIO
 _SAFETY = 0.98
 
 
@@ -32,8 +29,8 @@ class Motion:
     """Setpoints at every physics step.
 
     Attributes:
-        joints: shape (steps, 7), rad.
-        speeds: shape (steps, 7), rad/s.
+        joints: shape (steps, joints), rad.
+        speeds: shape (steps, joints), rad/s.
     """
 
     joints: Array
@@ -44,7 +41,7 @@ class Spline:
     """Cubic spline through evenly spaced knots (not-a-knot ends), over a fraction of 0..1.
 
     Args:
-        knots: shape (at least 4, 7), rad.
+        knots: shape (at least 4, joints), rad.
     """
 
     def __init__(self, knots: Array) -> None:
@@ -69,7 +66,7 @@ class Spline:
         return index, 1.0 - right, right
 
     def value(self, fractions: Array) -> Array:
-        """Shape (n, 7) at `fractions` of shape (n,)."""
+        """Shape (n, joints) at `fractions` of shape (n,)."""
         index, left, right = self._locate(fractions)
         bend = self._step**2 / 6.0
         result: Array = (
@@ -80,7 +77,7 @@ class Spline:
         return result
 
     def slope(self, fractions: Array) -> Array:
-        """First derivative by the fraction, shape (n, 7)."""
+        """First derivative by the fraction, shape (n, joints)."""
         index, left, right = self._locate(fractions)
         result: Array = (self._knots[index + 1] - self._knots[index]) / self._step + self._step / 6.0 * (
             (3 * right**2 - 1) * self._bends[index + 1] - (3 * left**2 - 1) * self._bends[index]
@@ -88,7 +85,7 @@ class Spline:
         return result
 
     def bend(self, fractions: Array) -> Array:
-        """Second derivative by the fraction, shape (n, 7)."""
+        """Second derivative by the fraction, shape (n, joints)."""
         index, left, right = self._locate(fractions)
         result: Array = left * self._bends[index] + right * self._bends[index + 1]
         return result
@@ -97,22 +94,32 @@ class Spline:
 NDIndex = np.ndarray[tuple[int, ...], np.dtype[np.intp]]
 
 
-def joint_motion(start: Array, end: Array, step: float, speed: float = 1.0) -> Motion:
-    """The fastest synchronous motion between two joint positions (shape (7,), rad), sampled every `step` s.
+def joint_motion(start: Array, end: Array, step: float, limits: JointLimits, speed: float = 1.0) -> Motion:
+    """The fastest synchronous motion between two joint positions, shape (joints,), rad, every `step` s.
 
     `speed` scales the joints' speed limits, 0..1.
     """
-    times, values, rates, _ = _ruckig(start, end, _SPEED * speed, _ACCELERATION, _JERK)
+    speeds, accelerations, jerks = _arrays(limits)
+    times, values, rates, _ = _ruckig(start, end, speeds * speed, accelerations, jerks)
     return _sampled(times, values, rates, step)
 
 
-def line_motion(knots: Array, length: float, angle: float, step: float, speed: float = 1.0) -> Motion:
-    """Travel a straight line whose joint angles at even spaces are `knots`, shape (n, 7), rad.
+def line_motion(
+    knots: Array,
+    length: float,
+    angle: float,
+    step: float,
+    limits: JointLimits,
+    tool: ToolLimits,
+    speed: float = 1.0,
+) -> Motion:
+    """Travel a straight line whose joint angles at even spaces are `knots`, shape (n, joints), rad.
 
     Args:
         length: of the line, m.
         angle: turned on it, rad.
         step: sampling, s.
+        limits, tool: of joints and tool.
         speed: scales the tool's speed limits, 0..1.
     """
     spline = Spline(knots)
@@ -125,23 +132,29 @@ def line_motion(knots: Array, length: float, angle: float, step: float, speed: f
     times, fraction, rate, second = _ruckig(
         np.zeros(1),
         np.ones(1),
-        slowest(kinova.TOOL_SPEED * speed, kinova.TOOL_TURN_SPEED * speed),
-        slowest(kinova.TOOL_ACCELERATION, kinova.TOOL_TURN_ACCELERATION),
-        slowest(kinova.TOOL_JERK, kinova.TOOL_TURN_JERK),
+        slowest(tool.speed * speed, tool.turn_speed * speed),
+        slowest(tool.acceleration, tool.turn_acceleration),
+        slowest(tool.jerk, tool.turn_jerk),
     )
+    highest = _arrays(limits)
     places = np.clip(fraction[:, 0], 0.0, 1.0)
     slope = spline.slope(places)
     speeds = slope * rate
     accelerations = spline.bend(places) * rate**2 + slope * second
     factor = np.maximum(
-        (np.abs(speeds) / (_SPEED * _SAFETY)).max(axis=1),
-        np.sqrt((np.abs(accelerations) / (_ACCELERATION * _SAFETY)).max(axis=1)),
+        (np.abs(speeds) / (highest[0] * _SAFETY)).max(axis=1),
+        np.sqrt((np.abs(accelerations) / (highest[1] * _SAFETY)).max(axis=1)),
     )
     stretch = _smooth(np.maximum(factor, 1.0), times[1] - times[0])
     stretched = np.concatenate(([0.0], np.cumsum(0.5 * (stretch[1:] + stretch[:-1]) * np.diff(times))))
     values, rates = spline.value(places), speeds / stretch[:, None]
-    scale = _needed_slowdown(_sampled(stretched, values, rates, _GRID), _GRID)
+    scale = _needed_slowdown(_sampled(stretched, values, rates, _GRID), _GRID, highest)
     return _sampled(stretched * scale, values, rates / scale, step)
+
+
+def _arrays(limits: JointLimits) -> tuple[Array, Array, Array]:
+    """Limits of speed, acceleration and jerk, shape (joints,) each."""
+    return np.array(limits.speed), np.array(limits.acceleration), np.array(limits.jerk)
 
 
 def _ruckig(
@@ -172,13 +185,13 @@ def _smooth(factor: Array, grid: float) -> Array:
     return np.convolve(highest, window / window.sum(), mode="valid")
 
 
-def _needed_slowdown(motion: Motion, step: float) -> float:
+def _needed_slowdown(motion: Motion, step: float, highest: tuple[Array, Array, Array]) -> float:
     """The factor (>= 1) by which the whole motion must be slower to keep all limits."""
     speeds = np.diff(motion.joints, axis=0) / step
     accelerations = np.diff(speeds, axis=0) / step
     jerks = np.diff(accelerations, axis=0) / step
     over = 1.0
-    for values, limits, order in ((speeds, _SPEED, 1), (accelerations, _ACCELERATION, 2), (jerks, _JERK, 3)):
+    for order, (values, limits) in enumerate(zip((speeds, accelerations, jerks), highest, strict=True), 1):
         if len(values):
             over = max(over, float((np.abs(values) / limits).max()) ** (1 / order))
     return over

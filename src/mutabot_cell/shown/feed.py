@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from mutabot.evidence import Feed
+from mutabot_cell.robot import Robot
 from mutabot_cell.scene import Scene
 from mutabot_cell.simulation import Simulation
 
@@ -19,10 +20,10 @@ _VIEW = View(azimuth=90.0, elevation=-33.0, distance=2.05, look_at=(0.0, 0.1, 0.
 _HEIGHT, _WIDTH, _RATE = 450, 600, 12.5
 
 
-def tell_of(simulation: Simulation, scene: Scene) -> Feed:
+def tell_of(simulation: Simulation, robot: Robot, scene: Scene) -> Feed:
     """A feed of this cell; it tells something only while a test is recorded."""
     feed, data = Feed(lambda: simulation.time), simulation.data
-    site = simulation.id_of("site", "tool")
+    site = robot.site
     turned = np.zeros(4)
 
     def tool() -> list[float]:
@@ -33,8 +34,7 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
     for box in scene.boxes:
         body = simulation.id_of("body", box.name)
         feed.pose(box.name, _pose(data, body), size=(box.edge, box.edge, box.edge))
-    closed = data.ten_length
-    feed.value("fingers closed", lambda: closed[0], unit="m")
+    feed.value("fingers closed", robot.closed_path, unit="m")
     feed.contacts(Contacts(simulation).read)
     for fixture in scene.fixtures:
         feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from mutabot_cell import BadArgument, Box, Cell, Fixture, MotionRefused, ProtectiveStop, Scene, SensorError
-from mutabot_cell.arm import EXTERNAL_TORQUE_LIMIT
 from mutabot_cell.geometry import pose_of
 from mutabot_cell.models import kinova
-from mutabot_cell.models.model import PHYSICS_STEP, build_arm
+from mutabot_cell.models.assembly import build_arm
+from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.scene import CONVEYOR
 
@@ -56,14 +56,14 @@ def test_tool_pose_is_that_of_the_joint_angles_the_encoders_read(cell: Cell) -> 
     for _ in range(5):
         cell.simulation.tick()
         seen = cell.sensors.tool_pose()
-        computed = pose_of(*Kinematics().tool(np.radians(cell.sensors.joint_angles())))
+        computed = pose_of(*Kinematics(kinova.gen3()).tool(np.radians(cell.sensors.joint_angles())))
         assert (seen.x, seen.y, seen.z) == pytest.approx((computed.x, computed.y, computed.z), abs=1e-9)
 
 
 def test_a_wrongly_calibrated_joint_moves_the_tool_but_not_what_the_encoders_say(exact_cell: Cell) -> None:
     error = math.radians(1.0)
     before = exact_cell.truth.tool_position()
-    exact_cell.simulation.set_encoder_error((0.0, error, 0.0, 0.0, 0.0, 0.0, 0.0))
+    exact_cell.simulation.robot.set_encoder_error((0.0, error, 0.0, 0.0, 0.0, 0.0, 0.0))
     exact_cell.arm.move_by(z=0.1)
     exact_cell.arm.home()
     exact_cell.wait(0.5)
@@ -76,7 +76,7 @@ def test_a_wrongly_calibrated_joint_moves_the_tool_but_not_what_the_encoders_say
 
 def test_joints_stand_still_when_only_the_calibration_changes(exact_cell: Cell) -> None:
     read = exact_cell.sensors.joint_angles()
-    exact_cell.simulation.set_encoder_error((0.01, -0.01, 0.02, 0.0, 0.0, 0.0, 0.03))
+    exact_cell.simulation.robot.set_encoder_error((0.01, -0.01, 0.02, 0.0, 0.0, 0.0, 0.03))
     exact_cell.wait(1.0)
     turned = np.array(exact_cell.sensors.joint_angles()) - read
     assert np.abs((turned + 180) % 360 - 180).max() < 0.01
@@ -202,7 +202,7 @@ def test_joints_turn_as_far_as_the_makers_guide_says_and_no_further(
 ) -> None:
     angles = list(kinova.HOME_DEGREES)
     angles[joint - 1] = -limit - 0.2
-    with pytest.raises(MotionRefused, match=rf"0\.2 deg beyond its limit of {limit} deg"):
+    with pytest.raises(MotionRefused, match=rf"0\.2 deg beyond its limit of -{limit} deg"):
         cell.arm.move_joints(angles)
     low, high = cell.simulation.model.joint(f"joint {joint}").range
     assert (math.degrees(low), math.degrees(high)) == pytest.approx((-limit, limit))
@@ -210,7 +210,7 @@ def test_joints_turn_as_far_as_the_makers_guide_says_and_no_further(
 
 def test_links_weigh_on_the_joints_as_the_makers_description_says(cell: Cell) -> None:
     """The torque of joint 2 that gravity asks for, from the table of link masses and centres."""
-    empty = build_arm()
+    empty = build_arm(kinova.gen3())
     data = mujoco.MjData(empty)
     empty.body_gravcomp[:] = 0
     generator = np.random.default_rng(3)
@@ -240,7 +240,7 @@ def test_inertias_are_those_of_bodies_that_exist() -> None:
 def test_dry_friction_in_the_joints_is_not_taken_for_a_collision(cell: Cell) -> None:
     friction = 25.0
     cell.simulation.model.dof_frictionloss[:2] = friction
-    assert friction > EXTERNAL_TORQUE_LIMIT[0]
+    assert friction > kinova.EXTERNAL_TORQUE_LIMIT[0]
     most = 0.0
 
     def note() -> None:

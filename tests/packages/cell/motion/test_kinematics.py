@@ -12,8 +12,10 @@ from mutabot_cell.geometry import (
     rotation_from_euler,
     rotation_vector,
 )
-from mutabot_cell.models import kinova
-from mutabot_cell.motion.kinematics import REACH, STRAIGHTNESS, Kinematics, Line, wrist_distance
+from mutabot_cell.models import kinova, robotiq
+from mutabot_cell.motion.kinematics import STRAIGHTNESS, Kinematics
+from mutabot_cell.motion.line import Line
+from mutabot_cell.motion.reach import WristReach
 from mutabot_cell.motion.trajectory import Spline
 
 
@@ -31,7 +33,7 @@ def chained_tool(joints: np.ndarray) -> np.ndarray:
     result = np.eye(4)
     for joint, angle in zip(kinova.JOINTS, joints, strict=True):
         result = result @ step(joint.origin, joint.turn, angle)
-    return result @ step(kinova.INTERFACE_OFFSET, math.pi) @ step((0, 0, kinova.TOOL_LENGTH), 0)
+    return result @ step(kinova.INTERFACE_OFFSET, math.pi) @ step((0, 0, robotiq.TOOL_LENGTH), 0)
 
 
 def random_joints(generator: np.random.Generator) -> np.ndarray:
@@ -48,7 +50,7 @@ def test_home_pose_is_the_one_the_real_robot_reports() -> None:
 
 
 def test_forward_kinematics_follow_the_published_table() -> None:
-    kinematics = Kinematics()
+    kinematics = Kinematics(kinova.gen3())
     generator = np.random.default_rng(7)
     for _ in range(20):
         joints = random_joints(generator)
@@ -59,7 +61,7 @@ def test_forward_kinematics_follow_the_published_table() -> None:
 
 
 def test_tool_moves_as_finite_differences_of_the_joints_say() -> None:
-    kinematics = Kinematics()
+    kinematics = Kinematics(kinova.gen3())
     generator = np.random.default_rng(8)
     small = 1e-6
     for _ in range(10):
@@ -75,11 +77,13 @@ def test_tool_moves_as_finite_differences_of_the_joints_say() -> None:
 
 
 def test_wrist_is_never_further_from_the_shoulder_than_the_reach() -> None:
-    kinematics = Kinematics()
+    kinematics = Kinematics(kinova.gen3())
     generator = np.random.default_rng(9)
-    assert max(wrist_distance(*kinematics.tool(random_joints(generator))) for _ in range(200)) <= REACH + 1e-3
+    reach = WristReach(kinova.gen3())
+    farthest = max(reach.distance(*kinematics.tool(random_joints(generator))) for _ in range(200))
+    assert farthest <= reach.length + 1e-3
     stretched = np.zeros(7)
-    assert wrist_distance(*kinematics.tool(stretched)) == pytest.approx(REACH, abs=1e-3)
+    assert reach.distance(*kinematics.tool(stretched)) == pytest.approx(reach.length, abs=1e-3)
 
 
 def test_euler_angles_survive_the_way_there_and_back() -> None:
@@ -106,7 +110,7 @@ def test_rotation_vectors_survive_the_way_there_and_back(angle: float) -> None:
 
 @pytest.mark.parametrize("change", [{"y": 0.2}, {"theta_x": 80.0}, {"z": -0.2}, {"theta_z": 60.0, "x": -0.1}])
 def test_planned_tool_path_is_straight_between_the_knots_too(change: dict[str, float]) -> None:
-    kinematics = Kinematics()
+    kinematics = Kinematics(kinova.gen3())
     home = np.array(kinova.HOME)
     start, rotation = kinematics.tool(home)
     shift = np.array([change.get(axis, 0.0) for axis in "xyz"])

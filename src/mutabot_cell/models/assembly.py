@@ -1,0 +1,75 @@
+"""The physics' models: the cell with the robots attached to it, and an arm alone for the planner."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+
+import mujoco
+import numpy as np
+
+from mutabot_cell.geometry import Array
+from mutabot_cell.scene import Scene
+
+from .model import ROBOT_BODY, cell_xml
+from .robot import RobotModel
+from .tool import Tool
+
+TOOL_SITE, PAYLOAD_BODY = "tool", "payload"
+"""Behind a robot's prefix, names of what the cell adds to it: the tool point, and the empty body at which the
+controller compensates the declared payload's weight."""
+
+_PAYLOAD_MARKER = 1e-6
+"""Mass of the empty body at which the controller compensates a payload, kg."""
+
+
+def build_cell(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjModel:
+    """Compile the whole cell. `robots` by the prefix of their names in it, which may be empty."""
+    spec = mujoco.MjSpec.from_string(cell_xml(scene, robots))
+    for prefix, robot in robots.items():
+        part = _equipped(robot, robot.tool)
+        spec.attach(part, frame=spec.body(prefix + ROBOT_BODY).add_frame(), prefix=prefix)
+    return _compiled(spec)
+
+
+def build_arm(robot: RobotModel) -> mujoco.MjModel:
+    """Compile the arm with its tool point, for kinematics and planning; its base frame is the world frame."""
+    return _compiled(_equipped(robot, None))
+
+
+def compensation_of(payload: float) -> float:
+    """The `gravcomp` of a robot's body "payload" that carries `payload` kg."""
+    return payload / _PAYLOAD_MARKER
+
+
+def _equipped(robot: RobotModel, tool: Tool | None) -> mujoco.MjSpec:
+    """The arm with this tool, its tool point, and what the controller needs for a payload."""
+    spec = robot.spec.copy()
+    flange = spec.site(robot.flange)
+    if tool is not None:
+        frame = flange.parent.add_frame(pos=flange.pos, quat=flange.quat)
+        spec.attach(tool.spec.copy(), frame=frame, prefix="")
+    point, turn = _tool_point(flange, robot.tool)
+    flange.parent.add_site(name=TOOL_SITE, pos=point, quat=turn, size=(0.002,) * 3, rgba=(0, 0, 0, 0))
+    payload = flange.parent.add_body(name=PAYLOAD_BODY, pos=point, quat=turn, gravcomp=1.0)
+    payload.mass, payload.inertia, payload.ipos = _PAYLOAD_MARKER, (1e-9,) * 3, (0.0, 0.0, 0.0)
+    payload.explicitinertial = True
+    return spec
+
+
+def _tool_point(flange: mujoco.MjsSite, tool: Tool | None) -> tuple[Array, Array]:
+    """Place, shape (3,), m, and quaternion, shape (4,), of the tool point in the flange's body."""
+    point, turn = flange.pos.copy(), flange.quat.copy()
+    if tool is not None:
+        away = np.zeros(3)
+        mujoco.mju_rotVecQuat(away, np.array(tool.point), flange.quat)
+        point += away
+        mujoco.mju_mulQuat(turn, flange.quat, np.array(tool.turn))
+    return point, turn
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    with warnings.catch_warnings():
+        # MuJoCo warns of empty prefixes, with which a model may not be saved correctly: nobody saves this one
+        warnings.simplefilter("ignore")
+        return spec.compile()

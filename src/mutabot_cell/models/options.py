@@ -1,0 +1,31 @@
+"""What all models of the physics share: solver options and classes of what collides with what."""
+
+from __future__ import annotations
+
+PHYSICS_STEP = 0.002
+"""Length of one physics step, s."""
+
+# Collision classes: fixtures (1), arm (2), gripper (4), boxes (8).
+DEFAULTS = """
+<default>
+  <default class="fixture"><geom contype="1" conaffinity="14" friction="1 0.005 0.0001"/></default>
+  <default class="arm"><geom contype="2" conaffinity="13"/></default>
+  <default class="gripper"><geom contype="4" conaffinity="11"/></default>
+  <default class="box"><geom contype="8" conaffinity="15"/></default>
+  <default class="looks"><geom contype="0" conaffinity="0" mass="0" group="1"/></default>
+</default>
+"""
+
+# impratio: friction is ten times as stiff as what presses. With more, boxes held on one edge chatter between
+# the pads; with less, they creep.
+# The dense Jacobian is right for this size; it also avoids a fault of MuJoCo 4.0.0's sparse factorisation
+# (its issue 3767: wrong accelerations; repaired in 4.0.1).
+OPTIONS = f"""
+<option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"
+        solver="Newton" iterations="20" tolerance="1e-8">
+  <flag autoreset="disable" island="disable"/>
+</option>
+<compiler angle="radian" autolimits="false"/>
+"""
+
+HEAD = OPTIONS + DEFAULTS

@@ -1,0 +1,51 @@
+"""A straight tool motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mutabot_cell.geometry import Array, rotation_about, rotation_vector
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A straight tool motion in the base frame: from `start` by `shift` (m), turning by `turn`.
+
+    Attributes:
+        start: position, shape (3,), m.
+        rotation: orientation at the start, shape (3, 3).
+        shift: shape (3,), m.
+        turn: rotation vector in the tool frame, shape (3,), rad.
+    """
+
+    start: Array
+    rotation: Array
+    shift: Array
+    turn: Array
+
+    @classmethod
+    def between(cls, start: Array, rotation: Array, end: Array, end_rotation: Array) -> Line:
+        """The line from one tool pose to another, turning the shorter way."""
+        return cls(start, rotation, end - start, rotation_vector(rotation.T @ end_rotation))
+
+    @property
+    def length(self) -> float:
+        """m."""
+        return float(np.linalg.norm(self.shift))
+
+    @property
+    def angle(self) -> float:
+        """rad."""
+        return float(np.linalg.norm(self.turn))
+
+    def position_at(self, fraction: float) -> Array:
+        """Shape (3,), m."""
+        result: Array = self.start + fraction * self.shift
+        return result
+
+    def rotation_at(self, fraction: float) -> Array:
+        """Shape (3, 3)."""
+        result: Array = self.rotation @ rotation_about(fraction * self.turn)
+        return result

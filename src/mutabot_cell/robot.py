@@ -1,0 +1,125 @@
+"""One robot in the physics: where its joints, servos and tool are, and what its encoders read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from mutabot_cell.models.assembly import PAYLOAD_BODY, TOOL_SITE
+from mutabot_cell.models.model import ROBOT_BODY
+from mutabot_cell.models.robot import RobotModel
+
+from .errors import BadArgument
+from .geometry import Array, Pose, Position, pose_of, rotation_from_euler
+
+
+class Robot:
+    """A robot of a simulation.
+
+    Attributes:
+        model: the robot as plain data.
+        prefix: of all its names in the physics.
+        joints: where its joints' angles are in `qpos`.
+        dofs: where its joints' speeds and torques are in `qvel`, `qfrc_constraint` and their like.
+        servos: where the inputs of its joints' servos are in `ctrl`.
+        fingers: number of the servo that moves its fingers; -1 without fingers.
+        site, body, payload: numbers of the tool point, of the body at its base, and of the payload's body.
+        encoder_error: what each joint's encoder reads too much, rad; zero for a well calibrated arm. Servos,
+            protective stop, planner and sensors know the encoders alone. Set it by `set_encoder_error`.
+    """
+
+    def __init__(
+        self, physics: mujoco.MjModel, data: mujoco.MjData, model: RobotModel, prefix: str = ""
+    ) -> None:
+        self.model, self.prefix = model, prefix
+        self._physics, self._data = physics, data
+        joints = [physics.joint(prefix + name).id for name in model.joints]
+        self.joints = _run(physics.jnt_qposadr[joints].tolist())
+        self.dofs = _run(physics.jnt_dofadr[joints].tolist())
+        self.servos = _run([physics.actuator(prefix + name).id for name in model.servos])
+        self.site = int(physics.site(prefix + TOOL_SITE).id)
+        self.body = int(physics.body(prefix + ROBOT_BODY).id)
+        self.payload = int(physics.body(prefix + PAYLOAD_BODY).id)
+        self._fingers = None if model.tool is None else model.tool.effector
+        self.fingers = -1 if self._fingers is None else physics.actuator(prefix + self._fingers.actuator).id
+        base = model.base
+        self._base = np.array([base.x, base.y, base.z])
+        turned = rotation_from_euler(base.theta_x, base.theta_y, base.theta_z)
+        self._turned = None if (turned == np.eye(3)).all() else turned
+        self.encoder_error: Array = np.zeros(len(joints))
+        self._places = data.qpos  # a view of the physics' own memory
+
+    def place_at_home(self) -> None:
+        """Joints and servos at the home position, fingers open; for the start only."""
+        self._data.qpos[self.joints] = self.model.home
+        self._data.ctrl[self.servos] = self.model.home
+
+    def lag(self) -> Array:
+        """Of each servo, s, shape (joints,): this times the wanted speed, added to a setpoint, removes it."""
+        stiffness = self._physics.actuator_gainprm[self.servos, 0]
+        damping = -self._physics.actuator_biasprm[self.servos, 2] + self._physics.dof_damping[self.dofs]
+        result: Array = damping / stiffness
+        return result
+
+    def encoders(self) -> Array:
+        """Joint angles as the encoders tell them to the controller, shape (joints,), rad, without noise."""
+        read: Array = self._places[self.joints] + self.encoder_error
+        return read
+
+    def set_encoder_error(self, error: Sequence[float]) -> None:
+        """Calibrate the encoders wrongly: the joints move to where the encoders read what they read now.
+
+        Args:
+            error: encoder minus joint, rad, one per joint.
+
+        Raises:
+            BadArgument: not one number per joint.
+        """
+        if len(error) != len(self.encoder_error):
+            raise BadArgument(
+                f"Expected {len(self.encoder_error)} encoder errors, one per joint, but got {error!r}"
+            )
+        read = self.encoders()
+        self.encoder_error[:] = error
+        self._places[self.joints] = read - self.encoder_error
+        mujoco.mj_forward(self._physics, self._data)
+
+    def closed_path(self) -> float:
+        """How far the fingers have closed, m; 0 when they are open, and without fingers."""
+        if self._fingers is None:
+            return 0.0
+        start, end = self._fingers.lengths
+        measured = float(self._data.actuator_length[self.fingers])
+        return (measured - start) * (self._fingers.stroke / (end - start))
+
+    def closing_speed(self) -> float:
+        """How fast the fingers close, m/s."""
+        if self._fingers is None:
+            return 0.0
+        start, end = self._fingers.lengths
+        return float(self._data.actuator_velocity[self.fingers]) * (self._fingers.stroke / (end - start))
+
+    def tool_pose(self) -> Pose:
+        """Exact tool pose, base frame."""
+        rotation = self._data.site_xmat[self.site].reshape(3, 3)
+        if self._turned is not None:
+            rotation = self._turned.T @ rotation
+        return pose_of(self._tool_place(), rotation)
+
+    def tool_position(self) -> Position:
+        """Exact tool position, base frame; quicker than the whole pose, for checks at every tick."""
+        return Position(*self._tool_place().tolist())
+
+    def _tool_place(self) -> Array:
+        place: Array = self._data.site_xpos[self.site] - self._base
+        return place if self._turned is None else self._turned.T @ place
+
+
+def _run(numbers: list[int]) -> slice:
+    """The slice of these numbers, which follow each other."""
+    first, last = numbers[0], numbers[-1]
+    if numbers != list(range(first, last + 1)):
+        raise BadArgument(f"joints and servos must follow each other in the model, but they are {numbers}")
+    return slice(first, last + 1)
