@@ -15,6 +15,9 @@ from .errors import (
     BadArgument as BadArgument,
 )
 from .errors import (
+    BadModel as BadModel,
+)
+from .errors import (
     CellError as CellError,
 )
 from .errors import (
@@ -49,12 +52,17 @@ from .scene import (
 )
 
 if TYPE_CHECKING:
+    from . import robots as robots
     from .cell import Cell as Cell
     from .cell import current as current
     from .cell import world as world
     from .clock import simulated_time as simulated_time
     from .geometry import Pose as Pose
     from .geometry import Position as Position
+    from .models.limits import Limits as Limits
+    from .models.limits import ToolLimits as ToolLimits
+    from .models.robot import RobotModel as RobotModel
+    from .models.tool import Tool as Tool
     from .rendering import render as render
 
 _LIBRARIES = ("mujoco", "numpy", "mink", "ruckig")
@@ -66,11 +74,17 @@ _LAZY = {
     "Pose": "geometry",
     "Position": "geometry",
     "render": "rendering",
+    "robots": "robots",
+    "Limits": "models.limits",
+    "RobotModel": "models.robot",
+    "Tool": "models.tool",
+    "ToolLimits": "models.limits",
 }
 
 
 __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "BadArgument",
+    "BadModel",
     "Box",
     "CellError",
     "ConditionBroken",
@@ -98,6 +112,6 @@ def __getattr__(name: str) -> object:
         if error.name in _LIBRARIES:
             raise SimulatorMissing(error.name) from error
         raise
-    value = getattr(module, name)
+    value = module if name == _LAZY[name] else getattr(module, name)
     globals()[name] = value
     return value

@@ -92,8 +92,8 @@ class Cell:
         robot: with its tool; the published experiment's Kinova Gen3 by default.
         scene: what stands around the robot; the published experiment's cell by default.
         noise: False makes all sensors exact (placement and colours are still drawn).
-        grip_force: N at each pad, 20..235.
-        finger_speed: m/s, 0.020..0.150.
+        grip_force: N at each pad; by default what the tool says (`Fingers.force`), 60 N for the 2F-85.
+        finger_speed: m/s; likewise, 0.1 m/s.
 
     Attributes:
         arm, gripper, sensors: as the robot program uses them.
@@ -109,8 +109,8 @@ class Cell:
         robot: RobotModel | None = None,
         scene: Scene | None = None,
         noise: bool = True,
-        grip_force: float = 60.0,
-        finger_speed: float = 0.1,
+        grip_force: float | None = None,
+        finger_speed: float | None = None,
     ) -> None:
         global _current  # noqa: PLW0603  (the cell that `world` reports on)
         if isinstance(seed, bool) or not isinstance(seed, int):

@@ -3,6 +3,7 @@
     CellError
     ├── SimulatorMissing (ImportError)     mujoco or a planner library is not installed
     ├── BadArgument (ValueError)           a value of the wrong type, or not finite, at the border
+    ├── BadModel (ValueError)              a file of a robot or tool lacks something, or has a wrong unit
     ├── MotionRefused                      target out of reach or limits; nothing has moved
     ├── ProtectiveStop                     the arm hit something hard; the motion has ended
     ├── SensorError                        nothing to read (no box in the cell)
@@ -32,6 +33,10 @@ class SimulatorMissing(CellError, ImportError):
 
 class BadArgument(CellError, ValueError):
     """An argument has a wrong type or value."""
+
+
+class BadModel(CellError, ValueError):
+    """A model file of a robot, a tool or a scene cannot be used; the message says what to add to it."""
 
 
 class MotionRefused(CellError):

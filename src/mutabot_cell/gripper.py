@@ -7,6 +7,7 @@ import math
 from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.tool import Fingers
 
+from .curve import Curve
 from .errors import BadArgument
 from .robot import Robot
 from .simulation import TICK, Simulation
@@ -27,23 +28,22 @@ class Gripper:
         robot: Robot,
         fingers: Fingers,
         noise: SeededNoise,
-        force: float,
-        speed: float,
+        force: float | None,
+        speed: float | None,
     ) -> None:
         self._simulation = simulation
         self._robot = robot
         self._fingers = fingers
         self._noise = noise
         self._servo = robot.fingers
-        start, end = fingers.controls
-        self._open, self._per_metre = start, (end - start) / fingers.stroke
+        self._control = Curve(fingers.paths, fingers.controls)
         self._target = 0.0
         self._setpoint = 0.0
         self._holding = False
         self._other_ticks = 0
         self._read: tuple[int, float] = (-1, 0.0)
-        self.set_force(force)
-        self.set_speed(speed)
+        self.set_force(fingers.force if force is None else force)
+        self.set_speed(fingers.speed if speed is None else speed)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._detect)
 
@@ -130,4 +130,4 @@ class Gripper:
     def _drive(self) -> None:
         missing = self._target - self._setpoint
         self._setpoint += math.copysign(min(self._speed * TICK, abs(missing)), missing)
-        self._simulation.setpoints[:, self._servo] = self._open + self._setpoint * self._per_metre
+        self._simulation.setpoints[:, self._servo] = self._control(self._setpoint)

@@ -11,6 +11,7 @@ from mutabot_cell.models.assembly import PAYLOAD_BODY, TOOL_SITE
 from mutabot_cell.models.model import ROBOT_BODY
 from mutabot_cell.models.robot import RobotModel
 
+from .curve import Curve
 from .errors import BadArgument
 from .geometry import Array, Pose, Position, pose_of, rotation_from_euler
 
@@ -43,6 +44,8 @@ class Robot:
         self.body = int(physics.body(prefix + ROBOT_BODY).id)
         self.payload = int(physics.body(prefix + PAYLOAD_BODY).id)
         self._fingers = None if model.tool is None else model.tool.effector
+        if self._fingers is not None:
+            self._closed = Curve(self._fingers.lengths, self._fingers.paths)
         self.fingers = -1 if self._fingers is None else physics.actuator(prefix + self._fingers.actuator).id
         base = model.base
         self._base = np.array([base.x, base.y, base.z])
@@ -90,16 +93,14 @@ class Robot:
         """How far the fingers have closed, m; 0 when they are open, and without fingers."""
         if self._fingers is None:
             return 0.0
-        start, end = self._fingers.lengths
-        measured = float(self._data.actuator_length[self.fingers])
-        return (measured - start) * (self._fingers.stroke / (end - start))
+        return self._closed(float(self._data.actuator_length[self.fingers]))
 
     def closing_speed(self) -> float:
         """How fast the fingers close, m/s."""
         if self._fingers is None:
             return 0.0
-        start, end = self._fingers.lengths
-        return float(self._data.actuator_velocity[self.fingers]) * (self._fingers.stroke / (end - start))
+        measured = float(self._data.actuator_length[self.fingers])
+        return float(self._data.actuator_velocity[self.fingers]) * self._closed.slope(measured)
 
     def tool_pose(self) -> Pose:
         """Exact tool pose, base frame."""

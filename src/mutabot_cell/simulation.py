@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models.assembly import build_cell
-from mutabot_cell.models.options import PHYSICS_STEP
+from mutabot_cell.models.options import PHYSICS_STEP, ignore_warning
 from mutabot_cell.models.robot import RobotModel
 
 from .errors import SimulationDiverged
@@ -32,10 +32,6 @@ _ABSURD_SPEED = 1e4
 _KEPT_FRAMES = 1 + math.ceil(LATENCY_TICKS / FRAME_TICKS)
 
 
-def _ignore_warning(message: str) -> None:
-    """MuJoCo would write warnings into a file in the working directory; `tick` finds what matters itself."""
-
-
 class Simulation:
     """Model and state of the cell, and its time.
 
@@ -48,7 +44,7 @@ class Simulation:
     """
 
     def __init__(self, scene: Scene, robots: Mapping[str, RobotModel]) -> None:
-        mujoco.set_mju_user_warning(_ignore_warning)
+        mujoco.set_mju_user_warning(ignore_warning)
         self.model = build_cell(scene, robots)
         self.data = mujoco.MjData(self.model)
         self.robots = {

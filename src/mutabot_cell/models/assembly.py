@@ -47,6 +47,7 @@ def _equipped(robot: RobotModel, tool: Tool | None) -> mujoco.MjSpec:
     spec = robot.spec.copy()
     flange = spec.site(robot.flange)
     if tool is not None:
+        keep_apart(spec, flange.parent, tool)
         frame = flange.parent.add_frame(pos=flange.pos, quat=flange.quat)
         spec.attach(tool.spec.copy(), frame=frame, prefix="")
     point, turn = _tool_point(flange, robot.tool)
@@ -57,14 +58,24 @@ def _equipped(robot: RobotModel, tool: Tool | None) -> mujoco.MjSpec:
     return spec
 
 
+def keep_apart(spec: mujoco.MjSpec, link: mujoco.MjsBody, tool: Tool) -> None:
+    """A tool's mount may overlap the last two links, as flanges do."""
+    for body in (link, link.parent):
+        for part in tool.spec.bodies:
+            if part.name and part.name != "world" and body.name and body != spec.worldbody:
+                spec.add_exclude(bodyname1=body.name, bodyname2=part.name)
+
+
 def _tool_point(flange: mujoco.MjsSite, tool: Tool | None) -> tuple[Array, Array]:
     """Place, shape (3,), m, and quaternion, shape (4,), of the tool point in the flange's body."""
     point, turn = flange.pos.copy(), flange.quat.copy()
+    mujoco.mju_normalize4(turn)
     if tool is not None:
-        away = np.zeros(3)
-        mujoco.mju_rotVecQuat(away, np.array(tool.point), flange.quat)
+        away, whole = np.zeros(3), np.zeros(4)
+        mujoco.mju_rotVecQuat(away, np.array(tool.point), turn)
         point += away
-        mujoco.mju_mulQuat(turn, flange.quat, np.array(tool.turn))
+        mujoco.mju_mulQuat(whole, turn, np.array(tool.turn))
+        turn = whole
     return point, turn
 
 

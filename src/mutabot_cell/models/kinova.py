@@ -13,8 +13,9 @@ from functools import cache
 import mujoco
 
 from . import robotiq
+from .limits import JointLimits, ToolLimits
 from .options import HEAD
-from .robot import JointLimits, RobotModel, SphericalWrist, ToolLimits
+from .robot import RobotModel, SphericalWrist
 
 CONTINUOUS = math.inf
 

@@ -29,3 +29,10 @@ OPTIONS = f"""
 """
 
 HEAD = OPTIONS + DEFAULTS
+
+
+def ignore_warning(message: str) -> None:
+    """For `mujoco.set_mju_user_warning`: MuJoCo would write warnings into a file in the working directory.
+
+    Models are checked, and `Simulation.tick` finds what matters itself.
+    """

@@ -5,53 +5,20 @@ Lengths in m, angles in rad, torques in Nm, masses in kg.
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
 
 import mujoco
 
 from mutabot_cell.geometry import Pose
 from mutabot_cell.scene import BASE_POSITION
 
+from .limits import JointLimits, Limits, ToolLimits
 from .tool import Tool
 
 ON_PEDESTAL = Pose(*BASE_POSITION, 0.0, 0.0, 0.0)
 """Where a base stands unless said otherwise: on a pedestal as high as the published experiment's."""
-
-
-@dataclass(frozen=True, slots=True)
-class JointLimits:
-    """What each joint may do, one value per joint.
-
-    Attributes:
-        speed: rad/s.
-        acceleration: rad/s².
-        jerk: rad/s³.
-        torque: what the joint can give without end, Nm.
-        peak_torque: what it can give for a short time, Nm.
-        external_torque: torque from outside that stops the arm when it lasts two ticks, Nm.
-        following_error: distance between setpoint and joint that stops the arm, rad; one for all joints.
-    """
-
-    speed: tuple[float, ...]
-    acceleration: tuple[float, ...]
-    jerk: tuple[float, ...]
-    torque: tuple[float, ...]
-    peak_torque: tuple[float, ...]
-    external_torque: tuple[float, ...]
-    following_error: float = 0.03
-
-
-@dataclass(frozen=True, slots=True)
-class ToolLimits:
-    """How fast the tool may move on a straight line: m, rad, s. The values are our choice."""
-
-    speed: float = 0.5
-    turn_speed: float = math.radians(60.0)
-    acceleration: float = 2.0
-    turn_acceleration: float = math.radians(240.0)
-    jerk: float = 20.0
-    turn_jerk: float = math.radians(2400.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +53,7 @@ class RobotModel:
         base: where the base stands in the world, m and degrees.
         tool: what is fastened to the flange, if anything.
         reach: its reach in closed form, for refusals that say by how much; None: the planner finds out.
+        root: name of its first body in a file that holds more than the robot; "" otherwise.
     """
 
     name: str
@@ -101,6 +69,70 @@ class RobotModel:
     base: Pose = ON_PEDESTAL
     tool: Tool | None = None
     reach: SphericalWrist | None = None
+    root: str = ""
+
+    @classmethod
+    def from_mjcf(
+        cls,
+        path: str | PathLike[str],
+        *,
+        tool_site: str,
+        home: Sequence[float] | None = None,
+        limits: Limits | None = None,
+        tool_limits: ToolLimits | None = None,
+        payload: float = 1.0,
+        root: str | None = None,
+        without: Sequence[str] = (),
+    ) -> RobotModel:
+        """A robot from a file in MuJoCo's format.
+
+        Servos are those of the file if all joints have position servos; else they are made from the limits.
+        Gravity is compensated, as controllers do. The arm's parts do not collide with each other.
+
+        Args:
+            path: of the file.
+            tool_site: name of the site, or body, to whose frame tools are fastened; z points out.
+            home: joint angles, degrees; by default those of the file's keyframe "home", or of its first.
+            limits: of joints and tool; see `Limits` and `ToolLimits` for what is assumed.
+            tool_limits: how fast the tool may be on a straight line.
+            payload: what the arm is rated for without a gripper, kg.
+            root: name of the robot's first body, in a file that holds other things too. Its frame is then the
+                base frame, and the base stands where this body stands; else the file's world is the base.
+            without: names of bodies and shapes to leave out, such as a gripper that is part of the file.
+
+        Raises:
+            BadModel: the file lacks something; the message says what to add.
+            BadArgument: an argument does not fit it.
+        """
+        from .loading import robot_from_mjcf  # noqa: PLC0415  # which knows this module
+
+        read = robot_from_mjcf(path, tool_site, home, limits or Limits(), root, without)
+        return replace(read, tool_limits=tool_limits or ToolLimits(), payload=payload)
+
+    @classmethod
+    def from_urdf(
+        cls,
+        path: str | PathLike[str],
+        *,
+        tool_link: str,
+        home: Sequence[float],
+        limits: Limits | None = None,
+        tool_limits: ToolLimits | None = None,
+        payload: float = 1.0,
+        packages: Mapping[str, str | PathLike[str]] | None = None,
+    ) -> RobotModel:
+        """A robot from a URDF. Its servos are made from the limits; see `from_mjcf` for the rest.
+
+        Args:
+            path: of the file.
+            tool_link: name of the link to whose frame tools are fastened; z points away from the arm.
+            home: joint angles, degrees.
+            packages: folders of packages, for `package://NAME/...` in names of meshes.
+        """
+        from .urdf import robot_from_urdf  # noqa: PLC0415  # as above
+
+        read = robot_from_urdf(path, tool_link, home, limits or Limits(), packages or {})
+        return replace(read, tool_limits=tool_limits or ToolLimits(), payload=payload)
 
     def with_tool(self, tool: Tool) -> RobotModel:
         """The same arm with `tool` at its flange."""

@@ -102,9 +102,12 @@ def gripper() -> Tool:
             actuator="fingers",
             pads=("left pad", "right pad"),
             stroke=STROKE,
+            paths=(0.0, STROKE),
             controls=(0.0, STROKE),
             lengths=(0.0, STROKE),
             force_range=FORCE_RANGE,
             speed_range=SPEED_RANGE,
+            force=60.0,
+            speed=0.1,
         ),
     )

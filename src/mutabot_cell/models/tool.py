@@ -5,7 +5,9 @@ Lengths in m, forces in N, masses in kg.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 import mujoco
 
@@ -18,20 +20,24 @@ class Fingers:
         actuator: name of the position servo that moves them.
         pads: names of the shapes that touch what is gripped.
         stroke: how far the opening changes from open to closed, m.
-        controls: input of the servo for open and for closed fingers.
-        lengths: what the servo measures of open and of closed fingers, in its own unit.
+        paths: how far the fingers have closed at some points of their way, from 0 to the stroke, m.
+        controls, lengths: input of the servo, and what it measures, there; in its own units.
         force_range: grip force at each pad, N.
         speed_range: how fast the opening changes, m/s.
+        force, speed: of a cell that does not say otherwise.
         force_ratio: force of the servo, in its own unit, for 1 N at each pad.
     """
 
     actuator: str
     pads: tuple[str, ...]
     stroke: float
-    controls: tuple[float, float]
-    lengths: tuple[float, float]
+    paths: tuple[float, ...]
+    controls: tuple[float, ...]
+    lengths: tuple[float, ...]
     force_range: tuple[float, float]
     speed_range: tuple[float, float]
+    force: float
+    speed: float
     force_ratio: float = 1.0
 
 
@@ -56,3 +62,35 @@ class Tool:
     effector: Fingers
     turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     palm: float = 0.0
+
+    @classmethod
+    def from_mjcf(
+        cls,
+        path: str | PathLike[str],
+        *,
+        actuator: str,
+        open: float,  # as users call it
+        closed: float,
+        pads: Sequence[str],
+        point: str | None = None,
+        force: float | None = None,
+    ) -> Tool:
+        """A parallel gripper from a file in MuJoCo's format, whose world frame is fastened to the flange.
+
+        What it can do is measured once: the fingers are opened and closed without gravity.
+
+        Args:
+            path: of the file.
+            actuator: name of the servo that moves the fingers.
+            open, closed: its inputs for open and for closed fingers.
+            pads: names of the shapes that touch what is gripped, on both sides.
+            point: name of the site that is the tool point; by default the middle of the closed pads.
+            force: grip force at each pad of a cell that does not say otherwise, N; the largest by default.
+
+        Raises:
+            BadModel: the file lacks something; the message says what to add.
+            BadArgument: an argument does not fit it.
+        """
+        from .gripping import gripper_from_mjcf  # noqa: PLC0415  # which knows this module
+
+        return gripper_from_mjcf(path, actuator, (open, closed), tuple(pads), point, force)

@@ -14,7 +14,7 @@ import numpy as np
 import ruckig
 
 from mutabot_cell.geometry import Array
-from mutabot_cell.models.robot import JointLimits, ToolLimits
+from mutabot_cell.models.limits import JointLimits, ToolLimits
 
 _GRID = 0.01
 """Spacing of the grid on which time laws are computed, s."""

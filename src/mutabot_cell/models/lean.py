@@ -1,0 +1,43 @@
+"""What a cell leaves out of a model file: what is only there to look at, and other worlds' things."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+
+
+def strip(spec: mujoco.MjSpec) -> None:
+    """Leave out keyframes, sensors, lights, cameras: the cell has its own."""
+    for element in (*spec.keys, *spec.sensors, *spec.lights, *spec.cameras):
+        spec.delete(element)
+
+
+def freeze_inertias(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
+    """Write what the compiler found of masses into the bodies, so that shapes can be left out."""
+    for body in spec.bodies:
+        if body == spec.worldbody or body.id < 0:
+            continue
+        body.mass = float(model.body_mass[body.id])
+        body.ipos, body.iquat = model.body_ipos[body.id], model.body_iquat[body.id]
+        body.inertia, body.fullinertia = model.body_inertia[body.id], (math.nan,) * 6
+        body.ialt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+        body.explicitinertial = True
+
+
+def leave_looks_out(spec: mujoco.MjSpec) -> None:
+    """Leave out shapes that touch nothing and weigh nothing, and meshes that nothing uses: all load slowly."""
+    for geom in list(spec.geoms):
+        if not geom.contype and not geom.conaffinity and geom.parent.explicitinertial:
+            spec.delete(geom)
+    used = {geom.meshname for geom in spec.geoms}
+    for mesh in list(spec.meshes):
+        if mesh.name not in used:
+            spec.delete(mesh)
+
+
+def collide_as(spec: mujoco.MjSpec, contype: int, conaffinity: int) -> None:
+    """Put all shapes that collide into one of the cell's classes, and let them be seen."""
+    for geom in spec.geoms:
+        if geom.contype or geom.conaffinity:
+            geom.contype, geom.conaffinity, geom.group = contype, conaffinity, 0

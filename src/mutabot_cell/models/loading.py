@@ -1,0 +1,184 @@
+"""Robots from MuJoCo's files: the chain of joints to the flange, servos, and what collides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from os import PathLike, fspath
+from pathlib import Path
+
+import mujoco
+
+from mutabot_cell.errors import BadArgument, BadModel
+from mutabot_cell.geometry import Pose, pose_of
+
+from .checks import check_chain, check_masses, check_size, check_touch, compiled
+from .lean import collide_as, freeze_inertias, leave_looks_out, strip
+from .limits import Limits, ToolLimits
+from .options import ignore_warning
+from .robot import ON_PEDESTAL, RobotModel
+from .servos import make_servos, servos_of, torque_of
+
+ARM, GRIPPER = (2, 13), (4, 11)
+"""`contype` and `conaffinity` of arm and gripper: see `options.DEFAULTS`."""
+
+
+def robot_from_mjcf(
+    path: str | PathLike[str],
+    tool_site: str,
+    home: Sequence[float] | None,
+    limits: Limits,
+    root: str | None,
+    without: Sequence[str],
+) -> RobotModel:
+    """See `RobotModel.from_mjcf`."""
+    spec = read(path)
+    base = ON_PEDESTAL
+    if root is not None:
+        spec, base = _part(spec, root, path)
+    for name in without:
+        part = spec.body(name) or spec.geom(name)
+        if part is None:
+            raise BadModel(
+                f"{path} has no body or geom {name!r} to leave out; it has {names_of(spec.bodies)}"
+            )
+        spec.delete(part)
+    return robot_from_spec(spec, path, tool_site, home, limits, base, root or "")
+
+
+def read(path: str | PathLike[str]) -> mujoco.MjSpec:
+    """The spec of a file. Raises BadModel if MuJoCo cannot read it."""
+    if not Path(path).is_file():
+        raise BadModel(f"there is no file {fspath(path)!r}")
+    mujoco.set_mju_user_warning(ignore_warning)
+    try:
+        return mujoco.MjSpec.from_file(fspath(path))
+    except (ValueError, mujoco.FatalError) as error:
+        raise BadModel(f"MuJoCo cannot read {path}: {error}") from error
+
+
+def robot_from_spec(
+    spec: mujoco.MjSpec,
+    path: str | PathLike[str],
+    tool_site: str,
+    home: Sequence[float] | None,
+    limits: Limits,
+    base: Pose = ON_PEDESTAL,
+    root: str = "",
+) -> RobotModel:
+    """A robot from a spec that holds nothing else. Changes the spec."""
+    flange = spec.site(tool_site)
+    if flange is None and spec.body(tool_site) is not None:
+        flange = spec.body(tool_site).add_site(name=tool_site)
+    if flange is None:
+        raise BadModel(
+            f"{path} has no site or body {tool_site!r}; it has the sites {names_of(spec.sites)}. Add "
+            f'<site name="{tool_site}"/> to the last link, its z axis pointing away from the arm'
+        )
+    chain = chain_to(flange.parent, spec)
+    joints = check_chain(chain, path)
+    keys = {key.name: list(key.qpos) for key in spec.keys}
+    names = tuple(joint.name for joint in joints)
+    angles = _home(home, keys, len(names), len(list(spec.joints)), path)
+    strip(spec)
+    leave_looks_out(spec)
+    model = compiled(spec, path)
+    check_masses(model, names, path)
+    check_touch(model, chain, path)
+    resolved = limits.of_joints(names, [torque_of(spec, model, name) for name in names])
+    servos = servos_of(spec, names) or make_servos(spec, names, resolved)
+    freeze_inertias(spec, model)
+    leave_looks_out(spec)
+    collide_as(spec, *ARM)
+    for body in chain:
+        body.gravcomp = 1.0
+    for joint in joints:
+        joint.actgravcomp = True
+    ranges = tuple(_range(model, name) for name in names)
+    _check_home(angles, ranges, names, path)
+    check_size(compiled(spec, path), names, angles, tool_site, path)
+    return RobotModel(
+        name=Path(path).stem,
+        spec=spec,
+        joints=names,
+        servos=servos,
+        home=angles,
+        ranges=ranges,
+        limits=resolved,
+        tool_limits=ToolLimits(),
+        flange=tool_site,
+        payload=1.0,
+        base=base,
+        root=root,
+    )
+
+
+def chain_to(body: mujoco.MjsBody, spec: mujoco.MjSpec) -> list[mujoco.MjsBody]:
+    """The bodies from the base to `body`."""
+    chain = []
+    while body is not None and body != spec.worldbody:
+        chain.append(body)
+        body = body.parent
+    return chain[::-1]
+
+
+def _part(spec: mujoco.MjSpec, root: str, path: str | PathLike[str]) -> tuple[mujoco.MjSpec, Pose]:
+    """The robot that begins with body `root`, alone, and where it stands in the file's world."""
+    body = spec.body(root)
+    if body is None:
+        raise BadModel(f"{path} has no body {root!r} for the robot's base; it has {names_of(spec.bodies)}")
+    model = compiled(spec, path)
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    number = model.body(root).id
+    base = pose_of(data.xpos[number], data.xmat[number].reshape(3, 3))
+    alone = mujoco.MjSpec()
+    moved = alone.worldbody.add_frame().attach_body(body, "", "")
+    moved.pos, moved.quat = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
+    return alone, base
+
+
+def _home(
+    said: Sequence[float] | None,
+    keys: dict[str, list[float]],
+    count: int,
+    all_joints: int,
+    path: str | PathLike[str],
+) -> tuple[float, ...]:
+    if said is None:
+        found = keys.get("home") or next(iter(keys.values()), None)
+        if found is None or all_joints != count:
+            raise BadModel(
+                f"{path} has no keyframe for the joints of the arm alone: say home=[...], {count} angles in "
+                "degrees"
+            )
+        return tuple(found)
+    if len(said) != count or not all(isinstance(a, (int, float)) and math.isfinite(a) for a in said):
+        raise BadArgument(f"Expected {count} angles in degrees, one per joint, but got home={said!r}")
+    return tuple(math.radians(angle) for angle in said)
+
+
+def _range(model: mujoco.MjModel, name: str) -> tuple[float, float]:
+    joint = model.joint(name)
+    low, high = joint.range.tolist() if joint.limited[0] else (-math.inf, math.inf)
+    return low, high
+
+
+def _check_home(
+    angles: tuple[float, ...],
+    ranges: tuple[tuple[float, float], ...],
+    names: tuple[str, ...],
+    path: str | PathLike[str],
+) -> None:
+    for angle, (low, high), name in zip(angles, ranges, names, strict=True):
+        if not low <= angle <= high:
+            bounds = ", ".join(f"{math.degrees(bound):.1f}" for bound in (low, high))
+            raise BadArgument(
+                f"home puts joint {name!r} of {path} at {math.degrees(angle):.1f} deg, out of {bounds} deg"
+            )
+
+
+def names_of(elements: Iterable[object]) -> str:
+    """Their names in a message."""
+    found = [str(getattr(element, "name", "")) for element in elements]
+    return ", ".join(repr(name) for name in found if name) or "none with a name"

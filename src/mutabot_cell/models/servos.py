@@ -1,0 +1,77 @@
+"""Servos of a robot's joints: those of its file, or made from what its joints can give."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import mujoco
+
+from .limits import JointLimits
+
+FULL_TORQUE_AT = math.radians(1.0)
+"""A servo that is made gives its joint's peak torque this far from its setpoint, rad (our choice)."""
+DAMPING_TIME = 0.03
+"""Damping over stiffness of a servo that is made, s (our choice)."""
+_ROTOR_SHARE = 0.5e-2
+"""Rotor inertia (kg m²) of a joint whose file has none, for each Nm of its peak torque (our choice)."""
+
+
+def servos_of(spec: mujoco.MjSpec, joints: Sequence[str]) -> tuple[str, ...] | None:
+    """Names of the file's position servos of the joints; None unless each joint has one."""
+    by_joint = {one.target: one for one in spec.actuators if _is_servo(one)}
+    found = [by_joint.get(name) for name in joints]
+    if any(one is None for one in found):
+        return None
+    for joint, one in zip(joints, found, strict=True):
+        if one is not None and not one.name:
+            one.name = f"servo of {joint}"
+    return tuple(one.name for one in found if one is not None)
+
+
+def make_servos(spec: mujoco.MjSpec, joints: Sequence[str], limits: JointLimits) -> tuple[str, ...]:
+    """Replace the joints' actuators by position servos; their names."""
+    for one in [one for one in spec.actuators if one.target in joints]:
+        spec.delete(one)
+    for joint, peak in zip(joints, limits.peak_torque, strict=True):
+        stiffness = peak / FULL_TORQUE_AT
+        servo = spec.add_actuator(name=f"servo of {joint}", target=joint)
+        servo.trntype = mujoco.mjtTrn.mjTRN_JOINT
+        servo.set_to_position(kp=stiffness, kv=DAMPING_TIME * stiffness)
+        joint_spec = spec.joint(joint)
+        joint_spec.actfrclimited, joint_spec.actfrcrange = True, (-peak, peak)
+        if float(joint_spec.armature) <= 0.0:
+            joint_spec.armature = _ROTOR_SHARE * peak
+    return tuple(f"servo of {joint}" for joint in joints)
+
+
+def torque_of(spec: mujoco.MjSpec, model: mujoco.MjModel, joint: str) -> float | None:
+    """What the file says a joint can give at most, Nm; None if it does not say."""
+    found = model.joint(joint)
+    if model.jnt_actfrclimited[found.id]:
+        return float(model.jnt_actfrcrange[found.id, 1])
+    for number in range(model.nu):
+        of_joint = model.actuator_trntype[number] == mujoco.mjtTrn.mjTRN_JOINT
+        if not of_joint or int(model.actuator_trnid[number, 0]) != found.id:
+            continue
+        gear = abs(float(model.actuator_gear[number, 0]))
+        if model.actuator_forcelimited[number]:
+            return gear * float(model.actuator_forcerange[number, 1])
+        if (
+            model.actuator_biastype[number] == mujoco.mjtBias.mjBIAS_NONE
+            and model.actuator_ctrllimited[number]
+        ):
+            return gear * float(model.actuator_gainprm[number, 0] * model.actuator_ctrlrange[number, 1])
+    return None
+
+
+def _is_servo(one: mujoco.MjsActuator) -> bool:
+    """Whether its input is a position of a joint, in the joint's unit."""
+    stiffness = float(one.gainprm[0])
+    return (
+        one.trntype == mujoco.mjtTrn.mjTRN_JOINT
+        and one.biastype == mujoco.mjtBias.mjBIAS_AFFINE
+        and stiffness > 0
+        and float(one.biasprm[1]) == -stiffness
+        and float(one.gear[0]) == 1.0
+    )
