@@ -11,6 +11,7 @@ import numpy as np
 
 from mutabot_cell.models.assembly import compensation_of
 from mutabot_cell.models.options import PHYSICS_STEP
+from mutabot_cell.motion.feedforward import FeedForward
 from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.motion.line import Line
 from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
@@ -52,6 +53,8 @@ class Arm:
         self._first_contact = ("", "", 0.0)
         self._stop: ProtectiveStop | None = None
         self._lag = robot.lag()
+        fed = self._model.is_fed_forward
+        self._feed_forward = FeedForward(self._model, robot.stiffness()) if fed else None
         self._torque_limit = np.array(limits.external_torque)
         self._lowest_torque_limit, self._following_limit = min(limits.external_torque), limits.following_error
         self._payload = 0.0
@@ -186,6 +189,8 @@ class Arm:
         self._payload = float(mass)
         self._simulation.model.body_gravcomp[self._robot.payload] = compensation_of(self._payload)
         self._simulation.model.body_ipos[self._robot.payload] = centre
+        if self._feed_forward is not None:
+            self._feed_forward.set_payload(self._payload, centre)
 
     def acknowledge_stop(self) -> None:
         """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
@@ -208,6 +213,8 @@ class Arm:
         if steps == 0:
             return
         stream = motion.joints + self._lag * motion.speeds
+        if self._feed_forward is not None:
+            stream += self._feed_forward.offsets(motion, PHYSICS_STEP)
         rest = -steps % STEPS_PER_TICK
         self._stream = np.concatenate((stream, np.repeat(motion.joints[-1:], rest, axis=0)))
         self._streamed = 0

@@ -59,11 +59,15 @@ class Robot:
         self._data.qpos[self.joints] = self.model.home
         self._data.ctrl[self.servos] = self.model.home
 
+    def stiffness(self) -> Array:
+        """Of each servo, Nm/rad, shape (joints,)."""
+        gains: Array = self._physics.actuator_gainprm[self.servos, 0].copy()
+        return gains
+
     def lag(self) -> Array:
         """Of each servo, s, shape (joints,): this times the wanted speed, added to a setpoint, removes it."""
-        stiffness = self._physics.actuator_gainprm[self.servos, 0]
         damping = -self._physics.actuator_biasprm[self.servos, 2] + self._physics.dof_damping[self.dofs]
-        result: Array = damping / stiffness
+        result: Array = damping / self.stiffness()
         return result
 
     def encoders(self) -> Array:

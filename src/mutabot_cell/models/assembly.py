@@ -37,6 +37,11 @@ def build_arm(robot: RobotModel) -> mujoco.MjModel:
     return _compiled(_equipped(robot, None))
 
 
+def build_robot(robot: RobotModel) -> mujoco.MjModel:
+    """Compile the robot alone with its tool; its base frame is the world frame."""
+    return _compiled(_equipped(robot, robot.tool))
+
+
 def compensation_of(payload: float) -> float:
     """The `gravcomp` of a robot's body "payload" that carries `payload` kg."""
     return payload / _PAYLOAD_MARKER

@@ -69,7 +69,8 @@ def gripper_from_mjcf(
     if stroke < 1e-3 or abs(travel) < 1e-9 or max(steps) >= 0:
         raise BadModel(
             f"the pads of {path} are {opened.gap * 1000:.1f} mm apart with {actuator!r} at {controls[0]} "
-            f"(open) and {closed.gap * 1000:.1f} mm at {controls[1]} (closed): open must be the input that opens"
+            f"(open) and {closed.gap * 1000:.1f} mm at {controls[1]} (closed): "
+            "open must be the input that opens"
         )
     # what the servo does over its way, both pads do over the stroke
     ratio = stroke / abs(travel)

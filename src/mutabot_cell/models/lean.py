@@ -26,7 +26,7 @@ def freeze_inertias(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
 
 
 def leave_looks_out(spec: mujoco.MjSpec) -> None:
-    """Leave out shapes that touch nothing and weigh nothing, and meshes that nothing uses: all load slowly."""
+    """Leave out shapes that touch nothing and weigh nothing, and meshes that nothing uses: they are slow."""
     for geom in list(spec.geoms):
         if not geom.contype and not geom.conaffinity and geom.parent.explicitinertial:
             spec.delete(geom)

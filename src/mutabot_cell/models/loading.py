@@ -110,6 +110,7 @@ def robot_from_spec(
         payload=1.0,
         base=base,
         root=root,
+        is_fed_forward=True,
     )
 
 

@@ -54,6 +54,8 @@ class RobotModel:
         tool: what is fastened to the flange, if anything.
         reach: its reach in closed form, for refusals that say by how much; None: the planner finds out.
         root: name of its first body in a file that holds more than the robot; "" otherwise.
+        is_fed_forward: whether the controller gives servos the torques that a motion needs: servos of files
+            can be too soft to follow without.
     """
 
     name: str
@@ -70,6 +72,7 @@ class RobotModel:
     tool: Tool | None = None
     reach: SphericalWrist | None = None
     root: str = ""
+    is_fed_forward: bool = False
 
     @classmethod
     def from_mjcf(

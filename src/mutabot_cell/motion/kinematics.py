@@ -37,6 +37,8 @@ _RETRIED_KNOTS = 64
 _LARGEST_KNOT_STEP = 0.5
 _ITERATIONS = 40
 _POSTURE_COST = 1e-3
+_DAMPING = 1e-3
+"""Of the solver for arms without redundancy, which have nothing to choose: it vanishes with the error."""
 _ORIENTATION_COST = 0.3
 
 
@@ -49,6 +51,7 @@ class Kinematics:
         self._site = self._model.site(TOOL_SITE).id
         self._reach = WristReach(robot)
         self._solver: _Solver | None = None
+        self._turns = np.zeros((6, self._model.nv))  # the tool's speed by joint speeds
 
     def tool(self, joints: Array) -> tuple[Array, Array]:
         """Tool position (shape (3,), m) and rotation (shape (3, 3)) in the base frame.
@@ -82,6 +85,7 @@ class Kinematics:
                 continue
             largest_step = float(np.abs(np.diff(knots, axis=0)).max())
             if largest_step <= _LARGEST_KNOT_STEP and self._is_straight(Spline(knots), line, count):
+                self._check_configuration(knots)
                 return knots
             if count >= _MOST_KNOTS:
                 raise MotionRefused(
@@ -92,6 +96,31 @@ class Kinematics:
                     unit="deg",
                 )
             count *= 2
+
+    def _check_configuration(self, knots: Array) -> None:
+        """Refuse to change from one configuration (elbow, wrist) of a six-joint arm to another on a line."""
+        if self._model.nv != 6:
+            return
+        side = 0.0
+        for index, joints in enumerate(knots):
+            now = self._side(joints)
+            if now * side < 0:
+                fraction = (index - 1) / (len(knots) - 1)
+                raise MotionRefused(
+                    f"motion refused: at {fraction:.0%} of the line the arm would go through a singularity "
+                    "into another configuration of elbow or wrist; move the joints there first",
+                    limit="singularity",
+                    fraction=fraction,
+                )
+            side = now
+
+    def _side(self, joints: Array) -> float:
+        """Of which sign it is tells configurations apart: between them lies a singularity, where it is 0."""
+        self._data.qpos[:] = joints
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_jacSite(self._model, self._data, self._turns[:3], self._turns[3:], self._site)
+        return float(np.linalg.det(self._turns))
 
     def _is_straight(self, spline: Spline, line: Line, count: int) -> bool:
         fractions = (np.arange(count) + 0.5) / count
@@ -130,8 +159,16 @@ class _Solver:
         self._lower = np.where(limited, arm.jnt_range[:, 0], -np.inf)
         self._upper = np.where(limited, arm.jnt_range[:, 1], np.inf)
         self._configuration = mink.Configuration(arm)
-        self._frame = mink.FrameTask(TOOL_SITE, "site", position_cost=1.0, orientation_cost=_ORIENTATION_COST)
+        is_redundant = arm.nv > 6
+        self._frame = mink.FrameTask(
+            TOOL_SITE,
+            "site",
+            position_cost=1.0,
+            orientation_cost=_ORIENTATION_COST,
+            lm_damping=0.0 if is_redundant else _DAMPING,
+        )
         self._posture = mink.PostureTask(arm, cost=_POSTURE_COST)
+        self._tasks = [self._frame, self._posture] if is_redundant else [self._frame]
         self._limits: list[mink.Limit] = [mink.ConfigurationLimit(arm, gain=0.95)]
 
     def solve(
@@ -146,9 +183,8 @@ class _Solver:
         configuration = self._configuration
         configuration.update(np.clip(guess, self._lower, self._upper) if limited else guess)
         limits = self._limits if limited else []
-        tasks = (self._frame, self._posture)
         for _ in range(_ITERATIONS):
-            velocity = mink.solve_ik(configuration, tasks, 1.0, "daqp", limits=limits)
+            velocity = mink.solve_ik(configuration, self._tasks, 1.0, "daqp", limits=limits)
             configuration.integrate_inplace(velocity, 1.0)
             error = self._frame.compute_error(configuration)
             if (
@@ -167,7 +203,7 @@ class _Solver:
             over = np.maximum(free - self._upper, self._lower - free)
             worst = int(np.argmax(over))
             if over[worst] > 0:
-                allowed = self._upper[worst] if free[worst] > 0 else self._lower[worst]
+                allowed = self._upper[worst] if free[worst] > self._upper[worst] else self._lower[worst]
                 return MotionRefused(
                     f"motion refused: joint {worst + 1} would need {math.degrees(free[worst]):.1f} deg {at}, "
                     f"{math.degrees(over[worst]):.1f} deg beyond its limit of "
