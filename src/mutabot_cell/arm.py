@@ -359,12 +359,13 @@ def strongest_contact(simulation: Simulation, robot: Robot) -> tuple[str, str, f
             geoms.reverse()
         mujoco.mj_contactForce(cell_model, data, index, wrench)
         if abs(wrench[0]) > found[2]:
-            found = (
-                cell_model.geom(geoms[0]).name or "robot",
-                cell_model.geom(geoms[1]).name or "something",
-                abs(float(wrench[0])),
-            )
+            found = (_name(cell_model, geoms[0]), _name(cell_model, geoms[1]), abs(float(wrench[0])))
     return found
+
+
+def _name(model: mujoco.MjModel, geom: int) -> str:
+    """Of a shape; files often name bodies only."""
+    return str(model.geom(geom).name or model.body(int(model.geom_bodyid[geom])).name)
 
 
 def _check_numbers(name: str, values: Sequence[float], count: int) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import TracebackType
 
@@ -13,15 +13,15 @@ from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.shown.feed import tell_of
 
-from .arm import Arm
 from .errors import BadArgument
 from .geometry import Pose, Position
 from .gripper import Gripper
 from .monitors import Condition, Monitors, Values
 from .robot import Robot
 from .scene import Box, Scene
-from .sensors import Sensors, true_box_position, true_box_tilt
+from .sensors import true_box_position, true_box_tilt
 from .simulation import Simulation
+from .system import RobotSystem
 
 _current: weakref.ref[Cell] | None = None
 
@@ -29,19 +29,17 @@ _current: weakref.ref[Cell] | None = None
 class Truth:
     """The cell's exact state: for tests, monitors and mutabot. A robot program has sensors instead."""
 
-    def __init__(self, simulation: Simulation, robot: Robot, boxes: tuple[Box, ...]) -> None:
+    def __init__(self, simulation: Simulation, boxes: tuple[Box, ...]) -> None:
         self._simulation = simulation
-        self._robot = robot
-        self._stroke = 0.0 if robot.model.tool is None else robot.model.tool.effector.stroke
         self._boxes = {box.name: box for box in boxes}
 
-    def tool_pose(self) -> Pose:
-        """Exact tool pose, base frame."""
-        return self._robot.tool_pose()
+    def tool_pose(self, robot: str | None = None) -> Pose:
+        """Exact tool pose, base frame; of the first robot unless another one is named."""
+        return self._robot(robot).tool_pose()
 
-    def tool_position(self) -> Position:
+    def tool_position(self, robot: str | None = None) -> Position:
         """Exact tool position, base frame; quicker than the whole pose."""
-        return self._robot.tool_position()
+        return self._robot(robot).tool_position()
 
     def box_position(self, name: str = "box") -> Position:
         """Exact middle of the box's bottom face, world frame."""
@@ -51,28 +49,36 @@ class Truth:
         """Angle between the box's up and the world's up, degrees."""
         return true_box_tilt(self._simulation, self._boxes[name])
 
-    def opening(self) -> float:
-        """Distance between the pads, m."""
-        return self._stroke - self._robot.closed_path()
+    def opening(self, robot: str | None = None) -> float:
+        """Distance between the pads, m; 0 without fingers."""
+        return self._robot(robot).opening()
 
     def world(self) -> dict[str, float]:
-        """All of the above and the simulated time, flat: "box.x", "tool.z", "opening", "time" and so on."""
-        pose = self.tool_pose()
-        state = {
-            "time": self._simulation.time,
-            "opening": self.opening(),
-            "tool.x": pose.x,
-            "tool.y": pose.y,
-            "tool.z": pose.z,
-            "tool.theta_x": pose.theta_x,
-            "tool.theta_y": pose.theta_y,
-            "tool.theta_z": pose.theta_z,
-        }
+        """All of the above and the simulated time, flat: "box.x", "tool.z", "opening", "time" and so on.
+
+        Of several robots those that are named have their names before: "left/tool.z".
+        """
+        state = {"time": self._simulation.time}
+        for prefix, robot in self._simulation.robots.items():
+            pose = robot.tool_pose()
+            state |= {
+                f"{prefix}opening": robot.opening(),
+                f"{prefix}tool.x": pose.x,
+                f"{prefix}tool.y": pose.y,
+                f"{prefix}tool.z": pose.z,
+                f"{prefix}tool.theta_x": pose.theta_x,
+                f"{prefix}tool.theta_y": pose.theta_y,
+                f"{prefix}tool.theta_z": pose.theta_z,
+            }
         for name in self._boxes:
             position = self.box_position(name)
             state |= {f"{name}.x": position.x, f"{name}.y": position.y, f"{name}.z": position.z}
             state[f"{name}.tilt"] = self.box_tilt(name)
         return state
+
+    def _robot(self, name: str | None) -> Robot:
+        robots = self._simulation.robots
+        return self._simulation.robot if name is None else robots[prefix_of(name)]
 
 
 class Cell:
@@ -90,13 +96,15 @@ class Cell:
     Args:
         seed: of the round; box placement, colours and sensor noise are drawn from it.
         robot: with its tool; the published experiment's Kinova Gen3 by default.
+        robots: several robots by their names, instead of one; they share the clock.
         scene: what stands around the robot; the published experiment's cell by default.
         noise: False makes all sensors exact (placement and colours are still drawn).
         grip_force: N at each pad; by default what the tool says (`Fingers.force`), 60 N for the 2F-85.
         finger_speed: m/s; likewise, 0.1 m/s.
 
     Attributes:
-        arm, gripper, sensors: as the robot program uses them.
+        arm, gripper, sensors: as the robot program uses them; of the first robot.
+        robots: arm, gripper and sensors of each robot, by its name; "" is that of the only one.
         truth: the exact state, for tests and monitors only.
         simulation: the clock and the physics; `simulation.tick` is the one way time advances.
         feed: what the cell tells mutabot while a test is recorded; a test may tell more by it.
@@ -107,6 +115,7 @@ class Cell:
         seed: int = 0,
         *,
         robot: RobotModel | None = None,
+        robots: Mapping[str, RobotModel] | None = None,
         scene: Scene | None = None,
         noise: bool = True,
         grip_force: float | None = None,
@@ -117,19 +126,35 @@ class Cell:
             raise BadArgument(f"Expected a whole number but got seed={seed!r}")
         draws = SeededNoise(seed, enabled=noise)
         placed, numbers = _placed(scene or Scene(), draws)
-        self.simulation = Simulation(placed, {"": robot or gen3()})
-        body = self.simulation.robot
-        self.arm = Arm(self.simulation, body)
-        if body.model.tool is not None:
-            fingers = body.model.tool.effector
-            self.gripper = Gripper(self.simulation, body, fingers, draws, grip_force, finger_speed)
-        self.sensors = Sensors(
-            self.simulation, body, self.arm.kinematics, draws, placed.boxes, numbers, placed.camera
-        )
-        self.truth = Truth(self.simulation, body, placed.boxes)
-        self.feed = tell_of(self.simulation, body, placed)
+        models = _named(robot, robots)
+        self.simulation = Simulation(placed, {prefix_of(name): model for name, model in models.items()})
+        self.robots = {
+            name: RobotSystem(
+                self.simulation,
+                self.simulation.robots[prefix_of(name)],
+                SeededNoise(seed, enabled=noise, scope=prefix_of(name)),
+                placed,
+                numbers,
+                grip_force=grip_force,
+                finger_speed=finger_speed,
+            )
+            for name in models
+        }
+        first = next(iter(self.robots.values()))
+        self.arm, self.sensors = first.arm, first.sensors
+        self.truth = Truth(self.simulation, placed.boxes)
+        self.feed = tell_of(self.simulation, placed)
         self.monitors = Monitors(self.simulation, self.truth.world)
         _current = weakref.ref(self)
+
+    @property
+    def gripper(self) -> Gripper:
+        """The first robot's gripper.
+
+        Raises:
+            BadArgument: it has none.
+        """
+        return next(iter(self.robots.values())).gripper
 
     @property
     def time(self) -> float:
@@ -173,6 +198,23 @@ class Cell:
     ) -> None:
         if error is None:
             self.verify()
+
+
+def prefix_of(name: str) -> str:
+    """What stands before all names of a robot in the physics."""
+    return f"{name}/" if name else ""
+
+
+def _named(robot: RobotModel | None, robots: Mapping[str, RobotModel] | None) -> Mapping[str, RobotModel]:
+    """The robots by their names; the only one needs none."""
+    if robots is None:
+        return {"": robot or gen3()}
+    if robot is not None or not robots or not all(robots):
+        raise BadArgument(
+            f"Expected one robot, or robots={{NAME: ROBOT}} with a name each, but got robot={robot!r} and "
+            f"robots={robots!r}"
+        )
+    return robots
 
 
 def _placed(scene: Scene, draws: SeededNoise) -> tuple[Scene, dict[str, int]]:

@@ -99,6 +99,10 @@ class Robot:
             return 0.0
         return self._closed(float(self._data.actuator_length[self.fingers]))
 
+    def opening(self) -> float:
+        """Distance between the pads as the fingers' servo tells it, m; 0 without fingers."""
+        return 0.0 if self._fingers is None else self._fingers.stroke - self.closed_path()
+
     def closing_speed(self) -> float:
         """How fast the fingers close, m/s."""
         if self._fingers is None:

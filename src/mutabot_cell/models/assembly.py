@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 
 import mujoco
@@ -11,7 +10,9 @@ import numpy as np
 from mutabot_cell.geometry import Array
 from mutabot_cell.scene import Scene
 
+from .lean import ARM_CLASS, GRIPPER_CLASS
 from .model import ROBOT_BODY, cell_xml
+from .options import compile_quietly
 from .robot import RobotModel
 from .tool import Tool
 
@@ -19,6 +20,8 @@ TOOL_SITE, PAYLOAD_BODY = "tool", "payload"
 """Behind a robot's prefix, names of what the cell adds to it: the tool point, and the empty body at which the
 controller compensates the declared payload's weight."""
 
+_CLASSES_OF_A_ROBOT, _ALL_CLASSES = 2, 2**31 - 1
+"""A robot needs two bits of the collision classes, one for the arm and one for the gripper; there are 31."""
 _PAYLOAD_MARKER = 1e-6
 """Mass of the empty body at which the controller compensates a payload, kg."""
 
@@ -26,20 +29,30 @@ _PAYLOAD_MARKER = 1e-6
 def build_cell(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjModel:
     """Compile the whole cell. `robots` by the prefix of their names in it, which may be empty."""
     spec = mujoco.MjSpec.from_string(cell_xml(scene, robots))
-    for prefix, robot in robots.items():
+    for index, (prefix, robot) in enumerate(robots.items()):
         part = _equipped(robot, robot.tool)
+        if index:
+            _collide_with_others(part, index)
         spec.attach(part, frame=spec.body(prefix + ROBOT_BODY).add_frame(), prefix=prefix)
-    return _compiled(spec)
+    return compile_quietly(spec)
+
+
+def _collide_with_others(part: mujoco.MjSpec, index: int) -> None:
+    """Classes of their own for arm and gripper of a further robot, so that robots touch each other."""
+    for geom in part.geoms:
+        if geom.contype in (ARM_CLASS, GRIPPER_CLASS):
+            own = geom.contype << (_CLASSES_OF_A_ROBOT * index + 1)
+            geom.contype, geom.conaffinity = own, _ALL_CLASSES & ~own
 
 
 def build_arm(robot: RobotModel) -> mujoco.MjModel:
     """Compile the arm with its tool point, for kinematics and planning; its base frame is the world frame."""
-    return _compiled(_equipped(robot, None))
+    return compile_quietly(_equipped(robot, None))
 
 
 def build_robot(robot: RobotModel) -> mujoco.MjModel:
     """Compile the robot alone with its tool; its base frame is the world frame."""
-    return _compiled(_equipped(robot, robot.tool))
+    return compile_quietly(_equipped(robot, robot.tool))
 
 
 def compensation_of(payload: float) -> float:
@@ -82,10 +95,3 @@ def _tool_point(flange: mujoco.MjsSite, tool: Tool | None) -> tuple[Array, Array
         mujoco.mju_mulQuat(whole, turn, np.array(tool.turn))
         turn = whole
     return point, turn
-
-
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    with warnings.catch_warnings():
-        # MuJoCo warns of empty prefixes, with which a model may not be saved correctly: nobody saves this one
-        warnings.simplefilter("ignore")
-        return spec.compile()

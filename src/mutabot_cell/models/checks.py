@@ -9,6 +9,8 @@ import mujoco
 
 from mutabot_cell.errors import BadModel
 
+from .options import compile_quietly
+
 LONGEST, SHORTEST = 10.0, 0.05
 """Of an arm, from its base to its flange, m. Beyond them the unit is wrong."""
 _LIGHTEST = 0.1
@@ -20,7 +22,7 @@ _Path = str | PathLike[str]
 def compiled(spec: mujoco.MjSpec, path: _Path) -> mujoco.MjModel:
     """The model. Raises BadModel if MuJoCo refuses it."""
     try:
-        return spec.compile()
+        return compile_quietly(spec)
     except (ValueError, mujoco.FatalError) as error:
         words = str(error).strip()
         advice = ""

@@ -15,8 +15,8 @@ from mutabot_cell.errors import BadArgument, BadModel
 from mutabot_cell.geometry import Array
 
 from .checks import compiled
-from .lean import collide_as, freeze_inertias, leave_looks_out, strip
-from .loading import GRIPPER, names_of, read
+from .lean import GRIPPER_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
+from .loading import names_of, read
 from .options import PHYSICS_STEP
 from .tool import Fingers, Tool
 
@@ -57,7 +57,7 @@ def gripper_from_mjcf(
     _check_names(spec, path, actuator, pads, point)
     freeze_inertias(spec, model)
     leave_looks_out(spec)
-    collide_as(spec, *GRIPPER)
+    collide_as(spec, GRIPPER_CLASS)
     for body in spec.bodies:
         if body != spec.worldbody:
             body.gravcomp = 1.0

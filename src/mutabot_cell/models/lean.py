@@ -6,6 +6,11 @@ import math
 
 import mujoco
 
+ARM_CLASS, GRIPPER_CLASS = 2, 4
+"""`contype` of arm and gripper: see `options.DEFAULTS`."""
+_TOUCH = {ARM_CLASS: 13, GRIPPER_CLASS: 11}
+"""`conaffinity`: neither touches itself."""
+
 
 def strip(spec: mujoco.MjSpec) -> None:
     """Leave out keyframes, sensors, lights, cameras: the cell has its own."""
@@ -36,8 +41,8 @@ def leave_looks_out(spec: mujoco.MjSpec) -> None:
             spec.delete(mesh)
 
 
-def collide_as(spec: mujoco.MjSpec, contype: int, conaffinity: int) -> None:
+def collide_as(spec: mujoco.MjSpec, collision_class: int) -> None:
     """Put all shapes that collide into one of the cell's classes, and let them be seen."""
     for geom in spec.geoms:
         if geom.contype or geom.conaffinity:
-            geom.contype, geom.conaffinity, geom.group = contype, conaffinity, 0
+            geom.contype, geom.conaffinity, geom.group = collision_class, _TOUCH[collision_class], 0

@@ -13,14 +13,11 @@ from mutabot_cell.errors import BadArgument, BadModel
 from mutabot_cell.geometry import Pose, pose_of
 
 from .checks import check_chain, check_masses, check_size, check_touch, compiled
-from .lean import collide_as, freeze_inertias, leave_looks_out, strip
+from .lean import ARM_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
 from .limits import Limits, ToolLimits
 from .options import ignore_warning
 from .robot import ON_PEDESTAL, RobotModel
 from .servos import make_servos, servos_of, torque_of
-
-ARM, GRIPPER = (2, 13), (4, 11)
-"""`contype` and `conaffinity` of arm and gripper: see `options.DEFAULTS`."""
 
 
 def robot_from_mjcf(
@@ -89,7 +86,7 @@ def robot_from_spec(
     servos = servos_of(spec, names) or make_servos(spec, names, resolved)
     freeze_inertias(spec, model)
     leave_looks_out(spec)
-    collide_as(spec, *ARM)
+    collide_as(spec, ARM_CLASS)
     for body in chain:
         body.gravcomp = 1.0
     for joint in joints:

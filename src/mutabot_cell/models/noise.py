@@ -20,17 +20,18 @@ class SeededNoise:
     Args:
         seed: of the round.
         enabled: False makes every reading exact.
+        scope: before the names of all streams, so that each robot has its own.
     """
 
-    def __init__(self, seed: int, *, enabled: bool = True) -> None:
-        self._seed = seed
+    def __init__(self, seed: int, *, enabled: bool = True, scope: str = "") -> None:
+        self._seed, self._scope = seed, scope
         self._enabled = enabled
         self._streams: dict[str, random.Random] = {}
 
     def stream(self, name: str) -> random.Random:
         """The generator of `name`; also used for what is drawn once per round."""
         if name not in self._streams:
-            self._streams[name] = random.Random(f"{self._seed}/{name}")
+            self._streams[name] = random.Random(f"{self._seed}/{self._scope}{name}")
         return self._streams[name]
 
     def add(self, name: str, value: float) -> float:

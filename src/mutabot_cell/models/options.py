@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
+
+import mujoco
+
 PHYSICS_STEP = 0.002
 """Length of one physics step, s."""
 
@@ -29,6 +33,17 @@ OPTIONS = f"""
 """
 
 HEAD = OPTIONS + DEFAULTS
+
+
+def compile_quietly(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile it, without MuJoCo's warnings of parts that were attached.
+
+    They are of empty prefixes, with which a model may not be saved correctly (nobody saves these), and of
+    options of parts, for which those of the cell hold.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return spec.compile()
 
 
 def ignore_warning(message: str) -> None:

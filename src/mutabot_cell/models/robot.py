@@ -137,8 +137,8 @@ class RobotModel:
         read = robot_from_urdf(path, tool_link, home, limits or Limits(), packages or {})
         return replace(read, tool_limits=tool_limits or ToolLimits(), payload=payload)
 
-    def with_tool(self, tool: Tool) -> RobotModel:
-        """The same arm with `tool` at its flange."""
+    def with_tool(self, tool: Tool | None) -> RobotModel:
+        """The same arm with `tool` at its flange; None for an arm alone."""
         return replace(self, tool=tool)
 
     def at(self, base: Pose) -> RobotModel:

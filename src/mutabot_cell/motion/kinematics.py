@@ -85,7 +85,7 @@ class Kinematics:
                 continue
             largest_step = float(np.abs(np.diff(knots, axis=0)).max())
             if largest_step <= _LARGEST_KNOT_STEP and self._is_straight(Spline(knots), line, count):
-                self._check_configuration(knots)
+                self.check_configuration(knots)
                 return knots
             if count >= _MOST_KNOTS:
                 raise MotionRefused(
@@ -97,7 +97,7 @@ class Kinematics:
                 )
             count *= 2
 
-    def _check_configuration(self, knots: Array) -> None:
+    def check_configuration(self, knots: Array) -> None:
         """Refuse to change from one configuration (elbow, wrist) of a six-joint arm to another on a line."""
         if self._model.nv != 6:
             return

@@ -6,10 +6,8 @@ from collections.abc import Iterator
 
 import mujoco
 
+from mutabot_cell.models.model import ROBOT_BODY
 from mutabot_cell.simulation import Simulation
-
-#: what bodies are parts of, by the first body up the tree that says so
-_PARTS = {"gripper": "gripper", "robot": "arm"}
 
 
 class Contacts:
@@ -18,6 +16,11 @@ class Contacts:
     def __init__(self, simulation: Simulation) -> None:
         self._data = simulation.data
         model = simulation.model
+        #: what bodies are parts of, by the first body up the tree that says so
+        self._parts = {prefix + ROBOT_BODY: f"{prefix}arm" for prefix in simulation.robots}
+        for prefix, robot in simulation.robots.items():
+            if robot.model.tool is not None:
+                self._parts[prefix + robot.model.tool.body] = f"{prefix}gripper"
         self._names = [self._name(model, geom) for geom in range(model.ngeom)]
 
     def read(self) -> Iterator[tuple[str, str]]:
@@ -34,8 +37,8 @@ class Contacts:
         body = int(model.geom_bodyid[geom])
         while body:
             name = model.body(body).name
-            if name in _PARTS:
-                return _PARTS[name]
+            if name in self._parts:
+                return self._parts[name]
             if int(model.body_parentid[body]) == 0:
                 return str(name)
             body = int(model.body_parentid[body])

@@ -20,27 +20,32 @@ _VIEW = View(azimuth=90.0, elevation=-33.0, distance=2.05, look_at=(0.0, 0.1, 0.
 _HEIGHT, _WIDTH, _RATE = 450, 600, 12.5
 
 
-def tell_of(simulation: Simulation, robot: Robot, scene: Scene) -> Feed:
+def tell_of(simulation: Simulation, scene: Scene) -> Feed:
     """A feed of this cell; it tells something only while a test is recorded."""
     feed, data = Feed(lambda: simulation.time), simulation.data
-    site = robot.site
-    turned = np.zeros(4)
-
-    def tool() -> list[float]:
-        mujoco.mju_mat2Quat(turned, data.site_xmat[site])
-        return [*data.site_xpos[site].tolist(), *turned.tolist()]
-
-    feed.pose("tool", tool)
+    for prefix, robot in simulation.robots.items():
+        feed.pose(f"{prefix}tool", _tool_pose(data, robot))
     for box in scene.boxes:
         body = simulation.id_of("body", box.name)
         feed.pose(box.name, _pose(data, body), size=(box.edge, box.edge, box.edge))
-    feed.value("fingers closed", robot.closed_path, unit="m")
+    for prefix, robot in simulation.robots.items():
+        feed.value(f"{prefix}fingers closed", robot.closed_path, unit="m")
     feed.contacts(Contacts(simulation).read)
     for fixture in scene.fixtures:
         feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)
     feed.camera(Camera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)
     simulation.after_tick.append(feed.tick)
     return feed
+
+
+def _tool_pose(data: mujoco.MjData, robot: Robot) -> Callable[[], list[float]]:
+    site, turned = robot.site, np.zeros(4)
+
+    def tool() -> list[float]:
+        mujoco.mju_mat2Quat(turned, data.site_xmat[site])
+        return [*data.site_xpos[site].tolist(), *turned.tolist()]
+
+    return tool
 
 
 def _pose(data: mujoco.MjData, body: int) -> Callable[[], list[float]]:
