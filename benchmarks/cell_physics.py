@@ -118,7 +118,7 @@ def coulomb() -> Iterator[str]:
     for mass, ladder in ((0.1, (0.005, 0.007, 0.008, 0.009, 0.010, 0.012, 0.02)),
                          (0.5, (0.03, 0.035, 0.04, 0.042, 0.045, 0.05, 0.06))):  # fmt: skip
         for friction in ladder:
-            cell = Cell(1, scene=Scene(boxes=(Box(mass=mass, friction=friction),)))
+            cell = Cell(1, scene=Scene(parts=(Box(mass=mass, friction=friction),)))
             grip(cell)
             cell.arm.set_payload(mass)
             try:
@@ -135,7 +135,7 @@ def coulomb() -> Iterator[str]:
 def payload() -> Iterator[str]:
     """Parts of 0.1 to 4 kg, lifted, turned and carried over with 235 N."""
     for mass in (0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0):
-        cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
+        cell = Cell(1, scene=Scene(parts=(Box(mass=mass),)))
         try:
             grip(cell, 235.0)
             cell.arm.set_payload(mass)
@@ -156,7 +156,7 @@ def holding() -> Iterator[str]:
     for mass in (0.1, 0.5, 1.0, 1.5, 2.0, 4.0):
         shares = []
         for force in (60.0, 235.0):
-            cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
+            cell = Cell(1, scene=Scene(parts=(Box(mass=mass),)))
             try:
                 _grip_aside(cell, force)
                 cell.arm.set_payload(mass)
@@ -177,7 +177,7 @@ def holding() -> Iterator[str]:
 def creep() -> Iterator[str]:
     """How far a box moves in the fingers per move, 60 N."""
     for mass in (0.1, 0.5):
-        cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
+        cell = Cell(1, scene=Scene(parts=(Box(mass=mass),)))
         grip(cell)
         cell.arm.set_payload(mass)
         told = []
@@ -198,7 +198,7 @@ def creep() -> Iterator[str]:
 def rebound() -> Iterator[str]:
     """A box dropped flat and askew on the conveyor: depth, restitution, rest."""
     for height, yaw in ((0.1, 0.0), (0.3, 0.0), (0.3, 20.0)):
-        cell = Cell(1, scene=Scene(boxes=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
+        cell = Cell(1, scene=Scene(parts=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
         if yaw:
             half = math.radians(yaw) / 2
             cell.simulation.data.qpos[-4:] = (math.cos(half), math.sin(half), 0, 0)
@@ -260,7 +260,7 @@ def friction() -> Iterator[str]:
     """The tangent of the steepest slope on which a box stays: gravity is tilted instead of the cell."""
     for name, place in (("conveyor", (0.55, 0.6, 1.0)), ("table", (-0.6, 0.3, 0.76))):
         for degrees in range(5, 60):
-            cell = Cell(1, scene=Scene(boxes=(Box(position=place, jitter=0.0),)))
+            cell = Cell(1, scene=Scene(parts=(Box(position=place, jitter=0.0),)))
             slope = math.radians(degrees)
             cell.simulation.model.opt.gravity[:] = (0, -GRAVITY * math.sin(slope), -GRAVITY * math.cos(slope))
             cell.wait(1.0)
@@ -277,7 +277,7 @@ def sensors() -> Iterator[str]:
     away = abs(statistics.mean(readings) - cell.truth.box_position().x)
     yield f"1000 readings of the camera at once: {len(set(readings))} values, mean off by {1e6 * away:.0f} um"
     cell = Cell(
-        1, noise=False, scene=Scene(boxes=(Box(position=(0.55, 0.2, 1.0), jitter=0.0, friction=0.0),))
+        1, noise=False, scene=Scene(parts=(Box(position=(0.55, 0.2, 1.0), jitter=0.0, friction=0.0),))
     )
     cell.simulation.data.qvel[9:12] = (0, -0.5, 0)
     lags = []
@@ -292,7 +292,7 @@ def sight() -> Iterator[str]:
     from mutabot_cell import Fixture  # noqa: PLC0415
     from mutabot_cell.scene import CONVEYOR, TARGET_TABLE  # noqa: PLC0415
 
-    cell = Cell(1, scene=Scene(fixtures=(CONVEYOR, TARGET_TABLE), boxes=(Box(),)))
+    cell = Cell(1, scene=Scene(fixtures=(CONVEYOR, TARGET_TABLE), parts=(Box(),)))
     yield f"in the open: {cell.sensors.box_position()}"
     walls = tuple(
         Fixture(f"wall {i}", size, centre)
@@ -304,7 +304,7 @@ def sight() -> Iterator[str]:
             )
         )
     )  # fmt: skip
-    cell = Cell(1, scene=Scene(fixtures=(CONVEYOR, TARGET_TABLE, *walls), boxes=(Box(),)))
+    cell = Cell(1, scene=Scene(fixtures=(CONVEYOR, TARGET_TABLE, *walls), parts=(Box(),)))
     try:
         yield f"under a closed hood: {cell.sensors.box_position()}"
     except CellError as error:

@@ -38,11 +38,20 @@ from .errors import (
 from .errors import (
     SimulatorMissing as SimulatorMissing,
 )
-from .scene import (
+from .parts import (
     Box as Box,
+)
+from .parts import (
+    Cylinder as Cylinder,
+)
+from .parts import (
+    Mesh as Mesh,
 )
 from .scene import (
     Fixture as Fixture,
+)
+from .scene import (
+    LightBarrier as LightBarrier,
 )
 from .scene import (
     Mark as Mark,
@@ -59,8 +68,11 @@ if TYPE_CHECKING:
     from .clock import simulated_time as simulated_time
     from .geometry import Pose as Pose
     from .geometry import Position as Position
+    from .models.cup import suction_cup as suction_cup
+    from .models.kinova import gen3 as gen3
     from .models.limits import Limits as Limits
     from .models.limits import ToolLimits as ToolLimits
+    from .models.parts import read_mesh as read_mesh
     from .models.robot import RobotModel as RobotModel
     from .models.tool import Tool as Tool
     from .rendering import render as render
@@ -73,12 +85,15 @@ _LAZY = {
     "simulated_time": "clock",
     "Pose": "geometry",
     "Position": "geometry",
+    "gen3": "models.kinova",
+    "read_mesh": "models.parts",
     "render": "rendering",
     "robots": "robots",
     "Limits": "models.limits",
     "RobotModel": "models.robot",
     "Tool": "models.tool",
     "ToolLimits": "models.limits",
+    "suction_cup": "models.cup",
 }
 
 
@@ -88,8 +103,11 @@ __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "Box",
     "CellError",
     "ConditionBroken",
+    "Cylinder",
     "Fixture",
+    "LightBarrier",
     "Mark",
+    "Mesh",
     "MotionRefused",
     "ProtectiveStop",
     "Scene",

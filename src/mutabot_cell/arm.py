@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import mujoco
 import numpy as np
@@ -39,6 +39,7 @@ class Arm:
 
     Attributes:
         kinematics: the controller's model of the arm; it also turns encoder readings into a tool pose.
+        explained: what else than contacts acts on the tool, as a torque on each joint, shape (joints,), Nm.
     """
 
     def __init__(self, simulation: Simulation, robot: Robot) -> None:
@@ -47,6 +48,7 @@ class Arm:
         self._model, limits = robot.model, robot.model.limits
         self.kinematics = Kinematics(self._model)
         self._setpoint: Array = np.array(self._model.home)
+        self.explained: list[Callable[[], Array]] = []
         self._stream: Array | None = None
         self._streamed = 0
         self._pressed_ticks = 0
@@ -291,6 +293,8 @@ class Arm:
     def _external(self) -> Array:
         """Torque on each joint that motors, friction, the arm and its declared payload do not explain, Nm."""
         torque = self._constraints
+        for explain in self.explained:
+            torque = torque + explain()
         if self._simulation.data.nf:
             torque = torque - self._friction()
         if self._payload:

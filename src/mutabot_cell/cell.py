@@ -14,13 +14,16 @@ from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.shown.feed import tell_of
 
 from .errors import BadArgument
+from .force_sensor import Wrench, true_wrench
 from .geometry import Pose, Position
 from .gripper import Gripper
 from .monitors import Condition, Monitors, Values
+from .parts import Part
 from .robot import Robot
-from .scene import Box, Scene
+from .scene import Scene
 from .sensors import true_box_position, true_box_tilt
 from .simulation import Simulation
+from .suction import Suction
 from .system import RobotSystem
 
 _current: weakref.ref[Cell] | None = None
@@ -29,9 +32,13 @@ _current: weakref.ref[Cell] | None = None
 class Truth:
     """The cell's exact state: for tests, monitors and mutabot. A robot program has sensors instead."""
 
-    def __init__(self, simulation: Simulation, boxes: tuple[Box, ...]) -> None:
+    def __init__(
+        self, simulation: Simulation, systems: Mapping[str, RobotSystem], parts: tuple[Part, ...]
+    ) -> None:
         self._simulation = simulation
-        self._boxes = {box.name: box for box in boxes}
+        self._systems = systems
+        self._barriers = next(iter(systems.values())).sensors.light_barriers
+        self._parts = {part.name: part for part in parts}
 
     def tool_pose(self, robot: str | None = None) -> Pose:
         """Exact tool pose, base frame; of the first robot unless another one is named."""
@@ -43,20 +50,30 @@ class Truth:
 
     def box_position(self, name: str = "box") -> Position:
         """Exact middle of the box's bottom face, world frame."""
-        return true_box_position(self._simulation, self._boxes[name])
+        return true_box_position(self._simulation, self._parts[name])
 
     def box_tilt(self, name: str = "box") -> float:
         """Angle between the box's up and the world's up, degrees."""
-        return true_box_tilt(self._simulation, self._boxes[name])
+        return true_box_tilt(self._simulation, self._parts[name])
 
     def opening(self, robot: str | None = None) -> float:
         """Distance between the pads, m; 0 without fingers."""
         return self._robot(robot).opening()
 
+    def wrench(self, robot: str | None = None) -> Wrench:
+        """Exact force and torque of the tool on the flange, in the flange's frame."""
+        return Wrench(*true_wrench(self._simulation, self._robot(robot)).tolist())
+
+    def vacuum(self, robot: str | None = None) -> float:
+        """Exact vacuum in the suction cup, Pa below the atmosphere; 0 without one."""
+        system = next(iter(self._systems.values())) if robot is None else self._systems[robot]
+        return system.vacuum() or 0.0
+
     def world(self) -> dict[str, float]:
         """All of the above and the simulated time, flat: "box.x", "tool.z", "opening", "time" and so on.
 
-        Of several robots those that are named have their names before: "left/tool.z".
+        Of several robots those that are named have their names before: "left/tool.z". In units of which a
+        thousandth is little: m, degrees, s, kN ("force"), bar ("vacuum"); 1 for an interrupted light barrier.
         """
         state = {"time": self._simulation.time}
         for prefix, robot in self._simulation.robots.items():
@@ -69,12 +86,17 @@ class Truth:
                 f"{prefix}tool.theta_x": pose.theta_x,
                 f"{prefix}tool.theta_y": pose.theta_y,
                 f"{prefix}tool.theta_z": pose.theta_z,
+                f"{prefix}force": Wrench(*true_wrench(self._simulation, robot).tolist()).force / 1e3,
             }
-        for name in self._boxes:
+        for name, system in self._systems.items():
+            vacuum = system.vacuum()
+            if vacuum is not None:
+                state[f"{prefix_of(name)}vacuum"] = vacuum / 1e5
+        for name in self._parts:
             position = self.box_position(name)
             state |= {f"{name}.x": position.x, f"{name}.y": position.y, f"{name}.z": position.z}
             state[f"{name}.tilt"] = self.box_tilt(name)
-        return state
+        return state | {name: float(self._barriers.true_state(name)) for name in self._barriers.names}
 
     def _robot(self, name: str | None) -> Robot:
         robots = self._simulation.robots
@@ -103,8 +125,9 @@ class Cell:
         finger_speed: m/s; likewise, 0.1 m/s.
 
     Attributes:
-        arm, gripper, sensors: as the robot program uses them; of the first robot.
-        robots: arm, gripper and sensors of each robot, by its name; "" is that of the only one.
+        arm, gripper, suction, sensors: as the robot program uses them; of the first robot.
+        force_sensor: between the first robot's flange and its tool.
+        robots: the same of each robot, by its name; "" is that of the only one.
         truth: the exact state, for tests and monitors only.
         simulation: the clock and the physics; `simulation.tick` is the one way time advances.
         feed: what the cell tells mutabot while a test is recorded; a test may tell more by it.
@@ -141,8 +164,8 @@ class Cell:
             for name in models
         }
         first = next(iter(self.robots.values()))
-        self.arm, self.sensors = first.arm, first.sensors
-        self.truth = Truth(self.simulation, placed.boxes)
+        self.arm, self.sensors, self.force_sensor = first.arm, first.sensors, first.force_sensor
+        self.truth = Truth(self.simulation, self.robots, placed.parts)
         self.feed = tell_of(self.simulation, placed)
         self.monitors = Monitors(self.simulation, self.truth.world)
         _current = weakref.ref(self)
@@ -155,6 +178,15 @@ class Cell:
             BadArgument: it has none.
         """
         return next(iter(self.robots.values())).gripper
+
+    @property
+    def suction(self) -> Suction:
+        """The first robot's suction cup.
+
+        Raises:
+            BadArgument: it has none.
+        """
+        return next(iter(self.robots.values())).suction
 
     @property
     def time(self) -> float:
@@ -218,22 +250,22 @@ def _named(robot: RobotModel | None, robots: Mapping[str, RobotModel] | None) ->
 
 
 def _placed(scene: Scene, draws: SeededNoise) -> tuple[Scene, dict[str, int]]:
-    """The scene with boxes placed and coloured for this round, and each box's colour number."""
-    boxes: list[Box] = []
+    """The scene with parts placed and coloured for this round, and each part's colour number."""
+    parts: list[Part] = []
     numbers: dict[str, int] = {}
-    for box in scene.boxes:
-        x, y, z = box.position
-        stream = f"placement of {box.name}"
-        place = (x + draws.bounded(stream, box.jitter), y + draws.bounded(stream, box.jitter), z)
-        number = draws.stream(f"colour of {box.name}").randint(1, 10)
-        if box.colour is not None:
-            if box.colour not in ("red", "blue"):
-                raise BadArgument(f"Expected 'red' or 'blue' but got colour={box.colour!r}")
-            if (number % 2 == 0) != (box.colour == "red"):
+    for part in scene.parts:
+        x, y, z = part.position
+        stream = f"placement of {part.name}"
+        place = (x + draws.bounded(stream, part.jitter), y + draws.bounded(stream, part.jitter), z)
+        number = draws.stream(f"colour of {part.name}").randint(1, 10)
+        if part.colour is not None:
+            if part.colour not in ("red", "blue"):
+                raise BadArgument(f"Expected 'red' or 'blue' but got colour={part.colour!r}")
+            if (number % 2 == 0) != (part.colour == "red"):
                 number = number % 10 + 1
-        numbers[box.name] = number
-        boxes.append(replace(box, position=place, colour="red" if number % 2 == 0 else "blue"))
-    return replace(scene, boxes=tuple(boxes)), numbers
+        numbers[part.name] = number
+        parts.append(replace(part, position=place, colour="red" if number % 2 == 0 else "blue"))
+    return replace(scene, parts=tuple(parts)), numbers
 
 
 def current() -> Cell | None:

@@ -63,6 +63,20 @@ def rotation_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Array
     )
 
 
+def quaternion_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Array:
+    """Unit quaternion w, x, y, z, shape (4,), from Euler angles in degrees."""
+    cx, cy, cz = (math.cos(math.radians(a) / 2) for a in (theta_x, theta_y, theta_z))
+    sx, sy, sz = (math.sin(math.radians(a) / 2) for a in (theta_x, theta_y, theta_z))
+    return np.array(
+        [
+            cx * cy * cz + sx * sy * sz,
+            sx * cy * cz - cx * sy * sz,
+            cx * sy * cz + sx * cy * sz,
+            cx * cy * sz - sx * sy * cz,
+        ]
+    )
+
+
 def euler_from_rotation(rotation: Array) -> tuple[float, float, float]:
     """Euler angles in degrees, each in (-180, 180], of a rotation matrix of shape (3, 3)."""
     (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rotation.tolist()

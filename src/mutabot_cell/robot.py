@@ -10,6 +10,7 @@ import numpy as np
 from mutabot_cell.models.assembly import PAYLOAD_BODY, TOOL_SITE
 from mutabot_cell.models.model import ROBOT_BODY
 from mutabot_cell.models.robot import RobotModel
+from mutabot_cell.models.tool import Fingers
 
 from .curve import Curve
 from .errors import BadArgument
@@ -43,7 +44,8 @@ class Robot:
         self.site = int(physics.site(prefix + TOOL_SITE).id)
         self.body = int(physics.body(prefix + ROBOT_BODY).id)
         self.payload = int(physics.body(prefix + PAYLOAD_BODY).id)
-        self._fingers = None if model.tool is None else model.tool.effector
+        effector = None if model.tool is None else model.tool.effector
+        self._fingers = effector if isinstance(effector, Fingers) else None
         if self._fingers is not None:
             self._closed = Curve(self._fingers.lengths, self._fingers.paths)
         self.fingers = -1 if self._fingers is None else physics.actuator(prefix + self._fingers.actuator).id

@@ -7,18 +7,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from .parts import Box, Part, Triple
+
 BASE_POSITION = (0.0, 0.0, 0.9)
 """Where the robot's base stands in the world, m."""
 
 CAMERA = (2.2, 0.3, 2.4)
 """Where the camera stands, m: in front of the robot and above, so that the arm seldom hides what it holds."""
 
-BOX_EDGE = 0.05
 FRICTION_ON_SILICONE, FRICTION_ON_STEEL, FRICTION_ON_BELT, FRICTION_ON_RUBBER = 0.7, 0.4, 0.6, 1.0
 """Of dry cardboard or wood on the gripper's pads, a painted floor or frame, a conveyor's belt, a rubber mat:
 typical values of tables of materials. The target table has the mat: what falls on it does not slide far."""
-RED_RGBA = (0.78, 0.13, 0.12, 1.0)
-BLUE_RGBA = (0.13, 0.30, 0.75, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +26,8 @@ class Fixture:
 
     Attributes:
         size: full edge lengths.
-        friction: sliding friction coefficient of its surface against a dry box.
+        angles: Euler angles x, y, z about its centre.
+        friction: sliding friction coefficient of its surface against a dry part.
     """
 
     name: str
@@ -35,6 +35,7 @@ class Fixture:
     centre: tuple[float, float, float]
     rgba: tuple[float, float, float, float] = (0.6, 0.6, 0.62, 1.0)
     friction: float = FRICTION_ON_STEEL
+    angles: Triple = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,25 +49,18 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
-    """A loose cube.
+class LightBarrier:
+    """A lamp and a receiver opposite; interrupted by whatever stands between them.
 
     Attributes:
-        position: middle of the bottom face, world frame.
-        colour: "red", "blue", or None to draw it from the round's seed.
-        jitter: standard deviation of the placement in x and y, m; draws beyond two of it are cut.
-        friction: sliding friction coefficient of every contact of this box, for one that is oily or wet; None
-            for a dry box of cardboard or wood, whose coefficients are those of what it touches.
+        start, end: of the beam, world frame, m.
+        rate: how often it looks, 1/s; at most once per control tick, 100.
     """
 
-    name: str = "box"
-    position: tuple[float, float, float] = (0.55, 0.2, 1.0)
-    yaw: float = 0.0
-    colour: str | None = None
-    edge: float = BOX_EDGE
-    mass: float = 0.1
-    friction: float | None = None
-    jitter: float = 0.0005
+    name: str
+    start: Triple
+    end: Triple
+    rate: float = 100.0
 
 
 CONVEYOR = Fixture("conveyor", (1.0, 2.5, 0.1), (0.6, 0.0, 0.95), (0.27, 0.29, 0.31, 1.0), FRICTION_ON_BELT)
@@ -81,10 +75,11 @@ class Scene:
     """All that stands around the robot. The default is the published experiment's cell.
 
     Attributes:
-        camera: where the camera stands that sees boxes, world frame, m.
+        camera: where the camera stands that sees parts, world frame, m.
     """
 
     fixtures: tuple[Fixture, ...] = (CONVEYOR, TARGET_TABLE)
     marks: tuple[Mark, ...] = (RED_TARGET,)
-    boxes: tuple[Box, ...] = field(default_factory=lambda: (Box(),))
-    camera: tuple[float, float, float] = CAMERA
+    parts: tuple[Part, ...] = field(default_factory=lambda: (Box(),))
+    light_barriers: tuple[LightBarrier, ...] = ()
+    camera: Triple = CAMERA

@@ -8,24 +8,27 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models.noise import SeededNoise
+from mutabot_cell.models.sleeping import awake
 from mutabot_cell.motion.kinematics import Kinematics
 
 from .errors import SensorError
 from .geometry import Pose, Position, pose_of
+from .light_barrier import SOLID, LightBarriers
+from .parts import Part
 from .robot import Robot
-from .scene import Box
+from .scene import Scene
 from .simulation import Simulation
 
 DISTANCE_RANGE = (0.02, 2.0)
 """Range of the distance sensor, m; further away it reads its upper end."""
-_SOLID = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
-"""Groups of shapes that hide what is behind them: all but those that are only there to look at."""
-_LOOKED_AT = 0.9 * np.array([(0, 0, 0), *((x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1))])
-"""Points of a box of edge 2: its middle, and near its corners."""
 
 
 class Sensors:
-    """Readings of the cell. World frame unless said otherwise."""
+    """Readings of the cell. World frame unless said otherwise.
+
+    Attributes:
+        light_barriers: those of the scene.
+    """
 
     def __init__(
         self,
@@ -33,25 +36,25 @@ class Sensors:
         robot: Robot,
         kinematics: Kinematics,
         noise: SeededNoise,
-        boxes: tuple[Box, ...],
+        scene: Scene,
         numbers: dict[str, int],
-        camera: tuple[float, float, float],
     ) -> None:
         self._simulation = simulation
         self._robot = robot
         tool = robot.model.tool
         self._palm = 0.0 if tool is None else tool.palm
         self._own_body = -1 if tool is None else simulation.id_of("body", robot.prefix + tool.body)
+        self.light_barriers = LightBarriers(simulation, scene.light_barriers)
         self._kinematics = kinematics
         self._noise = noise
-        self._boxes = {box.name: box for box in boxes}
+        self._parts = {part.name: part for part in scene.parts}
         self._numbers = numbers
         self._geom = np.zeros(1, dtype=np.int32)
         self._read: tuple[int, tuple[float, ...]] = (-1, ())
         self._seen_at = -1
         self._seen: dict[str, Position | None] = {}
         self._picture = mujoco.MjData(simulation.model)
-        self._camera = np.array(camera)
+        self._camera = np.array(scene.camera)
         self._ranged: tuple[int, float] = (-1, 0.0)
 
     def tool_pose(self) -> Pose:
@@ -78,7 +81,8 @@ class Sensors:
         if tick != self._seen_at:
             self._seen_at, self._seen = tick, {}
             self._picture.qpos[:] = places
-            mujoco.mj_kinematics(self._simulation.model, self._picture)
+            with awake(self._simulation.model):
+                mujoco.mj_kinematics(self._simulation.model, self._picture)
         if box.name not in self._seen:
             self._seen[box.name] = self._look_for(box)
         found = self._seen[box.name]
@@ -86,11 +90,11 @@ class Sensors:
             raise SensorError(f"the camera does not see {box.name!r}: something is in the way")
         return found
 
-    def _look_for(self, box: Box) -> Position | None:
+    def _look_for(self, box: Part) -> Position | None:
         """Where the picture shows the box; None if less than a third of it can be seen."""
         body, geom = self._simulation.id_of("body", box.name), self._simulation.model.geom(box.name).id
         centre, rotation = self._picture.xpos[body], self._picture.xmat[body].reshape(3, 3)
-        rays = centre + _LOOKED_AT * box.edge / 2 @ rotation.T - self._camera
+        rays = centre + np.array(box.points()) @ rotation.T - self._camera
         hits = np.zeros(len(rays), dtype=np.int32)
         for index, ray in enumerate(rays):
             mujoco.mj_ray(
@@ -98,14 +102,14 @@ class Sensors:
                 self._picture,
                 self._camera,
                 ray,
-                _SOLID,
+                SOLID,
                 1,
                 -1,
                 hits[index : index + 1],
             )
         if 3 * int((hits == geom).sum()) < len(rays):
             return None
-        bottom = (centre - box.edge / 2 * rotation[:, 2]).tolist()
+        bottom = (centre + rotation @ box.foot).tolist()
         return Position(*(self._noise.add("box position", value) for value in bottom))
 
     def colour_number(self, name: str | None = None) -> int:
@@ -137,9 +141,7 @@ class Sensors:
         data = self._simulation.data
         axis = data.site_xmat[self._robot.site].reshape(3, 3)[:, 2].copy()
         start = data.site_xpos[self._robot.site] + self._palm * axis
-        found = mujoco.mj_ray(
-            self._simulation.model, data, start, axis, _SOLID, 1, self._own_body, self._geom
-        )
+        found = mujoco.mj_ray(self._simulation.model, data, start, axis, SOLID, 1, self._own_body, self._geom)
         return DISTANCE_RANGE[1] if found < 0 else float(found)
 
     def _encoders(self) -> tuple[float, ...]:
@@ -151,24 +153,24 @@ class Sensors:
             self._read = self._simulation.ticks, read
         return read
 
-    def _box(self, name: str | None) -> Box:
-        if name is None and self._boxes:
-            return next(iter(self._boxes.values()))
-        if name not in self._boxes:
-            known = ", ".join(self._boxes) or "none"
+    def _box(self, name: str | None) -> Part:
+        if name is None and self._parts:
+            return next(iter(self._parts.values()))
+        if name not in self._parts:
+            known = ", ".join(self._parts) or "none"
             raise SensorError(f"no box named {name!r} in the cell; there are: {known}")
-        return self._boxes[name]
+        return self._parts[name]
 
 
-def true_box_position(simulation: Simulation, box: Box) -> Position:
+def true_box_position(simulation: Simulation, box: Part) -> Position:
     """Exact middle of the box's bottom face (the face that was below at the start), world frame."""
     body = simulation.id_of("body", box.name)
     centre = simulation.data.xpos[body]
-    up = simulation.data.xmat[body][2::3]
-    return Position(*(centre - 0.5 * box.edge * up).tolist())
+    foot = simulation.data.xmat[body].reshape(3, 3) @ box.foot
+    return Position(*(centre + foot).tolist())
 
 
-def true_box_tilt(simulation: Simulation, box: Box) -> float:
+def true_box_tilt(simulation: Simulation, box: Part) -> float:
     """Exact angle between the box's own up and the world's up, degrees."""
     body = simulation.id_of("body", box.name)
-    return math.degrees(math.acos(min(1.0, max(-1.0, float(simulation.data.xmat[body][8])))))
+    return math.degrees(math.acos(min(1.0, max(-1.0, float(simulation.data.xmat[body][6:] @ box.up)))))

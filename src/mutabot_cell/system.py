@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from mutabot_cell.models.noise import SeededNoise
+from mutabot_cell.models.tool import Fingers, SuctionCup
 
 from .arm import Arm
 from .errors import BadArgument
+from .force_sensor import ForceSensor
 from .gripper import Gripper
 from .robot import Robot
 from .scene import Scene
 from .sensors import Sensors
 from .simulation import Simulation
+from .suction import Suction
 
 
 class RobotSystem:
@@ -18,6 +21,7 @@ class RobotSystem:
 
     Attributes:
         arm, sensors: as the robot program uses them.
+        force_sensor: between the robot's flange and its tool.
     """
 
     def __init__(
@@ -32,15 +36,16 @@ class RobotSystem:
         finger_speed: float | None,
     ) -> None:
         self.arm = Arm(simulation, robot)
-        tool = robot.model.tool
-        self._gripper = (
-            None
-            if tool is None
-            else Gripper(simulation, robot, tool.effector, noise, grip_force, finger_speed)
-        )
-        self.sensors = Sensors(
-            simulation, robot, self.arm.kinematics, noise, scene.boxes, numbers, scene.camera
-        )
+        self._gripper: Gripper | None = None
+        self._suction: Suction | None = None
+        effector = None if robot.model.tool is None else robot.model.tool.effector
+        if isinstance(effector, Fingers):
+            self._gripper = Gripper(simulation, robot, effector, noise, grip_force, finger_speed)
+        elif isinstance(effector, SuctionCup):
+            self._suction = Suction(simulation, robot, effector, noise)
+            self.arm.explained.append(self._suction.arm_torque)
+        self.force_sensor = ForceSensor(simulation, robot, noise)
+        self.sensors = Sensors(simulation, robot, self.arm.kinematics, noise, scene, numbers)
         self._name = robot.model.name
 
     @property
@@ -48,8 +53,25 @@ class RobotSystem:
         """The gripper.
 
         Raises:
-            BadArgument: the robot has no tool.
+            BadArgument: the robot has none.
         """
         if self._gripper is None:
             raise BadArgument(f"{self._name} has no gripper: give it one, RobotModel.with_tool(...)")
         return self._gripper
+
+    @property
+    def suction(self) -> Suction:
+        """The suction cup.
+
+        Raises:
+            BadArgument: the robot has none.
+        """
+        if self._suction is None:
+            raise BadArgument(
+                f"{self._name} has no suction cup: give it one, RobotModel.with_tool(suction_cup(...))"
+            )
+        return self._suction
+
+    def vacuum(self) -> float | None:
+        """Exact vacuum in the suction cup, Pa below the atmosphere; None without one."""
+        return None if self._suction is None else self._suction.true_vacuum()

@@ -16,7 +16,7 @@ def cell_with(new_cell: Callable[..., Cell], mutabot_seed: int) -> Callable[...,
     """Makes the test's cell, with at most one box; one that slips may lean, one that gets lost may fall."""
 
     def make(*boxes: Box, slips: bool = False, gets_lost: bool = False) -> Cell:
-        cell = new_cell(mutabot_seed, scene=Scene(boxes=boxes))
+        cell = new_cell(mutabot_seed, scene=Scene(parts=boxes))
         watch_gripper(cell)
         if boxes and not gets_lost:
             watch_box(cell)

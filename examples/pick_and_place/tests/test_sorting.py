@@ -95,7 +95,7 @@ def test_a_box_that_is_already_on_the_table_is_left_alone(cell_with: CellWith) -
 
 
 def test_something_smaller_than_a_box_is_left_alone(cell_with: CellWith) -> None:
-    cell = cell_with(Box(edge=0.025))
+    cell = cell_with(Box(size=(0.025, 0.025, 0.025)))
 
     assert sorting.run(cell) == Report(Outcome.NO_BOX)
 

@@ -8,12 +8,14 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.geometry import Array
-from mutabot_cell.scene import Scene
+from mutabot_cell.scene import FRICTION_ON_STEEL, Scene
 
 from .lean import ARM_CLASS, GRIPPER_CLASS
-from .model import ROBOT_BODY, cell_xml
+from .model import ROBOT_BODY, cell_xml, stands
 from .options import compile_quietly
+from .parts import add_grip, add_part, add_surfaces
 from .robot import RobotModel
+from .sleeping import MANY, let_sleep
 from .tool import Tool
 
 TOOL_SITE, PAYLOAD_BODY = "tool", "payload"
@@ -34,6 +36,14 @@ def build_cell(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjModel
         if index:
             _collide_with_others(part, index)
         spec.attach(part, frame=spec.body(prefix + ROBOT_BODY).add_frame(), prefix=prefix)
+    for loose in scene.parts:
+        add_part(spec, loose)
+        for prefix, robot in robots.items():
+            if robot.tool is not None:
+                add_grip(spec, loose, prefix, robot.tool.effector)
+        add_surfaces(spec, loose, _surfaces(scene, robots))
+    if len(scene.parts) >= MANY:
+        let_sleep(spec)
     return compile_quietly(spec)
 
 
@@ -53,6 +63,14 @@ def build_arm(robot: RobotModel) -> mujoco.MjModel:
 def build_robot(robot: RobotModel) -> mujoco.MjModel:
     """Compile the robot alone with its tool; its base frame is the world frame."""
     return compile_quietly(_equipped(robot, robot.tool))
+
+
+def _surfaces(scene: Scene, robots: Mapping[str, RobotModel]) -> list[tuple[str, float]]:
+    """Names of what parts may lie on, and its friction coefficient against a dry part."""
+    found = [(fixture.name, fixture.friction) for fixture in scene.fixtures]
+    found.append(("floor", FRICTION_ON_STEEL))
+    found += [(f"{prefix}pedestal", FRICTION_ON_STEEL) for prefix in robots if stands(robots[prefix])]
+    return found
 
 
 def compensation_of(payload: float) -> float:

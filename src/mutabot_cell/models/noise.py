@@ -10,6 +10,9 @@ STANDARD_DEVIATIONS = {
     "box position": 0.0005,  # m
     "distance": 0.001,  # m
     "opening": 0.0001,  # m
+    "force": 0.1,  # N; data sheet of Robotiq's FT 300-S
+    "torque": 0.005,  # Nm; likewise
+    "vacuum": 200.0,  # Pa; 0.2 % of the range of usual vacuum sensors
 }
 """Standard deviation of each sensor's normal noise (our choice, typical of such devices)."""
 

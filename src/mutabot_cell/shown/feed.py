@@ -25,9 +25,9 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
     feed, data = Feed(lambda: simulation.time), simulation.data
     for prefix, robot in simulation.robots.items():
         feed.pose(f"{prefix}tool", _tool_pose(data, robot))
-    for box in scene.boxes:
-        body = simulation.id_of("body", box.name)
-        feed.pose(box.name, _pose(data, body), size=(box.edge, box.edge, box.edge))
+    for part in scene.parts:
+        body = simulation.id_of("body", part.name)
+        feed.pose(part.name, _pose(data, body), size=part.extent)
     for prefix, robot in simulation.robots.items():
         feed.value(f"{prefix}fingers closed", robot.closed_path, unit="m")
     feed.contacts(Contacts(simulation).read)

@@ -36,4 +36,4 @@ def grip() -> Callable[[Cell], None]:
 @pytest.fixture
 def slippery_scene() -> Scene:
     """The box has no friction."""
-    return Scene(boxes=(Box(friction=0.0),))
+    return Scene(parts=(Box(friction=0.0),))

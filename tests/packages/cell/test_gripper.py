@@ -59,7 +59,7 @@ def test_box_without_friction_slips_out(slippery_scene: Scene, grip: Callable[[C
 
 
 def test_heavy_box_slips_with_a_weak_grip_and_holds_with_a_strong_one(grip: Callable[[Cell], None]) -> None:
-    heavy = Scene(boxes=(Box(mass=0.6, friction=0.1),))
+    heavy = Scene(parts=(Box(mass=0.6, friction=0.1),))
     heights = []
     for force in robotiq.FORCE_RANGE:
         cell = Cell(seed=1, scene=heavy, grip_force=force)

@@ -29,7 +29,7 @@ STRETCHED = (0.0, 90.0, 180.0, 0.0, 0.0, 0.0, 90.0)
 
 
 def with_box(mass: float, friction: float | None = None) -> Cell:
-    return Cell(1, scene=Scene(boxes=(Box(mass=mass, friction=friction, jitter=0.0),)))
+    return Cell(1, scene=Scene(parts=(Box(mass=mass, friction=friction, jitter=0.0),)))
 
 
 def grip_from_above(cell: Cell, force: float = 60.0) -> None:
@@ -171,7 +171,7 @@ def test_a_heavy_part_that_nobody_declared_looks_like_a_collision() -> None:
 
 def test_the_motors_carry_the_makers_loads_at_full_reach_for_as_long_as_it_says() -> None:
     """User guide: 1.1 kg without end, 4.5 kg for a while. The gripper of 0.9 kg is a part of the load."""
-    cell = Cell(1, scene=Scene(boxes=()))
+    cell = Cell(1, scene=Scene(parts=()))
     cell.arm.move_joints(STRETCHED)
     cell.wait(60.0)
     assert abs(cell.simulation.data.qfrc_actuator[1]) < kinova.JOINTS[1].torque
@@ -263,7 +263,7 @@ def test_a_collision_still_stops_an_arm_whose_joints_rub(cell: Cell) -> None:
 @pytest.mark.parametrize("height", [0.1, 0.2, 0.3])
 def test_a_dropped_box_rebounds_a_little_and_comes_to_rest_on_the_surface(height: float) -> None:
     """Cardboard on rubber gives back a tenth or two of the speed. Steps let it in by what it falls in two."""
-    cell = Cell(1, scene=Scene(boxes=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
+    cell = Cell(1, scene=Scene(parts=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
     data, body = cell.simulation.data, cell.simulation.id_of("body", "box")
     heights = []
     for _ in range(1000):
@@ -284,7 +284,7 @@ def test_a_dropped_box_rebounds_a_little_and_comes_to_rest_on_the_surface(height
 def test_some_drops_rebound() -> None:
     tops = []
     for height in (0.15, 0.2, 0.25, 0.3, 0.35):
-        cell = Cell(1, scene=Scene(boxes=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
+        cell = Cell(1, scene=Scene(parts=(Box(position=(0.55, 0.6, 1.0 + height), jitter=0.0),)))
         data, body = cell.simulation.data, cell.simulation.id_of("body", "box")
         cell.wait(math.sqrt(2 * height / GRAVITY) + 0.03)
         most = 0.0
@@ -303,7 +303,7 @@ def test_a_box_slides_down_a_slope_whose_tangent_exceeds_its_friction(fixture: F
     box = Box(position=(0.55, 0.6, 1.0), jitter=0.0)
     steepest = math.atan(fixture.friction)
     for slope in (steepest - math.radians(2), steepest + math.radians(4)):
-        cell = Cell(1, scene=Scene(fixtures=(fixture,), boxes=(box,)))
+        cell = Cell(1, scene=Scene(fixtures=(fixture,), parts=(box,)))
         cell.simulation.model.opt.gravity[:] = (0, -GRAVITY * math.sin(slope), -GRAVITY * math.cos(slope))
         cell.wait(0.5)
         drive = max(0.0, math.sin(slope) - fixture.friction * math.cos(slope)) * GRAVITY
@@ -322,7 +322,7 @@ def test_dry_cardboard_on_silicone_carries_what_coulomb_says() -> None:
     """20 N carry 2.5 kg, but not with half of the friction."""
     mass, force = 2.5, 20.0
     assert 2 * force * 0.7 / 2 < mass * GRAVITY < 2 * force * 0.7
-    cell = Cell(1, scene=Scene(boxes=(Box(mass=mass),)))
+    cell = Cell(1, scene=Scene(parts=(Box(mass=mass),)))
     grip_from_above(cell, force)
     cell.arm.move_by(z=0.1, speed=0.05)
     assert cell.truth.box_position().z > 1.09

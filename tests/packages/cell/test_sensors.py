@@ -51,7 +51,7 @@ def test_colour_is_a_number_from_1_to_10_whose_parity_is_the_label() -> None:
 @pytest.mark.parametrize("colour", ["red", "blue"])
 def test_colour_can_be_given(colour: str) -> None:
     for seed in range(8):
-        cell = Cell(seed, scene=Scene(boxes=(Box(colour=colour),)))
+        cell = Cell(seed, scene=Scene(parts=(Box(colour=colour),)))
         assert cell.sensors.colour() == colour
         assert 1 <= cell.sensors.colour_number() <= 10
 
@@ -92,18 +92,18 @@ def test_missing_box_is_a_sensor_error_that_lists_the_boxes(cell: Cell) -> None:
     with pytest.raises(SensorError, match="there are: box"):
         cell.sensors.box_position("lid")
     with pytest.raises(SensorError, match="none"):
-        Cell(1, scene=Scene(boxes=())).sensors.colour()
+        Cell(1, scene=Scene(parts=())).sensors.colour()
 
 
 def test_several_boxes_are_told_apart() -> None:
     boxes = (Box(name="left", position=(0.5, 0.3, 1.0)), Box(name="right", position=(0.5, -0.3, 1.0)))
-    sensors = Cell(2, scene=Scene(boxes=boxes)).sensors
+    sensors = Cell(2, scene=Scene(parts=boxes)).sensors
     assert sensors.box_position("left").y == pytest.approx(0.3, abs=0.005)
     assert sensors.box_position("right").y == pytest.approx(-0.3, abs=0.005)
 
 
 def test_unknown_colour_and_seed_are_refused() -> None:
     with pytest.raises(BadArgument, match="green"):
-        Cell(1, scene=Scene(boxes=(Box(colour="green"),)))
+        Cell(1, scene=Scene(parts=(Box(colour="green"),)))
     with pytest.raises(BadArgument, match="seed"):
         Cell("one")  # type: ignore[arg-type]

@@ -1,0 +1,69 @@
+"""Fixtures that stand elsewhere than they should: moved without building the cell anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import mujoco
+import numpy as np
+
+from mutabot_cell.models.sleeping import awake
+from mutabot_cell.parts import Triple
+
+from .errors import BadArgument
+from .geometry import Array, quaternion_from_euler
+from .simulation import Simulation
+
+Place = tuple[Array, Array]
+"""A position, shape (3,), m, and a unit quaternion, shape (4,)."""
+
+
+def move_fixture(
+    simulation: Simulation,
+    name: str,
+    centre: Triple,
+    angles: Triple = (0.0, 0.0, 0.0),
+    *,
+    carried: Iterable[str] = (),
+) -> None:
+    """Put a fixture elsewhere at once. What stands on it stays, unless it is named.
+
+    Args:
+        name: of the fixture.
+        centre: of the fixture, world frame, m.
+        angles: Euler angles x, y, z, degrees.
+        carried: names of parts that keep their place on it.
+
+    Raises:
+        BadArgument: there is no such fixture or part.
+    """
+    model, data = simulation.model, simulation.data
+    body = _body(simulation, name, is_free=False)
+    before = model.body_pos[body].copy(), model.body_quat[body].copy()
+    after = np.array(centre), quaternion_from_euler(*angles)
+    parts = [_body(simulation, part, is_free=True) for part in carried]
+    model.body_pos[body], model.body_quat[body] = after
+    for part in parts:
+        place = data.qpos[model.jnt_qposadr[model.body_jntadr[part]] :][:7]
+        place[:3], place[3:] = _carried(before, after, (place[:3].copy(), place[3:].copy()))
+    with awake(model):
+        mujoco.mj_forward(model, data)
+
+
+def _carried(before: Place, after: Place, pose: Place) -> Place:
+    """The pose that relates to `after` as `pose` did to `before`."""
+    back, place, turned = (np.zeros(3), np.zeros(4)), np.zeros(3), np.zeros(4)
+    mujoco.mju_negPose(*back, *before)
+    mujoco.mju_mulPose(place, turned, *back, *pose)
+    moved = np.zeros(3), np.zeros(4)
+    mujoco.mju_mulPose(*moved, *after, place, turned)
+    return moved
+
+
+def _body(simulation: Simulation, name: str, *, is_free: bool) -> int:
+    model = simulation.model
+    found = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+    if found < 1 or (model.body_jntnum[found] > 0) != is_free or model.body_parentid[found] != 0:
+        what = "part" if is_free else "fixture"
+        raise BadArgument(f"Expected the name of a {what} of the cell but got {name!r}")
+    return int(found)
