@@ -14,7 +14,7 @@ from .conftest import file_of
 
 AXES = ("0 0 1", "0 1 0", "0 1 0", "0 1 0", "0 0 1", "0 1 0")
 SERVO = '<position name="servo {0}" joint="joint {0}" kp="4000" kv="100" forcerange="-80 80"/>'
-EMPTY = Scene(fixtures=(), marks=(), boxes=())
+EMPTY = Scene(fixtures=(), marks=(), parts=())
 HOME = (0, -60, 90, 60, 0, 0)
 
 

@@ -16,7 +16,7 @@ from mutabot_cell.scene import Box
 
 from .conftest import file_of, robot_named
 
-EMPTY = Scene(fixtures=(), marks=(), boxes=())
+EMPTY = Scene(fixtures=(), marks=(), parts=())
 MOVES = ({"z": 0.08}, {"y": 0.12}, {"x": 0.05, "y": -0.2}, {"z": -0.1, "theta_z": 25.0})
 
 
@@ -113,7 +113,7 @@ def test_a_joint_beyond_its_limit_is_refused_with_the_excess(robot: RobotModel) 
 
 
 def test_pushing_into_the_conveyor_is_a_protective_stop_that_names_it(robot: RobotModel) -> None:
-    cell = Cell(1, robot=robot, scene=Scene(boxes=()))
+    cell = Cell(1, robot=robot, scene=Scene(parts=()))
     with pytest.raises(ProtectiveStop, match="touched conveyor"):
         in_steps(cell.arm, z=-0.08)
     cell.arm.acknowledge_stop()
@@ -122,7 +122,7 @@ def test_pushing_into_the_conveyor_is_a_protective_stop_that_names_it(robot: Rob
 
 @pytest.mark.parametrize("name", ["ur5e", "panda", "xarm7"])
 def test_a_part_of_two_kilograms_that_was_declared_is_carried_without_sagging(name: str) -> None:
-    cell = Cell(1, robot=robot_named(name), scene=Scene(boxes=(Box(mass=2.0),)))
+    cell = Cell(1, robot=robot_named(name), scene=Scene(parts=(Box(mass=2.0),)))
     pick(cell)
     cell.arm.set_payload(2.0)
     cell.arm.move_by(z=0.1, speed=0.3)
