@@ -1,4 +1,4 @@
-"""The vocabulary of the cell makes mutants of what a program says to suction cup, force sensor and barriers."""
+"""The vocabulary makes mutants of what a program says to suction cup, force sensor and light barriers."""
 
 from __future__ import annotations
 
