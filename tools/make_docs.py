@@ -27,31 +27,26 @@ HEAD = """\
 
 <!-- Written by tools/make_docs.py from the operators' own examples, which are tests as well. Do not edit. -->
 
-An *operator* makes one kind of small fault in what the program tells the robot or hears from it. It acts on
-the operations and quantities that the [vocabulary](vocabulary.md) describes, never on program text. A call
-is left alone if the fault would change nothing, or would leave the range or the values that the vocabulary
-allows. Faults of messages on their way: [middleware](middleware.md). `mutabot operators --family NAME`
-prints where each operator of a family acts, and which bugs it stands for.
+An *operator* makes one kind of small fault in what the program tells the robot or hears from it, on the
+operations and quantities that the [vocabulary](vocabulary.md) describes. A call is left alone if the fault
+would change nothing or would leave the allowed range or values; `mutabot list --all` gives the reason.
+`mutabot operators` prints where each operator acts, and which bugs it stands for. Faults of messages on their
+way: [middleware](middleware.md).
 
-In the examples, `original` → `mutant`. Operators marked *idle* answer the program in the place of the
-robot: see [answers to doing nothing](vocabulary.md#answers-to-doing-nothing).
+In the examples, `original` → `mutant`. *Idle* operators [answer the
+program](vocabulary.md#answers-to-doing-nothing) in the place of the robot.
 
 ## Published operators
 
-These reproduce the published operators for robot programs (family `robot`, the default).
+Family `robot`, the default: the published operators for robot programs.
 """
 
 CATALOGUE_HEAD = """\
 ## The catalogue
 
-`--family catalogue` adds faults that are common in robot programs: units and frames, order and time,
-readings, actuation. Number of bugs on commands and readings of each class in studies of ROS and
-PX4/ArduPilot software: {studies}. `mutabot check --family catalogue` names the operators that find nothing
-to act on in your vocabulary and program, and why.
-
-Covered elsewhere: a skipped waypoint by [skip](#skip), a wrong sign of one number by [reverse](#reverse) or
-[negate](#negate), a wrong stamp by [shift-stamp](middleware.md#shift-stamp). Not covered: a lost blend
-radius, since no kind of quantity marks one.
+`--family catalogue` adds faults that are common in robot programs. Bugs on commands and readings of each
+class in studies of ROS and PX4/ArduPilot software: {studies}. Not covered: a lost blend radius, since no kind
+of quantity marks one.
 """
 GRADED_HEAD = """\
 ## Graded faults
@@ -72,14 +67,14 @@ GROUPS = {
 TAIL = """\
 ## Your own operators
 
-An operator is a class with a name, a docstring (summary, `Where:`), examples and three methods. Contract:
-`src/mutabot/operators/operator.py`; short ones to copy: `src/mutabot/operators/kinds/commands.py`. Inside
-mutabot, put it into any file of `src/mutabot/operators/kinds`. Most operators are a
-`ValueOperator` (`operators/value.py`: `change(value, context)` changes one value, `magnitudes(quantity)`
-gives the sizes, one mutant each) or a `CommandOperator` (`operators/command.py`: acts on the whole call).
+An operator is a class with a name, a docstring (summary, `Where:`), examples and three methods; contract:
+`src/mutabot/operators/operator.py`. Put it into a file of `src/mutabot/operators/kinds` (copy a short one of
+`commands.py`) or into a [package](packages.md). Most are a `ValueOperator` (`operators/value.py`:
+`change(value, context)` changes one value, `magnitudes(quantity)` gives the sizes, one mutant each) or a
+`CommandOperator` (`operators/command.py`: acts on the whole call).
 
-`needs` is a set, such as `frozenset({Need.IDLE})`. Where a need is not met, the mutants are skipped with the
-reason:
+`needs` is a set, such as `frozenset({Need.IDLE})`; `needs_of(subject)` gives needs that differ by subject.
+Where a need is not met, mutants are skipped with the reason:
 
 | need | what the operator gets |
 |---|---|
@@ -93,11 +88,8 @@ reason:
 | `Need.MEMORY` | one middleware for all calls of a test |
 | `Need.COPIES` | also copies of what they write and read, which the program cannot change |
 
-`needs_of(subject)` gives needs that differ by subject. `does_nothing = True`: no call reaches the robot, and
-one that does is an error, never a verdict. `family = "…"`: a family of its own, run where `--family` or
-`families` names it.
-
-From an installed package: see [packages](packages.md).
+With `does_nothing = True` no call reaches the robot; one that does is an error, never a verdict.
+`family = "…"` makes a family of its own.
 """
 
 
@@ -111,18 +103,17 @@ def page() -> str:
     for each in (each for each in operators if each.family == CATALOGUE):
         title = GROUPS.get(each.name, title)
         groups.setdefault(title, []).append(each)
-    lines = [HEAD, *_overview(first), ""]
+    lines = [HEAD]
     for each in first:
         lines += _section(each)
-    lines += [GRADED_HEAD, *_overview(graded), ""]
+    lines.append(GRADED_HEAD)
     for each in graded:
         lines += _section(each)
     lines.append(CATALOGUE_HEAD.replace("{studies}", _studies(operators)))
     for title, members in groups.items():
-        lines.append(f"- {title}: {' '.join(_overview(members))}")
-    lines.append("")
-    for each in (each for members in groups.values() for each in members):
-        lines += _section(each)
+        lines.append(f"## {title}\n")
+        for each in members:
+            lines += _section(each)
     return "\n".join([*lines, TAIL])
 
 
@@ -141,16 +132,8 @@ def _operators(*, of_middleware: bool) -> list[Operator]:
     return [one for one in found if (one.family == MIDDLEWARE) is of_middleware]
 
 
-def _overview(operators: list[Operator]) -> Iterator[str]:
-    yield ", ".join(f"[{each.name}](#{each.name})" for each in operators)
-
-
 #: what the sentence on a class of bugs ends with: how many of them studies found
 _STUDIED = re.compile(r": ([^:]+?) are (\d+) of the bugs .*$")
-#: what the page says once of all operators
-_OF_ALL = re.compile(
-    r"\b(?:outside|out of|below|above) (?:the|its) .*\brange|\bis out of range|stay the same"
-)
 
 
 def _studies(operators: list[Operator]) -> str:
@@ -160,23 +143,20 @@ def _studies(operators: list[Operator]) -> str:
 
 
 def _section(each: Operator) -> Iterator[str]:
-    yield f"## {each.name}\n"
+    yield f"### {each.name}\n"
     yield f"{each.summary}{' *(idle)*' if Need.IDLE in each.needs else ''}\n"
     if each.rationale and "vocabulary" in each.where and "vocabulary" not in each.summary:
         yield f"Where: {each.where}.\n"
     if each.published:
         yield f"Published as: {re.sub(r'[0-9]+[.] ', '', each.published).rstrip('.')}.\n"
-    acting = [example for example in each.examples if not example.away]
-    for place, example in enumerate(acting):
-        published = example.note.replace(": ", " → ") in each.published
-        if (place == 0 and each.family != CATALOGUE) or (example.note and not published):
-            note = f" ({example.note})" if example.note and not published else ""
-            yield f"- {_before(example)} → {_after(example)}{note}"
-    reasons = {example.away: None for example in each.examples if example.away}
-    told = [reason for reason in reasons if not _OF_ALL.search(reason)]
-    if told and not each.rationale:
-        yield f"- Left alone: {'; '.join(told)}"
-    yield ""
+    told = [f"- {_before(one)} → {_after(one)} ({one.note})" for one in each.examples if _is_told(each, one)]
+    yield from [*told, ""] if told else []
+
+
+def _is_told(each: Operator, example: Example) -> bool:
+    """Whether an example shows what neither the summary nor the published operator says."""
+    is_published = example.note.replace(": ", " → ") in each.published
+    return bool(example.note) and not example.away and not is_published
 
 
 def _before(example: Example) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -128,4 +129,5 @@ def test_both_have_the_last_section_in_the_documentation(
     page: str, before: str, name: str, site: Path
 ) -> None:
     text = python(site, "-c", f"import {page}; print({page}.page())")
-    assert 0 < text.index(f"\n## {before}\n") < text.index(f"\n## {name}\n")
+    headings = re.findall(r"^##+ (.*)$", text, re.MULTILINE)
+    assert headings.index(before) < headings.index(name)

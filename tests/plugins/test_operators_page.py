@@ -27,7 +27,7 @@ def test_docs_operators_md_is_up_to_date() -> None:
 
 def test_every_operator_has_its_section() -> None:
     texts = {page: (ROOT / "docs" / page).read_text(encoding="utf-8") for page in PAGES.values()}
-    missing = [name for name in built_in() if f"\n## {name}\n" not in texts[PAGES[operator(name).family]]]
+    missing = [name for name in built_in() if f"\n### {name}\n" not in texts[PAGES[operator(name).family]]]
     assert missing == []
 
 

@@ -69,8 +69,7 @@ def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
 
 
 class CentimetreForMetre(_OtherUnit):
-    """A length or linear speed in metres is taken for centimetres, or is given in centimetres; and the other
-    way round.
+    """A length or linear speed in metres is taken for, or given in, centimetres; and the other way round.
 
     Where: written and read quantities in m, cm, m/s or cm/s.
     """
@@ -86,8 +85,7 @@ class CentimetreForMetre(_OtherUnit):
 
 
 class MillimetreForMetre(_OtherUnit):
-    """A length or linear speed in metres is taken for millimetres, or is given in millimetres; and the other
-    way round.
+    """A length or linear speed in metres is taken for, or given in, millimetres; and the other way round.
 
     Where: written and read quantities in m or mm, and their speeds and accelerations.
     """
@@ -103,7 +101,7 @@ class MillimetreForMetre(_OtherUnit):
 
 
 class InchForMillimetre(_OtherUnit):
-    """A length in millimetres is taken for inches, or is given in inches; and the other way round.
+    """A length in millimetres is taken for, or given in, inches; and the other way round.
 
     Where: written and read quantities in mm or inch.
     """
@@ -119,8 +117,7 @@ class InchForMillimetre(_OtherUnit):
 
 
 class DegreeForRadian(_OtherUnit):
-    """An angle or angular speed in radians is taken for degrees, or is given in degrees; and the other way
-    round.
+    """An angle or angular speed in radians is taken for, or given in, degrees; and the other way round.
 
     Where: written and read quantities in rad or deg, rotation vectors and Euler angles included, and their
     speeds and accelerations.
@@ -137,8 +134,7 @@ class DegreeForRadian(_OtherUnit):
 
 
 class MillisecondForSecond(_OtherUnit):
-    """A duration in seconds is taken for milliseconds. The other way round it is so long that any test only
-    times out.
+    """A duration in seconds is taken for milliseconds, not the other way round: that only times out.
 
     Where: durations in s.
     """
@@ -181,7 +177,7 @@ class _Factor(ValueOperator):
 
 
 class SpeedOverride(_Factor):
-    """A speed or acceleration is 50 % or 200 % of what is commanded, within its range.
+    """A speed or acceleration is 50 % or 200 % of the commanded one, within its range.
 
     Where: written quantities of kind speed, acceleration or jerk.
     """
@@ -190,13 +186,13 @@ class SpeedOverride(_Factor):
     kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
     examples = (
         changed(_SPEED, 0.5, 0.25, "x0.5"),
-        changed(_SPEED, 0.8, 1.0, "x2", note="its range ends there"),
+        changed(_SPEED, 0.8, 1.0, "x2"),
         unchanged(_SPEED, 1.0, "it is at the end of its range", "x2"),
     )
 
 
 class ForceOverride(_Factor):
-    """A force or torque is 50 % or 200 % of what is commanded, within its range.
+    """A force or torque is 50 % or 200 % of the commanded one, within its range.
 
     Where: written quantities of kind force or torque.
     """
@@ -211,7 +207,7 @@ class ForceOverride(_Factor):
 
 
 class WeakGrip(_Factor):
-    """A gripper has 30 % of the force that it is told to have, or the least of its range.
+    """A gripper has 30 % of the commanded force, or the least of its range.
 
     Where: written quantities of kind force, in calls that command no motion.
     """
@@ -220,7 +216,7 @@ class WeakGrip(_Factor):
     variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
     examples = (
         changed(_GRIP, 160, 48, "x0.3"),
-        changed(_GRIP, 40, 20, "x0.3", note="the least of its range"),
+        changed(_GRIP, 40, 20, "x0.3"),
         unchanged(_GRIP, 20, "it is the least already", "x0.3"),
     )
 
@@ -232,7 +228,7 @@ class WeakGrip(_Factor):
 
 
 class WrongPayload(_Factor):
-    """The payload that is set is none, or twice as heavy as it is.
+    """The payload that is set is none, or twice as heavy.
 
     Where: written quantities of kind mass.
     """
@@ -250,8 +246,7 @@ class WrongPayload(_Factor):
 
 
 class PartialOpening(ValueOperator):
-    """A gripper stops half way, as seen from the end of its range that is farther off: half open, half
-    closed.
+    """A gripper stops half way.
 
     Where: openings with a range or clip; those of two values take no other.
 
@@ -263,7 +258,7 @@ class PartialOpening(ValueOperator):
     of_read = False
     examples = (
         changed(_OPEN, 80.0, 40.0),
-        changed(_OPEN, 0.0, 42.5, note="half closed"),
+        changed(_OPEN, 0.0, 42.5),
         unchanged(_OPEN, {}, "the call says nothing of it"),
     )
 

@@ -62,7 +62,8 @@ class Repeat(CommandOperator):
 
 
 class Opposite(CommandOperator):
-    """A two-state command does the opposite: open for close, off for on, release for grasp.
+    """A two-state command does the opposite: open for close, off for on, `drop/5` for `lift/5`; an opening
+    goes to the other end of its range.
 
     Where: written openings and outputs with two ends, and commands with an opposite.
 
@@ -71,15 +72,14 @@ class Opposite(CommandOperator):
 
     name = "opposite"
     examples = (
-        changed(GRIP, 1, 0, note="grasp: release"),
+        changed(GRIP, 1, 0),
         changed(_LAMP, False, True),
-        changed(_OPEN_TO, 85.0, 0.0, note="an opening at one end of its range goes to the other end"),
-        Example(Subject(CLOSE), performed=({"reversed": True},), note="calls the opposite operation"),
+        changed(_OPEN_TO, 85.0, 0.0),
+        Example(Subject(CLOSE), performed=({"reversed": True},)),
         Example(
             Subject(_SEND, _LIFT),
             {"height": 5},
             performed=({"height": 5, "reversed": True},),
-            note="sends the opposite text command",
         ),
         unchanged(_OPEN_TO, 40.0, "half open has no opposite"),
         unchanged(GRIP, 0.5, "neither of the two states"),
@@ -145,8 +145,7 @@ class _Timing(CommandOperator):
 
 
 class SwapNext(_Timing):
-    """A command changes places with the program's next one, whichever that is; if none follows, it is never
-    carried out. Meanwhile the program goes on as if it had been.
+    """A command changes places with the program's next one, or is never carried out if none follows.
 
     Where: any command whose answer to doing nothing is known.
     """
@@ -163,7 +162,7 @@ class SwapNext(_Timing):
 
 
 class PreviousTarget(_Timing):
-    """A motion goes to the target of the one before it again, or as far: a waypoint that is out of date.
+    """A motion goes to the target of the one before it again, or as far: an outdated waypoint.
 
     Where: commands that write a translation or rotation, from the second call of their operation on.
     """
@@ -191,7 +190,7 @@ class PreviousTarget(_Timing):
 
 
 class HalfWait(ValueOperator):
-    """A wait is half as long: the next command comes before what was waited for is over.
+    """A wait is half as long.
 
     Where: written quantities of kind duration.
 
@@ -212,7 +211,7 @@ class HalfWait(ValueOperator):
 
 
 class NoWait(HalfWait):
-    """A wait is left out: the next command comes at once."""
+    """A wait is left out."""
 
     name = "no-wait"
     examples = (
@@ -249,9 +248,7 @@ class LateGrip(_Grip):
 
 
 class EarlyRelease(_Grip):
-    """A gripper command is taken back right after the program's next command: what was gripped is let go too
-    early. If no command follows, nothing happens.
-    """
+    """A gripper command is taken back right after the program's next command, if one follows."""
 
     name = "early-release"
     fault = "and back after the next command"
@@ -290,7 +287,7 @@ class _Chance(CommandOperator):
 
 
 class LostCommand(_Chance):
-    """A command is not carried out, with a probability of 30 %; the program goes on as if it had been.
+    """A command is not carried out, with a probability of 30 %.
 
     Where: any command whose answer to doing nothing is known.
     """
@@ -309,7 +306,7 @@ class LostCommand(_Chance):
 
 
 class DoubleCommand(_Chance):
-    """A command is carried out twice, with a probability of 30 %; the program sees the second answer.
+    """A command is carried out twice, with a probability of 30 %.
 
     Where: any command.
     """
@@ -328,8 +325,7 @@ class DoubleCommand(_Chance):
 
 
 class UnreportedRefusal(CommandOperator):
-    """The robot refuses a command, or stops, and the program does not hear of it: it gets the answer to doing
-    nothing.
+    """The robot refuses a command, or stops, and the program does not hear of it.
 
     Where: commands whose answer to doing nothing is known, where the tests make the robot raise one of its
     refusals.

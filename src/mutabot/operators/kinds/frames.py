@@ -59,7 +59,7 @@ def _joints(quantities: tuple[Quantity, ...], *angles: float) -> dict[str, float
 
 
 class AxisSwap(Exchange):
-    """Two components of a motion are exchanged: what is meant along x goes along y.
+    """Two components of a motion are exchanged: along y instead of x.
 
     Where: commands that write two of the axes x, y, z of one translation or rotation.
 
@@ -81,7 +81,7 @@ class AxisSwap(Exchange):
 
 
 class JointOrder(Exchange):
-    """The angles of the first and the third joint are exchanged, as where joints are sorted by name.
+    """The angles of the first and the third joint are exchanged, as if joints were sorted by name.
 
     Where: written and read angles of the joints j1 and j3.
 
@@ -105,7 +105,7 @@ class JointOrder(Exchange):
 
 
 class LeftHanded(ValuesOperator):
-    """A pose is taken as given in a left-handed frame: y and the turns about x and z are negated.
+    """A pose is taken as left-handed: y and the turns about x and z are negated.
 
     Where: written and read poses with y and an orientation beside it; for y alone it is a wrong sign.
 
@@ -161,8 +161,7 @@ def _mirrored(quantity: Quantity, value: Value) -> Value | None:
 
 
 class BaseForTool(ValuesOperator):
-    """A relative move in the base's frame goes along the tool's axes, and one in the tool's along the
-    base's.
+    """A relative move in the base's frame goes along the tool's axes, and the other way round.
 
     Where: relative translations along x, y and z in a frame named base or tool, with a current that reads the
     three angles of the tool, about axes that stay, in the base's frame.
@@ -264,29 +263,29 @@ class _WrongTcp(ValueOperator):
 
 
 class TcpMissing(_WrongTcp):
-    """The offset of the tool centre point is missing: the flange goes where the tool's tip should."""
+    """The offset of the tool centre point is missing: the flange goes where the tip should."""
 
     name = "tcp-missing"
     sign = 1.0
     examples = (
-        changed(_MOVE_TIP, 0.3, 0.18, note="12 cm of gripper that looks down"),
+        changed(_MOVE_TIP, 0.3, 0.18),
         unchanged(_MOVE_TIP, 0.05, "it would be below the range [0, 0.6]"),
     )
 
 
 class TcpDoubled(_WrongTcp):
-    """The offset of the tool centre point is counted twice: the tip stays back by as much."""
+    """The offset of the tool centre point is counted twice."""
 
     name = "tcp-doubled"
     sign = -1.0
     examples = (
-        changed(_MOVE_TIP, 0.3, 0.42, note="12 cm of gripper that looks down"),
+        changed(_MOVE_TIP, 0.3, 0.42),
         unchanged(_MOVE_TIP, 0.5, "it would be above the range [0, 0.6]"),
     )
 
 
 class JointTurn(ValueOperator):
-    """The target of a joint is off by a full turn: the tool ends alike, the way there does not.
+    """The target of a joint is off by a full turn: the same pose, by another way.
 
     Where: absolute angles of joints: rotation with an axis j1 … and mode to.
 
@@ -338,8 +337,7 @@ class _OtherNumbers(ValueOperator):
 
 
 class EulerOrder(_OtherNumbers):
-    """Euler angles are carried out in the reverse order: axes that stay are taken for axes that turn
-    along.
+    """Euler angles are applied in the reverse order: axes that stay are taken for axes that turn along.
 
     Where: written and read quantities of kind euler.
 
@@ -360,7 +358,7 @@ class EulerOrder(_OtherNumbers):
 
 
 class QuaternionOrder(_OtherNumbers):
-    """A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back.
+    """A quaternion's scalar part is taken to be at the other end: xyzw for wxyz, and back.
 
     Where: written and read quantities of kind quaternion.
 
@@ -370,7 +368,7 @@ class QuaternionOrder(_OtherNumbers):
     name = "quaternion-order"
     kinds = frozenset({Kind.QUATERNION})
     examples = (
-        changed(_ORIENT, [0.8, 0.6, 0.0, 0.0], [0.0, 0.8, 0.6, 0.0], note="0.8 is taken for x"),
+        changed(_ORIENT, [0.8, 0.6, 0.0, 0.0], [0.0, 0.8, 0.6, 0.0]),
         changed(_LOOK, [0.0, 0.0, 0.6, 0.8], [0.0, 0.6, 0.8, 0.0]),
         unchanged(_ORIENT, [0.5, 0.5, 0.5, 0.5], "all parts are the same, so their order is none"),
     )
@@ -381,7 +379,7 @@ class QuaternionOrder(_OtherNumbers):
 
 
 class QuaternionSign(_OtherNumbers):
-    """One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's.
+    """One part of a quaternion's vector has the wrong sign.
 
     Where: written and read quantities of kind quaternion.
 

@@ -134,7 +134,7 @@ _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
 
 
 class Offset(NumberOperator):
-    """A commanded or read value is off by a fixed amount, at every call, in one direction.
+    """A commanded or read value is off by a fixed amount in one direction.
 
     Where: every number that is commanded or read, bar waits.
 
@@ -143,8 +143,8 @@ class Offset(NumberOperator):
 
     name = "offset"
     examples = (
-        changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm"), note="the box is put down 20 mm too far"),
-        changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm"), note="the camera was bumped into"),
+        changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm")),
+        changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm")),
         changed(
             _ORIENT,
             [0.0, 0.0, 30.0],
@@ -178,7 +178,6 @@ class Scale(NumberOperator):
             0.3,
             0.27,
             size=("-", 10.0, "percent"),
-            note="a sensor that was calibrated with another target",
         ),
         unchanged(_MOVE, 0.0, "nothing is no share of", size=("+", 5.0, "percent")),
     )
@@ -197,8 +196,8 @@ class Scale(NumberOperator):
 
 
 class SensorNoise(NumberOperator):
-    """Each reading is off by Gaussian noise of standard deviation σ. The draws of a round are the same at
-    every σ: a larger one is the same noise, only larger.
+    """Each reading has Gaussian noise of standard deviation σ; in a round the draws are the same at every
+    σ, only scaled.
 
     Where: every number that is read.
 
@@ -217,7 +216,6 @@ class SensorNoise(NumberOperator):
             # the draw for the first call of the generator that the examples are run with
             0.55 + 0.01 * Context(_MEANT, Random(1), number=1).draw().gauss(0.0, 1.0),
             size=("", 10.0, "mm"),
-            note="σ = 10 mm",
         ),
         unchanged(LOCATE, None, "there is no number to disturb", size=("", 10.0, "mm")),
     )
@@ -230,7 +228,7 @@ class SensorNoise(NumberOperator):
 
 
 class Drift(NumberOperator):
-    """A reading drifts: it is off by δ for every second of simulated time since the test began.
+    """A reading is off by δ for every second of simulated time since the test began.
 
     Where: every number that is read, with a clock in the vocabulary.
 
@@ -247,7 +245,6 @@ class Drift(NumberOperator):
             0.32,
             size=("+", 2.0, "mm/s"),
             time=10.0,
-            note="2 mm per second: after 10 s it reads 20 mm too much",
         ),
         unchanged(_FEEL, 0.3, "no time has passed yet", size=("-", 2.0, "mm/s")),
     )
@@ -263,8 +260,7 @@ class Drift(NumberOperator):
 
 
 class Quantise(NumberOperator):
-    """A commanded or read value is rounded to the nearest multiple of a step, as by a coarse encoder or
-    converter.
+    """A commanded or read value is rounded to a multiple of a step, as by a coarse encoder.
 
     Where: every number that is commanded or read, bar orientations as a whole.
 
@@ -289,7 +285,7 @@ class Quantise(NumberOperator):
 
 class Deadband(NumberOperator):
     """A target or reading that differs from the last one by less than δ is taken for that one; a relative
-    move shorter than δ is none. As by a worn gear, or a filter against chatter.
+    move shorter than δ is not made.
 
     Where: every number that is commanded or read, bar waits and orientations as a whole.
 
@@ -321,7 +317,7 @@ _HOME = Operation("robot:Arm.home")
 
 
 class Early(NumberOperator):
-    """A wait is so much shorter, so that what comes next comes too early.
+    """A wait is shorter, so that what comes next comes too early.
 
     Where: waits: arguments of kind `duration`.
 
@@ -332,7 +328,7 @@ class Early(NumberOperator):
     directions = ("-",)
     of_read = False
     examples = (
-        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms"), note="the gripper is given less time to close"),
+        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms")),
         unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
     )
 
@@ -345,8 +341,8 @@ class Early(NumberOperator):
 
 
 class Lag(CommandOperator):
-    """Each command is carried out so much later, while the rest of the world goes on; a reading was taken so
-    much before the program gets it. Needs a `wait` in the vocabulary, or a middleware.
+    """Each command is carried out later; each reading was taken earlier. Needs a `wait` in the vocabulary,
+    or a middleware.
 
     Where: every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware.
 
@@ -359,7 +355,7 @@ class Lag(CommandOperator):
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     examples = (
         whole(_HOME, {}, {}, size=(200.0, "ms"), waited=0.2),
-        whole(_FEEL, 0.3, size=(50.0, "ms"), waited=0.05, note="what was seen then is told now"),
+        whole(_FEEL, 0.3, size=(50.0, "ms"), waited=0.05),
     )
 
     def fits(self, whole: Subject) -> bool:

@@ -41,8 +41,8 @@ class MessageOperator(CommandOperator):
 
 
 class Drop(MessageOperator):
-    """A message, request or goal is lost on its way, a result or the tick of a timer never comes: each, every
-    third, or with a probability of 30 %.
+    """A message, request, goal or result is lost, or a timer does not tick: each, every third, or with a
+    probability of 30 %.
     """
 
     name = "drop"
@@ -55,9 +55,9 @@ class Drop(MessageOperator):
     }
     fault = "{which} {what} is lost"
     examples = (
-        whole(PUBLISH, 0.4, note="nobody hears of it"),
-        whole(RECEIVE, 0.02, lost=True, note="the callback is not called; who waits, waits for the next one"),
-        whole(CALL, {}, lost=True, note="the service does nothing and never answers"),
+        whole(PUBLISH, 0.4),
+        whole(RECEIVE, 0.02, lost=True),
+        whole(CALL, {}, lost=True),
         whole(PUBLISH, 0.4, variant=_THIRD, earlier=(0.2, 0.3)),
         whole(PUBLISH, 0.3, variant=_THIRD, earlier=(0.2,), away="only the second"),
     )
@@ -94,7 +94,7 @@ class Duplicate(MessageOperator):
     examples = (
         whole(PUBLISH, 0.4, 0.4, 0.4),
         whole(RECEIVE, 0.02, 0.02, then=(0.02,)),
-        whole(CALL, {}, {}, {}, note="the program sees the second answer"),
+        whole(CALL, {}, {}, {}),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -103,9 +103,7 @@ class Duplicate(MessageOperator):
 
 
 class Stale(MessageOperator):
-    """An old message is sent, or received, in the place of the new one: always the first, or always the
-    previous.
-    """
+    """The first or the previous message is sent, or received, in the place of the new one."""
 
     name = "stale"
     calls = 2
@@ -114,15 +112,14 @@ class Stale(MessageOperator):
     variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
     fault = "the {variant} {what} again instead of the new one"
     examples = (
-        whole(RECEIVE, 0.02, 0.5, variant=_FIRST, earlier=(0.5, 0.3), note="a sensor that is stuck"),
-        whole(PUBLISH, 0.4, 0.3, variant=_PREVIOUS, earlier=(0.2, 0.3), note="always one behind"),
+        whole(RECEIVE, 0.02, 0.5, variant=_FIRST, earlier=(0.5, 0.3)),
+        whole(PUBLISH, 0.4, 0.3, variant=_PREVIOUS, earlier=(0.2, 0.3)),
         whole(
             CALL_TO,
             0.4,
             0.2,
             variant=_FIRST,
             earlier=(0.2, 0.3),
-            note="the service is asked for the same over and over",
         ),
         whole(PUBLISH, 0.4, variant=_FIRST, away=_NONE_BEFORE),
         whole(RECEIVE, 0.02, variant=_PREVIOUS, away=_NONE_BEFORE),
@@ -142,8 +139,8 @@ class Stale(MessageOperator):
 
 
 class Delay(MessageOperator):
-    """A message, request, goal, result or transform comes 0.1 s or 1 s late, by the clock of the node. What
-    is published goes out late by itself; who waits for an answer waits longer.
+    """A message, request, goal, result or transform comes 0.1 s or 1 s late; later messages may overtake a
+    received one.
     """
 
     name = "delay"
@@ -158,7 +155,6 @@ class Delay(MessageOperator):
             0.02,
             size=(1.0, None),
             late=1.0,
-            note="the callback is called later; messages that come meanwhile overtake it",
         ),
     )
 
@@ -176,7 +172,7 @@ class Delay(MessageOperator):
 
 
 class Reorder(MessageOperator):
-    """Messages change places, two by two: the second comes before the first. A last one alone is lost."""
+    """Messages change places, two by two. A last one alone is lost."""
 
     name = "reorder"
     calls = 2
@@ -185,7 +181,7 @@ class Reorder(MessageOperator):
     fault = "every other {what} comes after the next one"
     examples = (
         whole(PUBLISH, 0.4, 0.4, 0.2, earlier=(0.2,)),
-        whole(PUBLISH, 0.2, note="is held back for the next one"),
+        whole(PUBLISH, 0.2),
         whole(RECEIVE, 0.02, 0.02, earlier=(0.5,), then=(0.5,)),
         whole(RECEIVE, 0.5, lost=True),
     )
@@ -241,9 +237,7 @@ def _dead(how: str) -> tuple[Example, ...]:
 
 
 class KillNode(_Death):
-    """The node's process is killed in the place of the call, and nobody tells the others. Only where the node
-    is a process of its own: never that of the tests.
-    """
+    """The node's process is killed at the call, if it is not that of the tests."""
 
     name = "kill-node"
     call_fault = CallFault.KILLED
@@ -252,8 +246,8 @@ class KillNode(_Death):
 
 
 class RestartNode(_Death):
-    """The node's process is killed in the place of the call and begins anew with the same command line, as
-    under a supervisor, once. Only where the node is a process of its own.
+    """The node's process is killed at the call and begins anew with the same command line, once, if it is
+    not that of the tests.
     """
 
     name = "restart-node"
@@ -263,7 +257,7 @@ class RestartNode(_Death):
 
 
 class CancelGoal(_Mishap):
-    """Somebody cancels the action as soon as its goal is sent."""
+    """The action is cancelled as soon as its goal is sent."""
 
     name = "cancel-goal"
     call_fault = CallFault.CANCELLED
@@ -273,7 +267,7 @@ class CancelGoal(_Mishap):
 
 
 class JumpClock(_Mishap):
-    """The node's clock jumps 10 s ahead, or 10 s back, before a tick of its timer or a turn of its rate."""
+    """The node's clock jumps 10 s ahead or back before a tick of its timer or a turn of its rate."""
 
     name = "jump-clock"
     needs = frozenset({Need.MEMORY, Need.COPIES, Need.PROGRAM})
@@ -293,9 +287,7 @@ class JumpClock(_Mishap):
 
 
 class LoseAnswer(MessageOperator):
-    """A service does what it is asked for, but the program hears of a failure, or never of anything, as its
-    middleware has it when an answer is lost.
-    """
+    """A service does its work, but the program hears of a failure, or never of anything."""
 
     name = "lose-answer"
     forms = frozenset({Form.CALL, Form.GOAL})

@@ -84,7 +84,7 @@ class Reverse(ValueOperator):
         changed(
             _ORIENT, [0.0, 0.5, 0.0], [0.0, -0.5, 0.0], note="an orientation as a whole: the inverse rotation"
         ),
-        changed(_CLIPPED, 1.7, -1.7, note="the vocabulary says that the robot limits it: clip = [−1, 1]"),
+        changed(_CLIPPED, 1.7, -1.7),
         unchanged(_STEP, 1.7, "−1.7 m is outside the range [−1, 1]"),
         unchanged(_ORIENT, [0.0, math.pi, 0.0], "half a turn the other way is the same orientation"),
         unchanged(_FACE, 180, "the targets 180 and −180 degrees are the same"),
@@ -93,10 +93,9 @@ class Reverse(ValueOperator):
             0.5,
             0.1,
             current={"pose.x": 0.3},
-            note="a relative move that is hidden in an absolute target: 2 · current − target",
         ),
         unchanged(_HIDDEN, 0.5, "the target is where the robot is", current={"pose.x": 0.5}),
-        changed(_DRIVE, 0.4, -0.4, note="a speed along an axis: the robot drives the wrong way"),
+        changed(_DRIVE, 0.4, -0.4),
         unchanged(_GO, 0.5, "−0.5 m/s is outside the range [−0.2, 1]"),
         unchanged(_MOVE, 0.0, "a zero has no other way"),
         unchanged(_MOVE, {"yaw": 80}, "the call does not give this component"),
@@ -146,7 +145,7 @@ class ByTo(ValuesOperator):
     name = "by-to"
     needs = frozenset({Need.PLACE})
     examples = (
-        changed(_BY, 0.5, 0.25, current={"dx": 0.25}, note="translate forward by δ: translate forward to δ"),
+        changed(_BY, 0.5, 0.25, current={"dx": 0.25}),
         changed(_BY, -0.5, -0.75, current={"dx": 0.25}),
         changed(_TO, 0.5, 0.75, current={"x": 0.25}),
         unchanged(_BY, 0.5, "by and to agree at zero", current={"dx": 0.0}),
@@ -155,7 +154,6 @@ class ByTo(ValuesOperator):
             0.5,
             0.2,
             current={"pose.x": 0.3},
-            note="a relative move that is hidden in an absolute target: its change is taken for the target",
         ),
         unchanged(_NEAR, 0.5, "0.75 is out of range", current={"x": 0.25}),
     )

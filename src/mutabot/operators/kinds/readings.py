@@ -52,7 +52,7 @@ _LATE = 0.5
 
 
 class Dropout(CommandOperator):
-    """A reading drops out: the program gets None, not a number or an exception, as the robot's API does
+    """A reading drops out: the program gets None, not a number or an exception, as the robot's API gives
     it.
 
     Where: read quantities whose vocabulary says what a reading gives that is not there: missing.
@@ -116,7 +116,7 @@ class _Reading(ValueOperator):
 
 
 class OldReading(_Reading):
-    """A reading is old: the value of the call before, or of five calls before, at the same place.
+    """A reading is that of the call before, or of five calls before, at the same place.
 
     Where: read quantities, at places that a test calls more than once.
     """
@@ -145,7 +145,7 @@ class OldReading(_Reading):
 
 
 class StuckReading(_Reading):
-    """A sensor is stuck: from the second call on a place reads what it read first in the test.
+    """From the second call on a place reads what it read first in the test.
 
     Where: read quantities, at places that a test calls more than once.
     """
@@ -174,8 +174,8 @@ def _kept(value: Value) -> Value:
 
 
 class Spike(_Reading):
-    """One reading in ten, by chance, jumps: to the end of its range that is farther off, or to ten times its
-    value where it has none.
+    """One reading in ten, by chance, jumps to the farther end of its range, or to ten times its value if it
+    has none.
 
     Where: read numbers on a scale, but for orientations as a whole.
     """
@@ -186,7 +186,7 @@ class Spike(_Reading):
     variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
     examples = (
         changed(_MEASURE, 0.2, 2.0, "10%", earlier=(0.2,)),
-        changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,), note="the far end of its range"),
+        changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,)),
         unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
     )
 
@@ -204,8 +204,8 @@ class Spike(_Reading):
 
 
 class SaturatedReading(_Reading):
-    """A sensor saturates: its reading is limited to the middle 80 % of its range, or without a range to 80 %
-    of the size of the first one at its place in the test.
+    """A reading is limited to the middle 80 % of its range, or without a range to 80 % of the first one at
+    its place in the test.
 
     Where: read numbers on a scale, but for orientations as a whole.
     """
@@ -233,7 +233,7 @@ class SaturatedReading(_Reading):
 
 
 class SwappedChannels(Exchange):
-    """Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads.
+    """Neighbouring values of one kind that a call reads are exchanged.
 
     Where: calls that read two quantities of one kind and unit.
 
@@ -256,7 +256,7 @@ class SwappedChannels(Exchange):
 
 
 class WrongObject(ValueOperator):
-    """A reading is that of another object, camera or channel than the one that is asked for.
+    """A reading is that of another object, camera or channel.
 
     Where: outputs with values that say what a call reads: written beside a result.
 
@@ -304,7 +304,7 @@ class ConfusedLabel(_Reading):
 
 
 class LateReading(CommandOperator):
-    """The program gets a reading 0.5 s after it was taken; the world goes on meanwhile.
+    """The program gets a reading 0.5 s after it was taken.
 
     Where: calls that read and command nothing; the vocabulary says how time passes: wait.
 
@@ -433,7 +433,7 @@ class Misread(ValueOperator):
     name = "misread"
     of_written = False
     examples = (
-        changed(_SEE, "red", "blue", note="an incorrect colour classification"),
+        changed(_SEE, "red", "blue"),
         changed(_SORT, "bolt", "nut", "+2"),
         changed(_FEEL, True, False),
         unchanged(_SEE, "grey", "not one of the labels"),

@@ -50,8 +50,8 @@ class FreeValueOperator(ValueOperator):
 
 
 class WrongFrame(FreeValueOperator):
-    """The header names another frame: the next of those that the vocabulary gives, one that nobody knows if
-    it gives none, or none at all.
+    """The header names another frame: the next of the vocabulary's values, else an unknown one; or none at
+    all.
     """
 
     name = "wrong-frame"
@@ -105,7 +105,7 @@ class ShiftStamp(FreeValueOperator):
 
 
 class EmptyStamp(FreeValueOperator):
-    """The header has no stamp: it says zero, as if nobody had filled it in."""
+    """The header's stamp is zero."""
 
     name = "empty-stamp"
     kinds = frozenset({Kind.STAMP})
@@ -149,8 +149,8 @@ class _Setting(FreeValueOperator):
 
 
 class WrongName(_Setting):
-    """A publisher, subscription or client is set up under another name: one that nobody else has, or without
-    the namespace of its node, as a wrong remapping does.
+    """A publisher, subscription or client is set up under a name that nobody else has, or without the
+    namespace of its node, as a wrong remapping does.
     """
 
     name = "wrong-name"
@@ -183,7 +183,7 @@ class WrongName(_Setting):
 
 
 class ShortQueue(_Setting):
-    """The queue of a publisher or subscription holds one message, so that the next one pushes it out."""
+    """The queue of a publisher or subscription holds one message."""
 
     name = "short-queue"
     setting = "depth"
@@ -209,9 +209,7 @@ class _OtherOfTwo(_Setting):
 
 
 class FlipLatch(_OtherOfTwo):
-    """A publisher that keeps its last message for subscribers who come later does not, or one that does not
-    does.
-    """
+    """A publisher that keeps its last message for later subscribers does not, or the other way round."""
 
     name = "flip-latch"
     setting = "latch"
@@ -234,9 +232,7 @@ def _of_two(quantity: str, one: str, other: str, first: Operation, second: Opera
 
 
 class WrongReliability(_OtherOfTwo):
-    """A publisher or subscription is best effort instead of reliable, or the other way round. A subscription
-    that asks for more than is offered hears nothing.
-    """
+    """A publisher or subscription is best effort instead of reliable, or the other way round."""
 
     name = "wrong-reliability"
     setting = "reliability"
@@ -244,9 +240,7 @@ class WrongReliability(_OtherOfTwo):
 
 
 class WrongDurability(_OtherOfTwo):
-    """A publisher or subscription is volatile instead of transient local, or the other way round. A
-    subscription that asks for more than is offered hears nothing.
-    """
+    """A publisher or subscription is volatile instead of transient local, or the other way round."""
 
     name = "wrong-durability"
     setting = "durability"
@@ -254,9 +248,7 @@ class WrongDurability(_OtherOfTwo):
 
 
 class WrongDeadline(_Setting):
-    """A publisher or subscription has a deadline of 1 ms, or none where it had one. A subscription that asks
-    for more than is offered hears nothing.
-    """
+    """A publisher or subscription has a deadline of 1 ms, or none where it had one."""
 
     name = "wrong-deadline"
     setting = "deadline"
@@ -296,7 +288,7 @@ _SET, _READ = Subject(SPEED, quantity=SPEED.result[0]), {"value": 0.25}
 
 
 class UseDefault(FreeValueOperator):
-    """A parameter has the default that the program gives, instead of what was set."""
+    """A parameter has the program's default instead of what was set."""
 
     name = "use-default"
     of_written = False
