@@ -22,18 +22,14 @@ HEAD = """\
 <!-- Written by tools/make_conventional_page.py from the operators' own examples. Do not edit. -->
 
 The operators of textbooks change program text and know nothing of robots. Use them to compare with the
-[robot operators](operators.md): `mutabot run --family conventional` (or `text`, or
-`robot,conventional,text`; also for `list` and `check`), or `families = ["robot", "conventional"]` in the
-configuration. Engines, verdicts and reports are the same; scores are separate. Mutants of calls come first
-and keep their numbers.
+[robot operators](operators.md): `--family conventional`, `text` or `robot,conventional,text`, or `families`
+in the [configuration](configuration.md#families). Engines, verdicts and reports are the same; scores are
+separate.
 
 No file is changed. While the program is imported, each place is compiled as *the original, unless an
-alternative is chosen*, with your lines and columns: tracebacks and `inspect.getsource` show your text. No
-function is wrapped around anything, so short circuits, chained comparisons, `await`, `yield`, `:=`,
-`super()`, `locals()` and class bodies keep their meaning.
-
-Values computed during import (constants, taught points, defaults of functions) have mutants too; all tests
-judge them.
+alternative is chosen*: tracebacks and `inspect.getsource` show your text, and short circuits, `await`,
+`yield`, `:=`, `super()` and `locals()` keep their meaning. Values computed during import (constants, taught
+points, defaults of functions) have mutants too; all tests judge them.
 
 An alternative with the original's value has not acted. mutabot knows this where the original is a part of the
 alternative, or consists of names, constants, operators, plain attributes and items, or mathematical
@@ -41,23 +37,21 @@ functions; any other alternative counts as having acted when it is reached.
 
 ## What is left out
 
-- Annotations, patterns of `match`, docstrings, imports, definitions: nothing is computed there.
-- Blocks under `if TYPE_CHECKING` and `if __name__ == "__main__"`: no test runs them.
-- Alternatives of a type that the value never had in the baseline; they are listed with the reason. The
-  baseline also tells which variables may replace each other.
+- Annotations, patterns of `match`, docstrings, imports, definitions; blocks under `if TYPE_CHECKING` and
+  `if __name__ == "__main__"`.
+- Alternatives of a type that the value never had in the baseline, listed with the reason.
 - Expressions of more than 1000 characters, and, before Python 3.12, expressions that stand twice in one
   f-string.
 - Programs that are not imported (`runpy.run_path`, own processes).
-- The plus of UOI (changes no number), ABS of literals (UOI does it), plain assignments for ASR (the name may
-  have no value yet).
+- What is another operator's (a literal's sign is UOI's, not ABS's) or changes nothing: plus signs, equal
+  neighbouring characters.
+- Plain assignments for ASR: the name may have no value yet.
+- Text arguments that do not stand in the call, or are formatted, for the operators on characters.
 
-## What it costs
-
-`python benchmarks/instrumentation.py` measures it. `python benchmarks/stdlib_corpus.py` runs modules of the
-standard library, with all alternatives of all operators in them, through their own tests.
+`python benchmarks/instrumentation.py` measures what it costs; `python benchmarks/stdlib_corpus.py` runs
+modules of the standard library, with all alternatives in them, through their own tests.
 
 ## The operators
-
 """
 #: so many mutants of an example after the first stand on the page
 _SHOWN = 4
@@ -65,27 +59,24 @@ _SHOWN = 4
 
 def page() -> str:
     """The text of the page."""
-    lines = [HEAD + ", ".join(f"[{name}](#{name.lower()})" for name in names())]
+    lines = [HEAD.rstrip()]
     for name in names():
         lines += _section(operator(name))
     return "\n".join([*lines, ""])
 
 
 def _section(each: ConventionalOperator) -> Iterator[str]:
-    yield from ("", f"## {each.name}", "", each.summary, "")
+    yield from ("", f"### {each.name}", "", each.summary, "")
     acting = [example for example in each.examples if example.after]
     for place, example in enumerate(acting):
         note = _note(example)
-        if place and not note:
+        if place and not example.note:
             continue
         before, *mutants = _without_target([example.before, *example.after])
         after = [_code(text) for text in mutants]
         if place and len(after) > _SHOWN + 1:
             after[_SHOWN:] = ["…"]
         yield f"- {_code(before)} → {', '.join(after)}{f' ({note})' if note else ''}"
-    reasons = {_note(example): None for example in each.examples if not example.after and _note(example)}
-    if reasons:
-        yield f"- Left alone: {'; '.join(reasons)}"
 
 
 def _without_target(texts: list[str]) -> list[str]:

@@ -64,7 +64,6 @@ class ArithmeticReplacement(_BinaryOperator):
                 "a * b + c, a * b - c, a * b * c, a * b / c, a * b // c, (a * b) ** c, a * b, c, "
                 "(a + b) % c, (a - b) % c, a / b % c, a // b % c, a % b % c, a ** b % c, a % c, b % c",
             ),
-            note="operands stay what they are",
         ),
         TextExample("z = 'lift/' + height\n", note="a text is no operand of arithmetic"),
         TextExample("z = a + b\n", kinds={"a + b": "text"}, note="the baseline saw a text there"),

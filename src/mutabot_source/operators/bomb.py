@@ -33,7 +33,7 @@ class Bomb(ConventionalOperator):
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("move(x)\n", ("Bomb()\n",)),
         TextExample("while x:\n    move(x)\n", ("Bomb()\n", "while x:\n    Bomb()\n")),
-        TextExample("def f():\n    return 1\n", ("def f():\n    Bomb()\n",), note="but not the definition"),
+        TextExample("def f():\n    return 1\n", ("def f():\n    Bomb()\n",)),
         TextExample('"""What it does."""\nfrom __future__ import annotations\nimport robot\n'),
         TextExample("def f():\n    global x\n    pass\n", note="nothing happens there"),
     )

@@ -21,7 +21,6 @@ class Absolute(ConventionalOperator):
         TextExample(
             "y = arm.x\n",
             ("y = abs(arm.x)\n", "y = -abs(arm.x)\n", "y = failOnZero(arm.x)\n"),
-            note="attributes, items, calls and sums as well",
         ),
         TextExample("y = x\n", kinds={"x": "text"}, note="the baseline saw a text there"),
         TextExample("y = 0.2\n", note="a literal shows its sign: that is UOI's"),
@@ -50,12 +49,12 @@ class UnaryInsertion(ConventionalOperator):
     rank = 80
     summary = "A value gets a minus, a bitwise or a logical not in front, whichever its type takes."
     examples: ClassVar[tuple[TextExample, ...]] = (
-        TextExample("y = 0.2\n", ("y = -0.2\n",), note="a taught point"),
+        TextExample("y = 0.2\n", ("y = -0.2\n",)),
         TextExample("y = x\n", ("y = -x\n",)),
         TextExample("y = x\n", ("y = -x\n", "y = ~x\n"), kinds={"x": "integer"}),
         TextExample("y = x\n", ("y = not x\n",), kinds={"x": "truth"}),
         TextExample("y = a + b\n", ("y = -(a + b)\n", "y = -a + b\n", "y = a + -b\n")),
-        TextExample("while x: ...\n", ("while not x: ...\n",), kinds={"x": "text"}, note="any condition"),
+        TextExample("while x: ...\n", ("while not x: ...\n",), kinds={"x": "text"}),
         TextExample("z = a < b\n", ("z = not a < b\n", "z = -a < b\n", "z = a < -b\n")),
         TextExample("y = True\n", ("y = not True\n",)),
         TextExample("y = -0.2\n", note="what has a sign is UOD's"),
@@ -89,7 +88,7 @@ class UnaryDeletion(ConventionalOperator):
     rank = 90
     summary = "A unary minus, plus, bitwise or logical not is left out."
     examples: ClassVar[tuple[TextExample, ...]] = (
-        TextExample("y = -0.2\n", ("y = 0.2\n",), note="a taught point"),
+        TextExample("y = -0.2\n", ("y = 0.2\n",)),
         TextExample("if not held: ...\n", ("if held: ...\n",)),
         TextExample("y = ~x\n", ("y = x\n",)),
         TextExample("y = a - b\n", note="that minus has two operands"),
