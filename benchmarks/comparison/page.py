@@ -33,24 +33,21 @@ HEAD = """\
 <!-- Written by benchmarks/comparison/page.py from docs/data/*.json. Do not edit. -->
 
 The study "Mutation Testing for Industrial Robotic Systems" says, without figures, that conventional
-mutation operators suit robot programs badly. These figures come from `make comparison` on the examples of
-this repository. [Comparing families](compare.md) explains the terms.
+mutation operators suit robot programs badly. `make comparison` measured it on the examples of this
+repository; `docs/data` has all numbers. [Comparing families](compare.md) explains the terms.
 
 A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly
 above zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not
-measured* means that the family has no mutants there, or that a sample does not tell the number of places.
-Shares are count/total, percentage (95 % interval), differences in percentage points; intervals speak about
-other mutants and rounds like these.
+measured*: the family has no mutants there, or a sample does not tell the number of places.
+Differences are in percentage points.
 """
 TAIL = """\
 ## Limits of this comparison
 
 - The programs are small examples. How often a conventional operator hits a calculation depends on how much a
   program calculates.
-- The robot family is made for each example's vocabulary: *refused* and *indistinguishable* are as good as its
-  refusals and probes.
-- Mutants that would change nothing in the baseline were left out beforehand, in all families as far as they
-  can tell, and are in no number.
+- *Refused* and *indistinguishable* are as good as each example's refusals and probes.
+- Mutants that would change nothing in the baseline were left out beforehand, in all families.
 - *Informative* counts mutants that no test reaches: they tell of one missing test many times.
 - A mutant that tells suites apart need not be like a fault that engineers make.
 """
@@ -143,13 +140,7 @@ def _example(name: str, data: Data) -> Iterator[str]:
 def _rows(families: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list[str]]]:
     for key in ("mutants", "places"):
         yield key, [str(family[key]) for family in families]
-    for key, label in (("wall", "wall clock"), ("cpu", "processor time"), ("simulated", "simulated time")):
-        yield f"{label}, s", [_seconds(family["cost"][key]) for family in families]
-    yield "outcomes", [str(family["done"]) for family in families]
-    for end in End:
-        shares = [family["ends"][end.value] for family in families]
-        if any(share["count"] for share in shares):
-            yield end.value, [_share(share) for share in shares]
+    yield "processor time, s", [_seconds(family["cost"]["cpu"]) for family in families]
     yield "score", [_score(family["scores"], "score", "killed") for family in families]
     yield "check score", [_score(family["scores"], "check_score", "by_check") for family in families]
     if any(family["without_oracle"] for family in families):
@@ -197,12 +188,6 @@ def _score(scores: Mapping[str, Any] | None, key: str, counted: str) -> str:
     interval = scores[{"score": "interval", "check_score": "check_interval"}[key]]
     between = f" ({100 * interval['low']:.0f}–{100 * interval['high']:.0f})" if interval else ""
     return f"{scores[counted]}/{scores['valid']}, {percent(scores[key])}{between}"
-
-
-def _share(share: Mapping[str, Any]) -> str:
-    interval = share["interval"]
-    between = f" ({100 * interval['low']:.0f}–{100 * interval['high']:.0f})" if interval else ""
-    return f"{percent(share['share'])}{between}"
 
 
 def _seconds(seconds: float | None) -> str:
