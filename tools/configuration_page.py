@@ -20,9 +20,8 @@ HEAD = """\
 <!-- Written by tools/make_docs.py from src/mutabot/config/configuration.py and others. Do not edit. -->
 
 The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml` without that
-heading. `mutabot init` proposes one. Paths are relative to the project's folder and must not lead out of
-it. A wrong key or value is an error with its line and the nearest key. For one command: `mutabot run -o
-rounds=5 -o when=once`.
+heading; `mutabot init` proposes one. Paths are relative to the project's folder and must stay in it. For one
+command: `mutabot run -o rounds=5 -o when=once`.
 
 ```toml
 [tool.mutabot]
@@ -35,11 +34,7 @@ vocabulary = ["robot.toml"]
 def page() -> str:
     """The text of the page."""
     tables = tables_of_ours()
-    keys = [
-        *Settings.model_fields,
-        *(f"{name}.{key}" for name, one in tables.items() for key in one.model_fields),
-    ]
-    lines = [HEAD + "\n" + ", ".join(f"[`{key}`](#{_anchor(key)})" for key in keys), *_texts_of(Settings)]
+    lines = [HEAD.rstrip(), *_texts_of(Settings)]
     for name, table in tables.items():
         lines += [
             "",
@@ -67,10 +62,6 @@ def _texts_of(model: type[Table], table: str = "") -> Iterator[str]:
             yield from (f"({told})", "", "```toml", example, "```")
         else:
             yield f"`{example}` ({told})"
-
-
-def _anchor(heading: str) -> str:
-    return heading.replace(".", "")
 
 
 def documented(model: type[Table]) -> dict[str, tuple[str, str]]:

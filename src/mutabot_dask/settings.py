@@ -31,9 +31,7 @@ _WORKERS, _PER_PROCESSOR = 32, 4
 
 
 class ClusterTable(Table):
-    """For a [cluster](cluster.md). `--cluster` says which one it is. Where this table stands, `mutabot check`
-    lists what is sent to workers.
-    """
+    """For a [cluster](cluster.md). With this table, `mutabot check` lists what is sent to workers."""
 
     files: ProjectFiles = ()
     """What is sent beside [what git tracks](cluster.md#what-is-shipped); folders and patterns may be named.

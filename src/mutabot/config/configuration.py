@@ -103,91 +103,75 @@ class Settings(Table):
     """The keys a user can write, beside the tables that packages bring."""
 
     program: _SomeTexts
-    """Files and folders of the robot program; globs may be used. Calls in them are mutated, in the role
-    `program`.
+    """Files and folders of the robot program, also as globs. Calls in them have the role `program`.
 
         program = ["mission.py", "cell/*.py"]
     """
     oracle: _Texts = ()
-    """The same for code of the tests that takes readings for their own checks. Calls
-    in it are mutated in the role `oracle`, whose score is a score of its own. No file can be both.
+    """The same for code of the tests that takes readings for their own checks: role `oracle`, scored apart.
+    No file can be both.
 
         oracle = ["tests/sensors.py"]
     """
     oracle_nodes: Annotated[tuple[_NodeName, ...], Field(strict=False)] = ()
-    """Nodes of the tests' own, by resolved names in which `*` stands for any text. What is done under a name
-    in such a node (a topic received, a service called) has the role `oracle`, in whichever of the files above
-    it stands.
+    """The tests' own nodes, by resolved names; `*` stands for any text. What is done in them under a name (a
+    topic received, a service called) has the role `oracle`, in whichever file it stands.
 
         oracle_nodes = ["/checker*"]
     """
     tests: _SomeTexts = ("tests",)
-    """Pytest's arguments that say which tests there are: folders, files,
-    node ids.
+    """Pytest's arguments that say which tests there are.
 
         tests = ["tests", "acceptance/test_cell.py"]
     """
     vocabulary: _Texts = ()
-    """Vocabulary files of the project, or names of vocabularies that come with
-    mutabot; see [vocabulary](vocabulary.md). Mutants of calls need one; those of the program text
-    (`conventional`, `text`) do not.
+    """[Vocabulary](vocabulary.md) files of the project, or names of shipped ones. Mutants of calls need one.
 
         vocabulary = ["robot.toml"]
     """
     rounds: Annotated[int, Field(ge=1, le=limits.ROUNDS)] = 1
-    """How often everything is repeated, each time with other
-    seeds. `--rounds` goes before it.
+    """How often everything is repeated, each time with other seeds (`--rounds`).
 
         rounds = 5
     """
     seed: Annotated[int, Field(ge=0, le=limits.SEED)] = 1
-    """The campaign's seed, from which those of all rounds and tests
-    come. `--seed` goes before it.
+    """The campaign's seed, from which those of all rounds and tests come (`--seed`).
 
         seed = 42
     """
     jobs: Annotated[int, Field(ge=1, le=limits.JOBS)] | None = None
-    """Runs at a time. Without it, one per core that
-    may be used. `--jobs` goes before it.
+    """Runs at a time (`--jobs`). Without it, one per core that may be used.
 
         jobs = 1
     """
     selection: str | None = None
-    """File with the ids of the mutants to run, one per line. Without it, all are
-    run.
+    """File with the ids of the mutants to run, one per line. Without it, all are run.
 
         selection = "published.txt"
     """
     timeout_factor: Annotated[float, Field(gt=1, le=limits.FACTOR)] = 10.0
-    """How many times the operations and the simulated
-    time of the original a mutant may use in a test.
+    """How many times the original's operations and simulated time a mutant may use in a test.
 
         timeout_factor = 3.0
     """
     timeout_seconds: Annotated[float, Field(gt=0, le=limits.SECONDS)] = 60.0
-    """Seconds of wall clock that every test gets at
-    least, be the original ever so quick: the safety net for mutants that neither operations nor simulated
-    time can end.
+    """Seconds of wall clock that every test gets at least:
+    [limits of time](verdicts.md#limits-of-time).
 
         timeout_seconds = 300.0
     """
     private_files: bool = True
-    """Whether each run of the tests keeps to itself what it does to
-    the project's and the temporary files, and finds them as they were before any run. That needs a mount
-    namespace; where the system refuses it, you are told if it matters.
+    """Whether each run of the tests has [files of its own](shared-state.md#files).
 
         private_files = false
     """
     evidence: Annotated[int, Field(le=limits.BYTES), _Room] = 200_000_000
-    """How much is kept of what the robot did: where tool and objects were, what was
-    commanded and read, of the original and of mutants that differ from it; see
-    [evidence](evidence.md). If room is short, that of survivors stays. 0 records nothing.
+    """Room for [recordings](evidence.md#where-it-is-kept) of what the robot did. 0 records nothing.
 
         evidence = "1 GB"
     """
     memory: Annotated[int, Field(le=limits.BYTES), _Memory] = 4_000_000_000
-    """Address space of a process, as
-    a text with a unit or in bytes.
+    """Address space of a process, as a text with a unit or in bytes.
 
         memory = "16 GB"
     """
@@ -202,14 +186,12 @@ class Settings(Table):
         timeout_limit = 0.2
     """
     error_limit: _Share = 0.0
-    """Share of outcomes that may be errors, in which nothing is known of the
-    mutant; above it, `run` ends with 4.
+    """Share of outcomes that may be errors; above it, `run` ends with 4.
 
         error_limit = 0.05
     """
     min_score: Annotated[float, Field(ge=0, le=100)] | None = None
-    """Least score in percent, for each
-    family and role by itself; below it, `run` ends with 1. `--min-score` goes before it.
+    """Least score in percent of each family and role (`--min-score`); below it, `run` ends with 1.
 
         min_score = 80.0
     """
@@ -219,33 +201,28 @@ class Settings(Table):
         pytest_args = ["-m", "not slow"]
     """
     when: _Moments = (EVERY,)
-    """At which of the calls of its site a mutant acts, a mutant each: `"every"` call; the third (`"3"`); all
-    `"from 10"` on; `"once"`, at a call drawn anew for each round and test; or while the simulated time of the
-    test is within a window (`"2-2.5 s"`). In a control loop a fault at every step is noticed by any test.
+    """At which calls of its site a mutant acts, [a mutant each](thresholds.md#when-in-time).
 
         when = ["every", "once", "from 10"]
     """
     families: _Families = USUAL
-    """Families of mutants to plant: `robot` in calls, `conventional` and
-    `text` in the program's text. `--family` goes before it.
+    """[Families](operators.md) of mutants to run (`--family`).
 
         families = ["robot", "conventional"]
     """
     baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
-    """How often the original is run per round; without it, as often as the engine
-    needs. More runs find more of the tests that fail at random.
+    """How often the original is run per round; without it, as often as the engine needs. More runs find more
+    flaky tests.
 
         baseline_repetitions = 10
     """
     repeats: bool = True
-    """Whether kills that may be a coincidence are run once more; see
-    [verdicts](verdicts.md#a-second-look).
+    """Whether [kills that may be a coincidence](verdicts.md#a-second-look) are re-run.
 
         repeats = false
     """
     demand: Annotated[tuple[dict[str, Any], ...], Field(strict=False)] = ()
-    """How small a fault may be that the tests do not notice: a table each, with double brackets; see
-    [thresholds](thresholds.md#demands). `run` ends with 1 if a site tolerates more.
+    """How big a fault the tests must notice, [a table each](thresholds.md#demands); else `run` ends with 1.
 
         demand = [{ site = "mission.py:38", quantity = "y", notice = "5 mm" }]
     """
