@@ -49,46 +49,39 @@ that on so many and by their number, is {replay} with replay and {fork} with for
 
 ![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
 
+Time is lost to *the original's own runs* (each part of a fork parent runs its tests again), *shipping*
+(folder, job and answer of a unit), *the controller* (a worker whose answer waits is idle), *stragglers* (idle
+time at the end that equal units and no deaths would avoid) and *the last unit* (the rest of it).
+
 {curve}
 
-| column | meaning |
-|---|---|
-| original's runs | a fork parent's own runs of tests; each part runs its tests again |
-| shipping | a unit's folder, job and answer |
-| controller | it judges one answer after the other; a worker whose answer waits is idle |
-| stragglers | idle time at the end that equal units, equal times and no deaths would avoid |
-| last unit | the rest of the idle time at the end |
-
-The first row of fork: one worker that dies in an uncut fork parent loses half a round. The controller is
-the limit: one process that takes {replay_ms} ms or {fork_ms} ms per outcome. Mutants that take longer than
-here (a few seconds with replay, a quarter of a second with fork) keep as many more workers busy.
+The controller is the limit: one process that takes {replay_ms} ms or {fork_ms} ms per outcome. Mutants that
+take longer than here (a few seconds with replay, a quarter of a second with fork) keep as many more workers
+busy. One worker with fork: if it dies in an uncut fork parent, it loses half a round.
 
 ## How large should a unit be?
 
-Replay: a mutant in a round. A fork parent is cut; with 100 workers:
+Replay: a mutant in a round. A fork parent is cut; with 100 workers, shares of time in %:
 
 {sizes}
 
 The executor cuts 16 parts per worker, at least ten mutants each, mutants of the same tests together,
-longest first by baseline times. Smaller parts end more evenly, lose less with a dead worker and spread the
-controller's work, but run tests of the original more often.
+longest first. Smaller parts end more evenly and lose less with a dead worker, but run tests of the original
+more often.
 
 ## The baseline
 
 It runs first on the controller's machine, with `jobs` tests side by side, and is not in these numbers: two
-runs in each of ten rounds take {baselines}. Use many cores there, or fewer rounds.
+runs in each of ten rounds take {baselines}.
 
 ## What was measured, and what is assumed
 
 - Program: {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), each with its
   own tests: {own} mutants of family `robot`, a suite of {suite} s.
-- {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; costs are drawn from
-  these.
-- Equal runs of a test took {quickest} to {slowest} times their mean on a machine with other work; units
-  vary as much, one of n mutants by 1/√n of that.
-- Controller: {replay_ms} ms per outcome of replay, {fork_ms} ms of fork, with recordings (`python
-  benchmarks/controller.py`), and 3 ms per unit. Worker: 28 ms per unit, 4 s to start, 0.2 s for the
-  project.
+- {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; equal runs of a test
+  {quickest} to {slowest} times their mean on a machine with other work.
+- Controller: {replay_ms} ms per outcome of replay, {fork_ms} ms of fork, with recordings, and 3 ms per unit.
+  Worker: 28 ms per unit, 4 s to start, 0.2 s for the project.
 - Assumed: a worker dies once in 24 hours, is missed after 5 s, and its unit runs again; all workers are
   equally fast.
 
@@ -188,8 +181,8 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def percent(share: float) -> str:
-    """``8.4 %``."""
-    return f"{100 * share:.1f} %"
+    """``8.4``."""
+    return f"{100 * share:.1f}"
 
 
 def page(data: Mapping[str, Any]) -> str:
@@ -226,15 +219,12 @@ def row_of(found: Mapping[str, Any], engine: str, workers: int) -> Mapping[str, 
 
 def _curve_table(found: Mapping[str, Any]) -> str:
     heads = (
-        "engine", "workers", "units", "hours", "speed-up", "efficiency", "original's runs", "shipping",
-        "controller", "stragglers", "last unit", "controller at work",
+        "engine", "workers", "units", "hours", "speed-up", "efficiency", "controller at work",
     )  # fmt: skip
     rows = [
         (
             engine, f"{row['workers']:,}", f"{row['units']:,}", f"{row['hours']:,.1f}",
             f"{row['speed_up']:,.0f}", f"{row['efficiency']:.2f}",
-            *(percent(row["shares"][one]) for one in ("originals", "shipped", "waited", "stragglers")),
-            percent(row["shares"]["last"]),
             f"{row['controller']:.0%}",
         )
         for engine in ENGINES
