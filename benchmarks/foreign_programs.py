@@ -47,8 +47,10 @@ def main() -> int:
 
 
 def files_of(page: Path) -> dict[str, str]:
-    """The files of the project on a page, by name."""
-    return {match[1]: match[2] for match in _BLOCK.finditer(page.read_text(encoding="utf-8"))}
+    """The files of the project, by name: those on a page, and those in the folder beside it."""
+    folder = page.with_suffix("")
+    beside = {str(path.relative_to(folder)): path.read_text("utf-8") for path in folder.rglob("*.py")}
+    return beside | {match[1]: match[2] for match in _BLOCK.finditer(page.read_text(encoding="utf-8"))}
 
 
 def _try(name: str, recipe: dict[str, Any], folder: Path) -> dict[str, Any]:
