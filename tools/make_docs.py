@@ -38,7 +38,9 @@ program](vocabulary.md#answers-to-doing-nothing) in the place of the robot.
 
 ## Published operators
 
-Family `robot`, the default: the published operators for robot programs.
+Family `robot`, the default, has all 13 published operators for robot programs: translate or rotate to the
+other side (*reverse*), *to* instead of *by* (*by-to*), no command, twice, or the opposite (*skip*, *repeat*,
+*opposite*), a wrong or noisy distance (*negate*, *noise*), a wrong colour (*misread*).
 """
 
 CATALOGUE_HEAD = """\
@@ -147,8 +149,6 @@ def _section(each: Operator) -> Iterator[str]:
     yield f"{each.summary}{' *(idle)*' if Need.IDLE in each.needs else ''}\n"
     if each.rationale and "vocabulary" in each.where and "vocabulary" not in each.summary:
         yield f"Where: {each.where}.\n"
-    if each.published:
-        yield f"Published as: {re.sub(r'[0-9]+[.] ', '', each.published).rstrip('.')}.\n"
     told = [f"- {_before(one)} → {_after(one)} ({one.note})" for one in each.examples if _is_told(each, one)]
     yield from [*told, ""] if told else []
 
