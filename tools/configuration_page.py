@@ -31,6 +31,10 @@ vocabulary = ["robot.toml"]
 """
 
 
+#: kinds of values that an example shows
+_SHOWN = {"list of texts", "text", "table", "tables, with double brackets", "`true` or `false`"}
+
+
 def page() -> str:
     """The text of the page."""
     tables = tables_of_ours()
@@ -57,7 +61,8 @@ def _texts_of(model: type[Table], table: str = "") -> Iterator[str]:
     for key, (text, example) in documented(model).items():
         name = f"{table}.{key}" if table else key
         yield from ("", f"{'###' if table else '##'} {name}", "", text, "")
-        told = f"{values_of(schema['properties'][key], schema)}; default: {_default(model, key)}"
+        values = values_of(schema["properties"][key], schema)
+        told = f"{'' if values in _SHOWN else f'{values}; '}default: {_default(model, key)}"
         if "\n" in example:
             yield from (f"({told})", "", "```toml", example, "```")
         else:
