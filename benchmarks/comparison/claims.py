@@ -101,14 +101,12 @@ def decide(one: Mapping[str, Any], other: Mapping[str, Any]) -> Stance:
 
 
 def difference_text(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
-    """``17 points more (3 to 25)``."""
+    """``+17.0 (3.0 to 25.0)``, in percentage points."""
     found = difference(one, other)
     if found is None:
         return "nothing tells how sure the difference is"
-    middle, low, high = (100 * number for number in found)
-    word, ends = ("less", (-high, -low)) if middle < 0 else ("more", (low, high))
-    between = " to ".join(f"{end:.1f}".replace("-", "−") for end in ends)
-    return f"{abs(middle):.1f} points {word} ({between})"
+    middle, low, high = (f"{100 * number:.1f}".replace("-", "−") for number in found)
+    return f"{'' if middle.startswith('−') else '+'}{middle} ({low} to {high})"
 
 
 def share_text(share: Mapping[str, Any]) -> str:

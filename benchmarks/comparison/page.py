@@ -39,7 +39,7 @@ repository; `docs/data` has all numbers. [Comparing families](compare.md) explai
 A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly
 above zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not
 measured*: the family has no mutants there, or a sample does not tell the number of places.
-Differences are in percentage points.
+Differences are in percentage points, with 95 % intervals.
 """
 TAIL = """\
 ## Limits of this comparison

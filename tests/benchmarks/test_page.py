@@ -80,8 +80,8 @@ def test_the_interval_of_a_difference_is_the_published_one() -> None:
 
 
 def test_a_difference_is_said_with_its_sign_and_mirrors() -> None:
-    assert difference_text(share(56, 70), share(48, 80)) == "20.0 points more (5.2 to 33.4)"
-    assert difference_text(share(48, 80), share(56, 70)) == "20.0 points less (5.2 to 33.4)"
+    assert difference_text(share(56, 70), share(48, 80)) == "+20.0 (5.2 to 33.4)"
+    assert difference_text(share(48, 80), share(56, 70)) == "−20.0 (−33.4 to −5.2)"
     assert "(−" in difference_text(share(21, 100), share(20, 100))
 
 
