@@ -1,0 +1,43 @@
+"""What mutabot is told of a cell in MuJoCo while it records."""
+
+from functools import partial
+
+import mujoco
+import numpy as np
+
+from mutabot.evidence import Feed
+
+
+def tell(model, data, *, tool, things, width=480, height=360):
+    """A feed of this cell: call its `tick` after each `mj_step`.
+
+    tool: name of the site at the tool's tip; things: names of bodies, with the edge lengths of their boxes.
+    """
+    feed, renderers, quaternion = Feed(lambda: data.time), [], np.zeros(4)
+
+    def pose_of_tool():
+        site = data.site(tool)
+        mujoco.mju_mat2Quat(quaternion, site.xmat)
+        return [*site.xpos, *quaternion]
+
+    def picture():
+        if not renderers:
+            renderers.append(mujoco.Renderer(model, height, width))
+        renderers[0].update_scene(data)
+        return renderers[0].render()
+
+    def touching():
+        for contact in data.contact[: data.ncon]:
+            names = [model.body(model.geom_bodyid[geom]).name for geom in contact.geom]
+            if names[0] != names[1]:
+                yield tuple(names)
+
+    def pose_of(body):
+        return [*body.xpos, *body.xquat]
+
+    feed.pose("tool", pose_of_tool)
+    for name, size in things.items():
+        feed.pose(name, partial(pose_of, data.body(name)), size=size)
+    feed.contacts(touching)
+    feed.camera(picture, rate=12)
+    return feed
