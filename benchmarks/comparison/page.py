@@ -27,6 +27,13 @@ DOCS = Path(__file__).parents[2] / "docs"
 #: the order of the page; other names follow by alphabet
 ORDER = ("paper", "pick_and_place", "scales")
 
+#: of the table of numbers
+_COLUMNS = (
+    "program: family · role", "mutants", "places", "score", "check score", "without an oracle", "trivial",
+    "informative", "redundant, dominators of killed", "processor time in s, per informative mutant",
+    "joint dominators, alone",
+)  # fmt: skip
+
 HEAD = """\
 # Do conventional operators suit robot programs?
 
@@ -95,9 +102,8 @@ def pages(comparisons: Mapping[str, Data]) -> dict[str, str]:
 def page(comparisons: Mapping[str, Data]) -> str:
     """The text of the page."""
     lines = [HEAD, *_claims(comparisons)]
-    for name, data in comparisons.items():
-        lines += _example(name, data)
-    return "\n".join([*lines, "", TAIL])
+    lines += _numbers(comparisons)
+    return "\n".join([*lines, TAIL])
 
 
 def picture(data: Data, name: str) -> str:
@@ -126,45 +132,33 @@ def _claims(comparisons: Mapping[str, Data]) -> Iterator[str]:
     yield ""
 
 
-def _example(name: str, data: Data) -> Iterator[str]:
-    yield from (f"## The numbers of {name}", "", _circumstances(data), "")
-    yield from (f"![ends of the mutants of {name}](img/comparison-{name}.svg)", "")
-    families = [family for family in data["families"] if family["mutants"]]
-    yield _row("", *(f"{family['family']} · {family['role']}" for family in families))
-    yield f"|---|{'---:|' * len(families)}"
-    for label, cells in (*_rows(families), *_worth(families, data["together"])):
-        yield _row(label, *cells)
+def _numbers(comparisons: Mapping[str, Data]) -> Iterator[str]:
+    yield from ("## The numbers", "")
+    for name, data in comparisons.items():
+        yield from (f"{name}: {_circumstances(data)}", "")
+        yield from (f"![ends of the mutants of {name}](img/comparison-{name}.svg)", "")
+    yield _row(*_COLUMNS)
+    yield f"|---|{'---:|' * (len(_COLUMNS) - 1)}"
+    for name, data in comparisons.items():
+        for family in data["families"]:
+            if family["mutants"]:
+                yield _row(
+                    f"{name}: {family['family']} · {family['role']}", *_cells(family, data["together"])
+                )
     yield ""
 
 
-def _rows(families: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list[str]]]:
-    for key in ("mutants", "places"):
-        yield key, [str(family[key]) for family in families]
-    yield "processor time, s", [_seconds(family["cost"]["cpu"]) for family in families]
-    yield "score", [_score(family["scores"], "score", "killed") for family in families]
-    yield "check score", [_score(family["scores"], "check_score", "by_check") for family in families]
-    if any(family["without_oracle"] for family in families):
-        yield (
-            "score without an oracle",
-            [_score(family["without_oracle"], "score", "killed") for family in families],
-        )
-    for key in ("trivial", "informative"):
-        yield key, [share_text(family[key]) for family in families]
-    for key in ("redundant", "dominators"):
-        yield f"{key}, of killed", [f"{family[key]}/{family['killed_mutants']}" for family in families]
-
-
-def _worth(
-    families: Sequence[Mapping[str, Any]], together: Mapping[str, Any]
-) -> Iterator[tuple[str, list[str]]]:
-    informative = [(family["cost"]["cpu"], family["informative"]["count"]) for family in families]
-    yield (
-        "processor time per informative mutant, s",
-        [f"{cpu / count:.2g}" if count else "–" for cpu, count in informative],
-    )
-    if together["dominators"] and not together["unknown_mutants"]:
-        cells = [f"{one['joint']}/{together['dominators']}, {one['alone']} alone" for one in families]
-        yield "joint dominators that have its mutants", cells
+def _cells(family: Mapping[str, Any], together: Mapping[str, Any]) -> Iterator[str]:
+    yield from (str(family[key]) for key in ("mutants", "places"))
+    yield _score(family["scores"], "score", "killed")
+    yield _score(family["scores"], "check_score", "by_check")
+    yield _score(family["without_oracle"], "score", "killed")
+    yield from (share_text(family[key]) for key in ("trivial", "informative"))
+    yield f"{family['redundant']}, {family['dominators']} of {family['killed_mutants']}"
+    cpu, informative = family["cost"]["cpu"], family["informative"]["count"]
+    yield f"{_seconds(cpu)}, {f'{cpu / informative:.2g}' if informative else '–'}"
+    is_known = together["dominators"] and not together["unknown_mutants"]
+    yield f"{family['joint']}/{together['dominators']}, {family['alone']}" if is_known else "–"
 
 
 def _circumstances(data: Data) -> str:

@@ -138,7 +138,7 @@ def test_the_page_holds_every_claim_family_and_example(data: Any) -> None:
         assert text.count(f"| {claim.name} | ") == 2
         assert claim.statement in text
     for name in ("paper", "scales"):
-        assert f"## The numbers of {name}" in text
+        assert f"| {name}: robot · program |" in text
         assert f"(img/comparison-{name}.svg)" in text
 
 
