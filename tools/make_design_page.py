@@ -15,8 +15,6 @@ from rooms import SOURCE, Graph, among, direct, gathered, levels, rooms
 
 PAGE = Path(__file__).parents[1] / "docs" / "design.md"
 BEGIN, END = "<!-- rooms: written by tools/make_design_page.py from the imports -->", "<!-- end of rooms -->"
-#: packages whose rooms are drawn as well
-_OPENED = ("campaign", "runtime")
 #: files that belong to no room: plug-ins and `python -m mutabot` begin there
 _DOORS = ("__init__", "__main__")
 
@@ -25,20 +23,8 @@ def picture() -> str:
     """The text between the marks."""
     graph = rooms()
     whole = gathered(graph)
-    lines = ["", "```text", *_drawn(among(whole, (room for room in whole if room not in _DOORS))), "```", ""]
-    for package in _OPENED:
-        lines += [f"Inside `{package}/`:", "", "```text", *_folders(SOURCE / package), "```", ""]
-    return "\n".join(lines)
-
-
-def _folders(folder: Path) -> Iterator[str]:
-    """One line for each folder of a package: the modules in it."""
-    found: dict[str, list[str]] = {}
-    for file in sorted(folder.rglob("*.py")):
-        if file.stem not in _DOORS:
-            found.setdefault(str(file.parent.relative_to(folder)).strip("."), []).append(file.stem)
-    width = max(map(len, found))
-    yield from (f"{name:<{width}}  {', '.join(modules)}" for name, modules in found.items())
+    drawn = _drawn(among(whole, (room for room in whole if room not in _DOORS)))
+    return "\n".join(["", "```text", *drawn, "```", ""])
 
 
 def _listed(folder: Path) -> Iterator[str]:
