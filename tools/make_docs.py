@@ -75,20 +75,9 @@ An operator is a class with a name, a docstring (summary, `Where:`), examples an
 `change(value, context)` changes one value, `magnitudes(quantity)` gives the sizes, one mutant each) or a
 `CommandOperator` (`operators/command.py`: acts on the whole call).
 
-`needs` is a set, such as `frozenset({Need.IDLE})`; `needs_of(subject)` gives needs that differ by subject.
-Where a need is not met, mutants are skipped with the reason:
-
-| need | what the operator gets |
-|---|---|
-| `Need.PLACE` | `call.current`: where the robot is |
-| `Need.SIGN` | a recorded value below zero, so that there is another direction |
-| `Need.IDLE` | `call.idle`: what to answer while the robot does nothing |
-| `Need.CLOCK` | `call.time()`; needs a clock in the vocabulary |
-| `Need.WAIT` | `await call.wait(seconds)`; needs a wait in the vocabulary |
-| `Need.ERROR` | calls that raised in the baseline |
-| `Need.PROGRAM` | calls of the program only, not readings by the tests' checks |
-| `Need.MEMORY` | one middleware for all calls of a test |
-| `Need.COPIES` | also copies of what they write and read, which the program cannot change |
+`needs` is a set of `Need`s (`operators.operator.Need` describes them), such as `frozenset({Need.IDLE})`;
+`needs_of(subject)` gives needs that differ by subject. Where a need is not met, mutants are skipped with the
+reason.
 
 With `does_nothing = True` no call reaches the robot; one that does is an error, never a verdict.
 `family = "…"` makes a family of its own.
