@@ -35,6 +35,10 @@ vocabulary = ["robot.toml"]
 _SHOWN = {"list of texts", "text", "table", "tables, with double brackets", "`true` or `false`"}
 
 
+#: defaults that go without saying
+_NONE = {"none", "`[]`"}
+
+
 def page() -> str:
     """The text of the page."""
     tables = tables_of_ours()
@@ -61,12 +65,13 @@ def _texts_of(model: type[Table], table: str = "") -> Iterator[str]:
     for key, (text, example) in documented(model).items():
         name = f"{table}.{key}" if table else key
         yield from ("", f"{'###' if table else '##'} {name}", "", text, "")
-        values = values_of(schema["properties"][key], schema)
-        told = f"{'' if values in _SHOWN else f'{values}; '}default: {_default(model, key)}"
+        values, default = values_of(schema["properties"][key], schema), _default(model, key)
+        told = [] if values in _SHOWN else [values]
+        told += [] if default in _NONE else [f"default: {default}"]
         if "\n" in example:
-            yield from (f"({told})", "", "```toml", example, "```")
+            yield from (*told, "", "```toml", example, "```")
         else:
-            yield f"`{example}` ({told})"
+            yield f"`{example}`" + (f" ({'; '.join(told)})" if told else "")
 
 
 def documented(model: type[Table]) -> dict[str, tuple[str, str]]:
@@ -133,7 +138,7 @@ def _bounds(schema: Mapping[str, Any]) -> str:
 def _default(model: type[Table], key: str) -> str:
     field = model.model_fields[key]
     if field.is_required():
-        return "none, required"
+        return "none; the key is required"
     if field.default is None:
         return "none"
     if key == "memory":
