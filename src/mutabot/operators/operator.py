@@ -197,7 +197,6 @@ class Example:
         then: values of what it receives after it.
         raises: what the program gets instead of an answer; None if it gets one.
         away: why the operator changes nothing here; empty if it does act.
-        note: one line for the documentation.
         previous: values of the program's call of this operation before this one, wherever it stands.
         waited: seconds of the program's time that pass meanwhile.
         afterwards: values of each call that is made right after the program's next command.
@@ -213,7 +212,6 @@ class Example:
     received: Mapping[str, Value] | None = None
     raises: type[BaseException] | None = None
     away: str = ""
-    note: str = ""
     earlier: tuple[Mapping[str, Value], ...] = ()
     lost: bool = False
     late: float = 0.0

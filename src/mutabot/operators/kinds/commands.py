@@ -36,7 +36,7 @@ class Skip(CommandOperator):
     does_nothing = True
     fault = "do nothing"
     examples = (
-        Example(Subject(GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
+        Example(Subject(GRIP), {"position": 1}, performed=()),
         Example(Subject(_HOME), performed=()),
     )
 
@@ -54,7 +54,7 @@ class Repeat(CommandOperator):
 
     name = "repeat"
     fault = "do it twice"
-    examples = (whole(MOVE_BY, 0.1, 0.1, 0.1, note="do command x: do command x twice"),)
+    examples = (whole(MOVE_BY, 0.1, 0.1, 0.1),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         await proceed(call)
@@ -234,7 +234,7 @@ class _Grip(_Timing):
 
 
 class LateGrip(_Grip):
-    """A gripper command is carried out 0.5 s late, and the program waits for it."""
+    """A gripper command is carried out 0.5 s late, and the program waits for it. Needs a `wait`."""
 
     name = "late-grip"
     needs = frozenset({Need.WAIT, Need.PROGRAM})

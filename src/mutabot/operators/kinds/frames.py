@@ -178,7 +178,6 @@ class BaseForTool(ValuesOperator):
             {"x": 0.1, "y": 0.0, "z": 0.2},
             {"x": 0.0, "y": 0.1, "z": -0.2},
             current=_DOWN,
-            note="the tool looks down, turned by a quarter",
         ),
         unchanged(
             _MOVE_BY,
@@ -263,7 +262,7 @@ class _WrongTcp(ValueOperator):
 
 
 class TcpMissing(_WrongTcp):
-    """The offset of the tool centre point is missing: the flange goes where the tip should."""
+    """The offset of the tool centre point (`tcp`) is missing: the flange goes where the tip should."""
 
     name = "tcp-missing"
     sign = 1.0
@@ -274,7 +273,7 @@ class TcpMissing(_WrongTcp):
 
 
 class TcpDoubled(_WrongTcp):
-    """The offset of the tool centre point is counted twice."""
+    """The offset of the tool centre point (`tcp`) is counted twice."""
 
     name = "tcp-doubled"
     sign = -1.0

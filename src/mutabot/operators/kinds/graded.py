@@ -134,7 +134,8 @@ _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
 
 
 class Offset(NumberOperator):
-    """A commanded or read value is off by a fixed amount in one direction.
+    """A commanded or read value is off by a fixed amount in one direction; an orientation as a whole is
+    turned about one axis of its frame.
 
     Where: every number that is commanded or read, bar waits.
 
@@ -150,7 +151,6 @@ class Offset(NumberOperator):
             [0.0, 0.0, 30.0],
             [0.0, 0.0, 50.0],
             size=("z+", 20.0, "deg"),
-            note="an orientation as a whole is turned further, about one axis of its frame",
         ),
         unchanged(_LIFT, 0.45, "0.55 m is outside the range [0, 0.5]", size=("+", 100.0, "mm")),
     )
@@ -228,7 +228,7 @@ class SensorNoise(NumberOperator):
 
 
 class Drift(NumberOperator):
-    """A reading is off by δ for every second of simulated time since the test began.
+    """A reading is off by δ for every second of simulated time since the test began. Needs a `clock`.
 
     Where: every number that is read, with a clock in the vocabulary.
 

@@ -53,7 +53,8 @@ _COMPONENTS = frozenset({"x", "y", "z"})
 
 
 class Reverse(ValueOperator):
-    """A translation, rotation or speed goes the other way: one component is negated.
+    """A translation, rotation or speed goes the other way: one component is negated; an orientation as a
+    whole is inverted. An angle limited to a full turn stays within it.
 
     Where: written translations, rotations, orientations as a whole, and speeds and ratios with a direction.
 
@@ -69,7 +70,6 @@ class Reverse(ValueOperator):
             _MOVE,
             {"dy": 0.2, "yaw": 0.0},
             {"dy": -0.2, "yaw": 0.0},
-            note="translate forward by δ: translate backwards by δ",
         ),
         changed(_MOVE, -0.9, 0.9),
         changed(
@@ -77,13 +77,10 @@ class Reverse(ValueOperator):
             {"dy": 0.0, "yaw": 80},
             {"dy": 0.0, "yaw": -80},
             quantity="yaw",
-            note="rotate left by θ: rotate right by θ",
         ),
         changed(_MOVE, [0.1, -0.2], [-0.1, 0.2]),
-        changed(_TURN_TO, 90, 270, note="an angle limited to a full turn stays within it"),
-        changed(
-            _ORIENT, [0.0, 0.5, 0.0], [0.0, -0.5, 0.0], note="an orientation as a whole: the inverse rotation"
-        ),
+        changed(_TURN_TO, 90, 270),
+        changed(_ORIENT, [0.0, 0.5, 0.0], [0.0, -0.5, 0.0]),
         changed(_CLIPPED, 1.7, -1.7),
         unchanged(_STEP, 1.7, "−1.7 m is outside the range [−1, 1]"),
         unchanged(_ORIENT, [0.0, math.pi, 0.0], "half a turn the other way is the same orientation"),

@@ -52,8 +52,7 @@ _LATE = 0.5
 
 
 class Dropout(CommandOperator):
-    """A reading drops out: the program gets None, not a number or an exception, as the robot's API gives
-    it.
+    """A reading drops out: the program gets None, not a number or an exception, as its `missing` says.
 
     Where: read quantities whose vocabulary says what a reading gives that is not there: missing.
 
@@ -304,7 +303,7 @@ class ConfusedLabel(_Reading):
 
 
 class LateReading(CommandOperator):
-    """The program gets a reading 0.5 s after it was taken.
+    """The program gets a reading 0.5 s after it was taken. Needs a `wait`.
 
     Where: calls that read and command nothing; the vocabulary says how time passes: wait.
 
@@ -347,7 +346,7 @@ _FEEL = reading("gripper:holding", Kind.FLAG, values=(False, True))
 
 
 class Negate(ValueOperator):
-    """A position, distance or angle is read with the wrong sign.
+    """A position, distance or angle is read with the wrong sign; an orientation as a whole is inverted.
 
     Where: read positions, distances, angles and orientations.
 
@@ -358,13 +357,12 @@ class Negate(ValueOperator):
     kinds = MEASURED - PLAIN
     of_written = False
     examples = (
-        changed(LOCATE, 0.55, -0.55, note="distance value is x: distance value is −x"),
+        changed(LOCATE, 0.55, -0.55),
         changed(_IN_MM, 12, -12),
         changed(
             _LOOK,
             [0.8, 0.6, 0.0, 0.0],
             [0.8, -0.6, 0.0, 0.0],
-            note="an orientation as a whole: the inverse rotation",
         ),
         unchanged(LOCATE, 0.0, "a zero has no sign"),
         unchanged(LOCATE, {}, "the reading has no such part this time"),
@@ -397,7 +395,6 @@ class Noise(ValueOperator):
             0.55,
             # the first draw of Random(1).gauss(0, 1), the generator the examples are run with
             0.55 + Random(1).gauss(0.0, 1.0),
-            note="distance value is x: distance value is x + noise",
         ),
         unchanged(_NOISY, None, "there is no number to disturb"),
     )

@@ -164,7 +164,6 @@ class WrongName(_Setting):
             "/target",
             _GLOBAL,
             quantity="name",
-            note="the node stands in the namespace /arm",
         ),
         unchanged(CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
         unchanged(SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
