@@ -89,7 +89,6 @@ class LogicalReplacement(_BinaryOperator):
             "z = x ^ y\n",
             each("z = {}\n", "x & y, x | y, x, y"),
             kinds={"x ^ y": "set"},
-            note="sets and flags as well",
         ),
         TextExample(
             "Speed = int | float\n", kinds={"int | float": "types:UnionType"}, note="a type is no value"

@@ -21,7 +21,6 @@ class ConditionalReplacement(ConventionalOperator):
         TextExample(
             "z = a or b or c\n",
             each("z = {}\n", "a and b or c, a or b and c, b or c, a or c, a or b, False, True"),
-            note="a longer condition: one operator after the other, one operand less",
         ),
         TextExample("z = x & y\n", note="bitwise operators are LOR's"),
     )
@@ -102,7 +101,6 @@ class RelationalReplacement(ConventionalOperator):
                 "z = {}\n",
                 "a <= b in c, a > b in c, a >= b in c, a == b in c, a != b in c, a < b not in c, False, True",
             ),
-            note="a chain stays a chain: each value is computed once, and only if it is needed",
         ),
         TextExample("z = x is None\n", ("z = x is not None\n", "z = False\n", "z = True\n")),
         TextExample(

@@ -29,7 +29,6 @@ class VariableReplacement(ConventionalOperator):
             ("lid.lift()\n",),
             variables={"box": ("lid",)},
             kinds={"box": "cell:Part"},
-            note="objects of the same class as well",
         ),
         TextExample("move(x)\n", note="no other variable had its type"),
         TextExample("x = 1\n", variables={"x": ("y",)}, note="only where a variable is read"),
