@@ -85,12 +85,8 @@ runs in each of ten rounds take {baselines}.
 - Assumed: a worker dies once in 24 hours, is missed after 5 s, and its unit runs again; all workers are
   equally fast.
 
-```text
-{made_by}
-```
-
-`python benchmarks/cluster_simulation.py` then simulates and stores `benchmarks/scaling.json`; `python
-tools/make_scaling_page.py` writes this page.
+`python benchmarks/cluster_simulation.py` simulates and stores `benchmarks/scaling.json`, which says how the
+costs were measured; `python tools/make_scaling_page.py` writes this page.
 """
 
 
@@ -207,7 +203,6 @@ def page(data: Mapping[str, Any]) -> str:
         slowest=f"{max(costs['spread']):.2f}",
         replay_ms=f"{1e3 * costs['controller']['replay']:.1f}",
         fork_ms=f"{1e3 * costs['controller']['fork']:.1f}",
-        made_by=data["made_by"],
     )
 
 
