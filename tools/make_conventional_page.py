@@ -42,7 +42,6 @@ functions; any other alternative counts as having acted when it is reached.
 - Alternatives of a type that the value never had in the baseline, listed with the reason.
 - Expressions of more than 1000 characters, and, before Python 3.12, expressions that stand twice in one
   f-string.
-- Programs that are not imported (`runpy.run_path`, own processes).
 - What is another operator's (a literal's sign is UOI's, not ABS's) or changes nothing: plus signs, equal
   neighbouring characters.
 - Plain assignments for ASR: the name may have no value yet.
