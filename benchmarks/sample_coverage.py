@@ -2,8 +2,8 @@
 
     python benchmarks/sample_coverage.py [--campaigns 2000]
 
-Prints the table of docs/statistics.md. A row is a number of mutants and the share of them that is drawn; a
-column is a kind of campaign. Each cell gives the lowest and the highest coverage over several true scores,
+Prints the table that docs/statistics.md sums up. A row is a number of mutants and the share of them that is
+drawn; a column is a kind of campaign. Each cell gives the lowest and the highest coverage over several true scores,
 and the range of the intervals' mean half widths. Samples that give no interval, with fewer than two valid
 mutants, do not count.
 """

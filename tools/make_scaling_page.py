@@ -232,7 +232,7 @@ def _size_table(found: Mapping[str, Any]) -> str:
     rows = [
         (
             one["name"], f"{one['units']:,}", f"{one['efficiency']:.2f}", percent(one["shares"]["originals"]),
-            percent(one["shares"]["waited"]), percent(one["shares"]["idle"]), percent(one["shares"]["lost"]),
+            percent(one["shares"]["idle"]),
         )
         for one in found["sizes"]
     ]  # fmt: skip
@@ -241,9 +241,7 @@ def _size_table(found: Mapping[str, Any]) -> str:
         "units",
         "efficiency",
         "original's runs",
-        "controller",
         "idle at the end",
-        "dead workers",
     )
     return table(heads, rows)
 
