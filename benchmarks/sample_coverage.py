@@ -3,9 +3,9 @@
     python benchmarks/sample_coverage.py [--campaigns 2000]
 
 Prints the table that docs/statistics.md sums up. A row is a number of mutants and the share of them that is
-drawn; a column is a kind of campaign. Each cell gives the lowest and the highest coverage over several true scores,
-and the range of the intervals' mean half widths. Samples that give no interval, with fewer than two valid
-mutants, do not count.
+drawn; a column is a kind of campaign. Each cell gives the lowest and the highest coverage over several true
+scores, and the range of the intervals' mean half widths. Samples that give no interval, with fewer than two
+valid mutants, do not count.
 """
 
 from __future__ import annotations

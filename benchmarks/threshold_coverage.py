@@ -2,10 +2,10 @@
 
     python benchmarks/threshold_coverage.py [--campaigns 2000] [--whole]
 
-Prints a table that docs/thresholds.md sums up, with the search that campaigns use, or with whole ladders. A row is a
-way in which the thresholds of rounds differ; a column is a number of rounds. Each cell gives the coverage
-over all places of the median between two magnitudes, in brackets the lowest of any place, the median width,
-upper end / lower end, and the runs per round. The last row is what is promised.
+Prints a table that docs/thresholds.md sums up, with the search that campaigns use, or with whole ladders. A
+row is a way in which the thresholds of rounds differ; a column is a number of rounds. Each cell gives the
+coverage over all places of the median between two magnitudes, in brackets the lowest of any place, the
+median width, upper end / lower end, and the runs per round. The last row is what is promised.
 """
 
 from __future__ import annotations
