@@ -56,7 +56,7 @@ class Rule(ABC):
         name: how ids, reports and selections call it.
         family: the family of its mutants (``mutabot.families``), or one of its own for a plug-in.
         summary: one sentence for the documentation: what the docstring says first, unless it is given.
-        examples: worked examples; they are tests and documentation at once.
+        examples: worked examples; they are tests.
         where: where it applies, in the words of vocabularies.
         rationale: the bug class that it stands for and the evidence of it, in one sentence, which
             ``{timing}`` and the like stand for; may be empty for those that are published.
