@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from hashlib import blake2b
 
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
@@ -39,6 +40,7 @@ class CampaignEvidence:
     problems: dict[str, None] = field(default_factory=dict)
     is_lost: bool = False
     _noise: dict[tuple[int, str], Mapping[str, float]] = field(default_factory=dict)
+    _digests: dict[tuple[int, str], bytes] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._original = lru_cache(_HELD)(self._read_original)
@@ -58,13 +60,14 @@ class CampaignEvidence:
                 if repetition:
                     self.add_again(round, end)
                 elif end.recording is not None:
+                    self._digests[round, end.test] = _digest(end.recording)
                     self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, bytes_of(end.recording))
                     self.problems.update(dict.fromkeys(_seen(end).recording.problems))
 
     def add_again(self, round: int, end: TestEnd) -> None:
         """A further run of the original: how far things are apart without any fault."""
-        original = self._original(round, end.test)
-        if original is not None and end.recording is not None:
+        original = self._original(round, end.test) if self._is_new(round, end) else None
+        if original is not None:
             found = noise_between(original, _seen(end))
             if any(found.values()):
                 self._noise[round, end.test] = found
@@ -91,7 +94,7 @@ class CampaignEvidence:
         found = []
         self.recordings.forget(mutant, round)
         for end in ends:
-            original = self._original(round, end.test)
+            original = self._original(round, end.test) if self._is_new(round, end) else None
             if original is None or end.recording is None:
                 continue
             noise, data = self._noise.get((round, end.test)), bytes_of(end.recording)
@@ -102,6 +105,10 @@ class CampaignEvidence:
                 self.recordings.add(mutant, round, end.test, rank, data)
                 found.append(one)
         return tuple(sorted(found, key=lambda one: -one.worst))
+
+    def _is_new(self, round: int, end: TestEnd) -> bool:
+        """Whether a test has a recording that is not, to the letter, that of the original."""
+        return end.recording is not None and _digest(end.recording) != self._digests.get((round, end.test))
 
     def _read_original(self, round: int, test: str) -> RecordedPaths | None:
         data = self.recordings.data(ORIGINAL, round, test)
@@ -132,6 +139,10 @@ def recorded(request: Request, progress: Progress) -> Iterator[CampaignEvidence 
 def without_recording(end: TestEnd) -> TestEnd:
     """The end of a test for the journal, which has recordings beside it, and what outcomes depend on."""
     return replace(end, recording=None, executed=None)
+
+
+def _digest(recording: str) -> bytes:
+    return blake2b(recording.encode(), digest_size=16).digest()
 
 
 def _seen(end: TestEnd) -> RecordedPaths:

@@ -48,6 +48,19 @@ def shallow(value: Any) -> dict[str, Any]:
     return {name: item for name in names if (item := getattr(value, name)) is not None}
 
 
+def sparse(value: Any) -> dict[str, Any]:
+    """The fields of a dataclass that are neither None nor the very object that they are by default."""
+    kind: Any = type(value)
+    given = ((name, getattr(value, name), default) for name, default in _defaults(kind))
+    return {name: item for name, item, default in given if item is not None and item is not default}
+
+
+@cache
+def _defaults(kind: type[Any]) -> tuple[tuple[str, Any], ...]:
+    """The fields of a dataclass with their defaults."""
+    return tuple((field.name, field.default) for field in fields(kind))
+
+
 @cache
 def _names(kind: type[Any]) -> tuple[str, ...] | None:
     """The fields of a dataclass; None for any other type."""

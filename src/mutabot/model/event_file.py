@@ -15,7 +15,7 @@ import signal
 from collections.abc import Callable
 from typing import Any
 
-from mutabot.model.codec import is_too_deep, shallow, to_json
+from mutabot.model.codec import is_too_deep, sparse, to_json
 from mutabot.model.events import Event, Untrusted, event_from_data
 
 #: bytes of a line; the longest are recordings
@@ -30,7 +30,7 @@ def sealed(event: Event, number: int, name: str, key: str, default: Callable[[An
 
     ``default`` gives data for what JSON does not know.
     """
-    text = to_json({"type": type(event).__name__, **shallow(event)}, default)
+    text = to_json({"type": type(event).__name__, **sparse(event)}, default)
     return b"%s %d %s\n" % (seal(text, number, name, key), number, text)
 
 

@@ -144,6 +144,11 @@ class TimeUsed:
         """The time of these processes, and of those that they start, begins."""
         return cls(monotonic(), accounts_of(processes), shortage())
 
+    @property
+    def age(self) -> float:
+        """Seconds since then."""
+        return monotonic() - self.began
+
     def left(self, limit: float, processes: Iterable[int]) -> float:
         """Seconds until so many are used up, if the processes, and those below them, are not held up again.
 

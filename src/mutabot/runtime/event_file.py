@@ -84,6 +84,7 @@ class EventFile:
         Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
         """
         os.close(self._file)
+        self._bell = None  # what a fork tells is read once its parent tells that it has ended
         self.name = f"{self.name}.{self.forks}"
         self._last = self.forks = 0
         self._open()

@@ -144,8 +144,8 @@ class ExecutedUnits:
         if event == "open":
             path, _, flags = arguments
             if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):
-                name = self._name(os.fsdecode(path))
-                if name is not None and not _is_by_us() and not (name.endswith(".py") and _is_import()):
+                name = None if _is_by_us() else self._name(os.fsdecode(path))
+                if name is not None and not (name.endswith(".py") and _is_import()):
                     (self._test if self._in_call else self._common).add((name, WHOLE))
         elif event == "import" and arguments[0] in _SPAWNERS:
             self._common.add((ALL_FILES, WHOLE))

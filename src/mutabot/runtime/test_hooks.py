@@ -39,6 +39,9 @@ from mutabot.runtime.test_end import (
 
 #: parts that are looked at in what a fixture gives
 _MOST = 1000
+#: seconds for which the accounts that the kernel keeps of this process need not be read again: short tests come
+#: by the thousand
+_RECENT = 0.05
 
 
 class TestHooks:
@@ -77,10 +80,11 @@ class TestHooks:
         self._started = (0.0, 0.0)
         self._used = TimeUsed.from_now()
 
-    def start_clocks(self) -> None:
-        """Count from now on what the test takes."""
+    def start_clocks(self, *, is_new: bool = False) -> None:
+        """Count from now on what the test takes; ``is_new``: in a process that was just forked."""
         self._started = (perf_counter(), process_time())
-        self._used = TimeUsed.from_now([os.getpid()])
+        if is_new or self._used.age > _RECENT:
+            self._used = TimeUsed.from_now([os.getpid()])
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:

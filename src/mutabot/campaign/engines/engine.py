@@ -340,11 +340,13 @@ class _ForkedRun:
         run: what the judge gets.
         ends: its tests that have ended.
         forked: number of the test in which it was forked, as far as it has told; -1: before any.
+        is_decided: whether one of them has decided about the mutant.
     """
 
     run: Run
     ends: dict[str, events.TestEnd] = field(default_factory=dict)
     forked: int | None = None
+    is_decided: bool = False
 
 
 class _ForkParent:
@@ -494,6 +496,7 @@ class _ForkParent:
         if fork.forked is None:
             fork.forked = -1 if event.is_early else self._numbers[test]
         fork.ends[test] = event.end
+        fork.is_decided |= event.end.is_decided
         if event.shared is not None:
             fork.run.shared = (fork.run.shared or 0.0) + event.shared
         if event.end.outcome != "failed":
@@ -525,14 +528,13 @@ class _ForkParent:
         """Yield the mutant's outcome if all that it depends on is known."""
         fork = self._open[mutant]
         is_dead = fork.run.death is not None
-        is_decided = any(end.is_decided for end in fork.ends.values())
         is_over = is_dead or fork.run.exit_code is not None
-        if not is_over and (not is_decided or self._campaign.request.every_test):
+        if not is_over and (not fork.is_decided or self._campaign.request.every_test):
             return
         died_in = fork.run.death.test if fork.run.death is not None else None
         forked = fork.forked if fork.forked is not None else self._numbers.get(died_in or "", -1)
         # a survivor is compared with the original in all tests: those that the parent runs later, too
-        last = forked if is_decided or is_dead else len(self._tests) - 1
+        last = forked if fork.is_decided or is_dead else len(self._tests) - 1
         if last < len(self._own_ends):
             yield self._judged(fork, max(0, forked))
         else:
