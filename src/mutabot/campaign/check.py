@@ -64,10 +64,12 @@ def _report(
     flaky, nondeterministic = baseline.unstable, sorted(baseline.nondeterministic)
     clock = request.vocabulary.clock
     never_ticks = clock is not None and all(end.simulated is None for end in baseline.ends.values())
+    passing = f"{len(tests)} {'passes' if len(tests) == 1 else 'pass'}"
+    rounds = f"{request.rounds} round{'s' if request.rounds != 1 else ''}"
     lines = [
-        f"tests     {len(tests)} pass in {request.rounds} rounds{skipped}",
+        f"tests     {passing} in {rounds}{skipped}",
         f"sites     {len({place.site for place in baseline.places})} reached",
-        f"controls  {controls} ended as they must",
+        f"controls  {controls} passed",
         f"mutants   {len(mutants)}{selected}, {left_out} left out because they {why}",
         *(f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in flaky.items()),
         *(

@@ -236,7 +236,7 @@ def _run(
     if evidence is not None:
         evidence.begin([(*one.task.key, one.ends) for one in results], whole.mutants)
     for (round, test), reason in baseline.unstable.items():
-        progress.note(f"set aside in round {round + 1}: {test} ({reason})")
+        progress.note(f"excluded in round {round + 1}: {test} ({reason})")
     refuse_flaky(request, baseline)
     campaign = decide(campaign, plan.mutants, journal, decided)
     after = Snapshot.take(request.root, before)

@@ -152,7 +152,7 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
     """The outcome of a mutant that no test can judge in this round."""
     aside = baseline.missing_judges(round, mutant)
     if aside:
-        text = f"all tests that reach the site are set aside in this round, such as {aside[0]}"
+        text = f"all tests that reach the site are excluded in this round, such as {aside[0]}"
         return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
     text = "no test reaches the site in this round"
     return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=text, executed={})
@@ -206,9 +206,9 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
     verdict, end, message = _ruling(run, baseline.exits[run.round])
     aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
     if aside:
-        others = f"{in_short(aside, 1)}, set aside in this round, might not"
+        others = f"{in_short(aside, 1)}, excluded in this round, might have failed"
         verdict = Verdict.UNSTABLE
-        message = f"the tests that can be relied on let it through; {others}"
+        message = f"all reliable tests passed; {others}"
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
     died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)

@@ -39,8 +39,8 @@ from mutabot.runtime.test_end import (
 
 #: parts that are looked at in what a fixture gives
 _MOST = 1000
-#: seconds for which the accounts that the kernel keeps of this process need not be read again: short tests come
-#: by the thousand
+#: seconds for which the accounts that the kernel keeps of this process need not be read again: short tests
+#: come by the thousand
 _RECENT = 0.05
 
 

@@ -85,9 +85,9 @@ def test_a_test_that_fails_in_one_round_is_set_aside_there_and_plain_pytest_fail
     seed, bad = seed_with_one_failing_round(2)
     write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
     found, progress = campaign(tmp_path, engine=engine, rounds=2, seed=seed)
-    (line,) = [line for line in progress.lines if line.startswith("set aside")]
+    (line,) = [line for line in progress.lines if line.startswith("excluded")]
     assert line.startswith(
-        f"set aside in round {bad + 1}: {CHECKS} (fails on the unmutated program with seed "
+        f"excluded in round {bad + 1}: {CHECKS} (fails on the unmutated program with seed "
     )
     assert f"seed {derive(seed, bad, CHECKS)}: drew (" in line
     command = f"MUTABOT_ROUND={bad + 1} MUTABOT_CAMPAIGN_SEED={seed} pytest -o pythonpath=. {CHECKS}"
@@ -96,7 +96,7 @@ def test_a_test_that_fails_in_one_round_is_set_aside_there_and_plain_pytest_fail
     others = {round: outcome.verdict for round, outcome in found.items() if round != bad}
     assert others == dict.fromkeys(set(range(2)) - {bad}, Verdict.KILLED)
     assert found[bad].verdict is Verdict.UNSTABLE
-    assert (found[bad].message or "").startswith("the tests that can be relied on let it through; tests/")
+    assert (found[bad].message or "").startswith("all reliable tests passed; tests/")
     if engine == "fork":
         check_with_plain_pytest(tmp_path, seed, bad, line)
 
@@ -148,7 +148,7 @@ def test_a_test_that_fails_by_chance_in_the_only_round_is_flaky(tmp_path: Path, 
     found, progress = campaign(tmp_path, engine="fork", rounds=1)
     assert found[0].verdict is Verdict.KILLED
     assert (
-        "set aside in round 1: tests/test_other.py::test_flaky (failed and passed in equal runs)"
+        "excluded in round 1: tests/test_other.py::test_flaky (failed and passed in equal runs)"
         in progress.lines
     )
 
@@ -161,7 +161,7 @@ def test_a_site_that_only_a_failing_test_reaches_is_not_called_uncovered(
     write_project(tmp_path, MISSION, tests, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
     found, _ = campaign(tmp_path, rounds=2)
     assert found[1].verdict is Verdict.UNSTABLE
-    assert f"set aside in this round, such as {CHECKS}" in (found[1].message or "")
+    assert f"excluded in this round, such as {CHECKS}" in (found[1].message or "")
 
 
 @pytest.mark.parametrize(

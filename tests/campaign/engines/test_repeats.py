@@ -132,7 +132,7 @@ def test_more_runs_of_the_baseline_find_a_test_that_fails_at_random(tmp_path: Pa
     more = TESTS[TESTS.index("    def") :].replace("test_flaky", "test_moves")
     write_project(tmp_path, MISSION, TESTS + more, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
     _, _, progress = campaign(tmp_path, only=("*:reverse",), baseline=3)
-    assert any(f"set aside in round 1: {FLAKY}" in one for one in progress.lines)
+    assert any(f"excluded in round 1: {FLAKY}" in one for one in progress.lines)
 
 
 # What is in doubt

@@ -278,8 +278,8 @@ class Baseline(Original):
         answers: what these calls returned.
         reaching: (round, place) to the tests that reach it, fastest first.
         observations: (round, test) to what is compared with a mutant's.
-        unstable: tests set aside as flaky, with the reason, by (round, test).
-        flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
+        unstable: tests excluded as flaky, with the reason, by (round, test).
+        flaky_reaching: (round, place) to the tests that reach it but are excluded in this round.
         exits: per round, the exit code of the suite on the original.
         probe_intervals: after every how many commands probes are read along the way, by round and test.
         refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
@@ -418,7 +418,7 @@ class Baseline(Original):
         return [test for test in self.tests[round] if self.ends[round, test].outcome != "skipped"]
 
     def missing_judges(self, round: int, mutant: Mutant) -> list[str]:
-        """Tests that would judge a mutant, were they not set aside in this round.
+        """Tests that would judge a mutant, were they not excluded in this round.
 
         A test that fails may stop short of a place that it reaches in other rounds.
         """

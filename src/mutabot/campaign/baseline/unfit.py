@@ -63,7 +63,7 @@ def note_fit(baseline: Baseline, vocabulary: Vocabulary, progress: Progress) -> 
             count = len({end.test for end in ends})
             progress.note(
                 f"{probe.target} cannot be read in {len(blind)} of {count} tests, such as {test} ({why}): "
-                "what survives there is not called indistinguishable"
+                "survivors there cannot be classified as indistinguishable"
             )
     if vocabulary.clock is not None and ends and all(end.simulated is None for end in ends):
         progress.note(

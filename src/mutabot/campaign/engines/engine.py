@@ -162,7 +162,7 @@ def _forked_controls(campaign: Campaign, mutants: Collection[Mutant]) -> dict[st
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Unhandled]:
-    """Run the controls alone. Returns how many ended as they must, and what ``fork`` leaves.
+    """Run the controls alone. Returns how many passed, and what ``fork`` leaves.
 
     Raises ControlError for a control that ends wrongly.
     """
@@ -582,7 +582,7 @@ def clear_up(campaign: Campaign, suspects: Iterable[tuple[int, str]]) -> None:
         for test in by_round[round]:
             if test not in passed:
                 baseline.set_aside(round, test, "passed in the baseline, but not in equal runs")
-                progress.note(f"set aside as flaky in round {round + 1}: {test}")
+                progress.note(f"excluded as flaky in round {round + 1}: {test}")
             else:
                 baseline.doubt(test)
                 progress.note(
