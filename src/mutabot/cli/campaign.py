@@ -40,10 +40,15 @@ def init(
         list[Path] | None,
         typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
     ] = None,
+    template: tuple[str, str] | None = None,
 ) -> None:
-    """Draft a configuration and a vocabulary from one run of the tests."""
-    from mutabot.init import propose  # noqa: PLC0415  # it loads much
+    """Draft a configuration and a vocabulary from one run of the tests, or start a project."""
+    from mutabot.init import propose, start  # noqa: PLC0415  # it loads much
 
+    if template is not None:
+        for line in start(context.obj, program or [], *template):
+            echo(line)
+        return
     for line in propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True)):
         echo(line)
 

@@ -116,28 +116,31 @@ class Running(Planning, total=False):
 
 
 _DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False}
-#: a parameter of this name stands for the options of all executors
-_EXECUTOR = "executor"
+#: parameters that stand for the options of all parts of a kind; and what is said when two are chosen
+_OF_PARTS = {
+    "executor": ("executors", "a campaign has one executor"),
+    "template": ("templates", "a project starts from one template"),
+}
 
 
 def with_options(function: Callable[..., object]) -> Callable[..., object]:
     """Make a command of which typer can read the options.
 
     Its ``**given: Unpack[…]`` becomes the options of a class above. A parameter ``executor`` becomes an
-    option for each executor, and takes which was chosen: its name and the option's value.
+    option for each executor, and takes which was chosen: its name and the option's value. So does a parameter
+    ``template``.
     """
     own = signature(function, eval_str=True)
-    found = brought("executors", Running.__annotations__) if _EXECUTOR in own.parameters else {}
-    names = {f"{_EXECUTOR}_{name.replace('-', '_')}": part for name, part in found.items()}
+    kind = next((name for name in _OF_PARTS if name in own.parameters), "")
+    found = brought(_OF_PARTS[kind][0], Running.__annotations__) if kind else {}
+    names = {f"{kind}_{name.replace('-', '_')}": part for name, part in found.items()}
 
     @wraps(function)
     def command(**values: Any) -> object:
         chosen = [(part.name, value) for key, part in names.items() if (value := values.pop(key)) is not None]
         if len(chosen) > 1:
-            raise UsageError(
-                f"{' and '.join(f'--{name}' for name, _ in chosen)}: a campaign has one executor"
-            )
-        return function(**values, **({_EXECUTOR: chosen[0]} if chosen else {}))
+            raise UsageError(f"{' and '.join(f'--{name}' for name, _ in chosen)}: {_OF_PARTS[kind][1]}")
+        return function(**values, **({kind: chosen[0]} if chosen else {}))
 
     parameters = list(_parameters(own.parameters.values(), names))
     changed: Any = command
@@ -146,14 +149,14 @@ def with_options(function: Callable[..., object]) -> Callable[..., object]:
     return command
 
 
-def _parameters(own: Iterable[Parameter], executors: Mapping[str, ExtensionPart]) -> Iterator[Parameter]:
+def _parameters(own: Iterable[Parameter], parts: Mapping[str, ExtensionPart]) -> Iterator[Parameter]:
     for one in own:
         if one.kind is one.VAR_KEYWORD:
             (options,) = get_args(one.annotation)
             for name, hint in get_type_hints(options, include_extras=True).items():
                 yield Parameter(name, one.KEYWORD_ONLY, default=_DEFAULTS.get(name), annotation=hint)
-        elif one.name != _EXECUTOR:
+        elif one.name not in _OF_PARTS:
             yield one.replace(kind=one.KEYWORD_ONLY)
-    for key, part in executors.items():
+    for key, part in parts.items():
         option = Option(f"--{part.name}", metavar=part.metavar, help=part.help)
         yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])

