@@ -28,6 +28,7 @@ def run_tests(folder: Path) -> None:
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.usefixtures("plugins")
 @pytest.mark.parametrize("name", KNOWN)
 def test_a_project_for_a_known_robot_passes_its_own_tests(tmp_path: Path, name: str) -> None:
     robot_named(name)
@@ -44,6 +45,7 @@ def test_a_project_needs_no_vocabulary_of_its_own(tmp_path: Path) -> None:
     assert load(configuration.vocabulary, configuration.root).operations
 
 
+@pytest.mark.usefixtures("plugins")
 @pytest.mark.parametrize(
     ("package", "file", "home"),
     [
