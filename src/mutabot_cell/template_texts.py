@@ -105,8 +105,8 @@ def test_the_box_is_carried_to_its_place(new_cell, mutabot_seed):
 
 
 def test_where_the_box_cannot_be_gripped_the_program_says_so(new_cell, mutabot_seed):
-    small = Box(edge=0.004)
-    cell = new_cell(mutabot_seed, robot=robot(), scene=Scene(boxes=(small,)))
+    small = Box(size=(0.004, 0.004, 0.004))
+    cell = new_cell(mutabot_seed, robot=robot(), scene=Scene(parts=(small,)))
 
     assert not program.run(cell, *PLACE)
 '''
@@ -141,7 +141,7 @@ WITHIN = 0.002
 
 
 def test_the_tool_goes_up_and_comes_back(new_cell, mutabot_seed):
-    cell = new_cell(mutabot_seed, robot=robot(), scene=Scene(fixtures=(), marks=(), boxes=()))
+    cell = new_cell(mutabot_seed, robot=robot(), scene=Scene(fixtures=(), marks=(), parts=()))
     start = cell.sensors.tool_pose()
     highest = [start.z]
     cell.simulation.after_tick.append(lambda: highest.append(cell.truth.tool_position().z))
