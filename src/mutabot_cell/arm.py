@@ -71,7 +71,7 @@ class Arm:
 
     def commanded_joints(self) -> tuple[float, ...]:
         """Setpoints of the joints, degrees, not wrapped."""
-        return tuple(np.degrees(self._setpoint).tolist())
+        return self._setpoint_degrees()
 
     def commanded_pose(self) -> Pose:
         """Tool pose that the setpoints stand for: relative moves start here."""
@@ -98,6 +98,12 @@ class Arm:
             MotionRefused: an angle is beyond its joint's limit.
             ProtectiveStop: something was in the way.
         """
+        self._move_to_angles(angles, speed)
+
+    def _setpoint_degrees(self) -> tuple[float, ...]:
+        return tuple(np.degrees(self._setpoint).tolist())
+
+    def _move_to_angles(self, angles: Sequence[float], speed: float) -> None:
         _check_numbers("angles", angles, len(self._setpoint))
         _check_speed(speed)
         self._check_ready()

@@ -66,7 +66,7 @@ class Sensors:
 
     def joint_angles(self) -> tuple[float, ...]:
         """Measured joint angles, degrees, each in (-180, 180]."""
-        return tuple(180.0 - (180.0 - angle) % 360.0 for angle in self._encoders())
+        return self._wrapped_encoders()
 
     def box_position(self, name: str | None = None) -> Position:
         """Middle of the bottom face of a box as the camera sees it; without a name, of the first box.
@@ -143,6 +143,9 @@ class Sensors:
         start = data.site_xpos[self._robot.site] + self._palm * axis
         found = mujoco.mj_ray(self._simulation.model, data, start, axis, SOLID, 1, self._own_body, self._geom)
         return DISTANCE_RANGE[1] if found < 0 else float(found)
+
+    def _wrapped_encoders(self) -> tuple[float, ...]:
+        return tuple(180.0 - (180.0 - angle) % 360.0 for angle in self._encoders())
 
     def _encoders(self) -> tuple[float, ...]:
         """One reading of all encoders per tick, with noise, degrees, not wrapped."""

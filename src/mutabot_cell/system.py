@@ -13,6 +13,7 @@ from .robot import Robot
 from .scene import Scene
 from .sensors import Sensors
 from .simulation import Simulation
+from .six_joints import SixJointArm, SixJointSensors
 from .suction import Suction
 
 
@@ -35,7 +36,8 @@ class RobotSystem:
         grip_force: float | None,
         finger_speed: float | None,
     ) -> None:
-        self.arm = Arm(simulation, robot)
+        has_six = len(robot.model.joints) == 6
+        self.arm = SixJointArm(simulation, robot) if has_six else Arm(simulation, robot)
         self._gripper: Gripper | None = None
         self._suction: Suction | None = None
         effector = None if robot.model.tool is None else robot.model.tool.effector
@@ -45,7 +47,8 @@ class RobotSystem:
             self._suction = Suction(simulation, robot, effector, noise)
             self.arm.explained.append(self._suction.arm_torque)
         self.force_sensor = ForceSensor(simulation, robot, noise)
-        self.sensors = Sensors(simulation, robot, self.arm.kinematics, noise, scene, numbers)
+        sensors = SixJointSensors if has_six else Sensors
+        self.sensors = sensors(simulation, robot, self.arm.kinematics, noise, scene, numbers)
         self._name = robot.model.name
 
     @property

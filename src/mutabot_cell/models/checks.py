@@ -57,7 +57,7 @@ def check_chain(chain: Sequence[mujoco.MjsBody], path: _Path) -> list[mujoco.Mjs
             raise BadModel(
                 f"a joint of {path} has no name: add name=... to it, in body {joint.parent.name!r}"
             )
-    if not 4 <= len(joints) <= 8:
+    if len(joints) not in (6, 7):
         raise BadModel(
             f"{len(joints)} joints lie between base and tool site of {path}; an arm has six or seven: "
             "is the site on the last link?"

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
+from types import MethodType
 
 import mujoco
 import numpy as np
 import pytest
 
+from mutabot.config.vocabulary import load
+from mutabot.model import Operation
 from mutabot_cell import BadArgument, Cell, Limits, MotionRefused, Pose, ProtectiveStop, RobotModel, Scene
 from mutabot_cell.arm import Arm
 from mutabot_cell.geometry import pose_of, rotation_from_euler
@@ -141,6 +145,19 @@ def pick(cell: Cell) -> None:
     cell.arm.move_to(Pose(box.x, box.y, height + 0.12, *angles))
     cell.arm.move_to(Pose(box.x, box.y, height, *angles))
     cell.gripper.command(1, wait=True)
+
+
+def test_the_vocabulary_describes_as_many_joints_as_the_arm_has(robot: RobotModel) -> None:
+    cell = Cell(1, robot=robot, scene=EMPTY)
+    operations = {one.target: one for one in load(["cell"], Path()).operations}
+
+    def of(method: MethodType) -> Operation:
+        return operations[f"{method.__module__}:{method.__qualname__}"]
+
+    count = len(robot.joints)
+    assert len(of(cell.arm.move_joints).arguments) == count
+    assert len(of(cell.arm.commanded_joints).result) == count == len(cell.arm.commanded_joints())
+    assert len(of(cell.sensors.joint_angles).result) == count == len(cell.sensors.joint_angles())
 
 
 def test_home_and_tool_are_those_of_the_files_keyframe() -> None:

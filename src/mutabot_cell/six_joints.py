@@ -1,0 +1,31 @@
+"""What a robot with six joints has of its own: calls whose values are six.
+
+The vocabulary says what each joint's value means, so calls with six values and with seven are different ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .arm import Arm
+from .sensors import Sensors
+
+
+class SixJointArm(Arm):
+    """An arm with six joints."""
+
+    def commanded_joints(self) -> tuple[float, ...]:
+        """Setpoints of the six joints, degrees, not wrapped."""
+        return self._setpoint_degrees()
+
+    def move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> None:
+        """Move all joints to `angles` (six, degrees) at once; see `Arm.move_joints`."""
+        self._move_to_angles(angles, speed)
+
+
+class SixJointSensors(Sensors):
+    """The sensors of a robot with six joints."""
+
+    def joint_angles(self) -> tuple[float, ...]:
+        """Measured angles of the six joints, degrees, each in (-180, 180]."""
+        return self._wrapped_encoders()
