@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from os import PathLike
 from types import TracebackType
 
 from mutabot_cell.models.kinova import gen3
@@ -169,6 +170,30 @@ class Cell:
         self.feed = tell_of(self.simulation, placed)
         self.monitors = Monitors(self.simulation, self.truth.world)
         _current = weakref.ref(self)
+
+    @classmethod
+    def from_mjcf(
+        cls,
+        path: str | PathLike[str],
+        seed: int = 0,
+        *,
+        robots: Mapping[str, RobotModel],
+        parts: Sequence[str] = (),
+        fixtures: Sequence[str] = (),
+        noise: bool = True,
+    ) -> Cell:
+        """A cell from one file that holds robots and what stands around them.
+
+        Args:
+            path: of the file.
+            seed, noise: as for a cell.
+            robots: by their names; each read from this file, `RobotModel.from_mjcf(path, root=...)`, so that
+                it stands where the file says.
+            parts, fixtures: as for `Scene.from_mjcf`.
+        """
+        return cls(
+            seed, robots=robots, scene=Scene.from_mjcf(path, parts=parts, fixtures=fixtures), noise=noise
+        )
 
     @property
     def gripper(self) -> Gripper:

@@ -5,7 +5,9 @@ Lengths in m, angles in degrees, masses in kg; world frame with z up.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from os import PathLike
 
 from .parts import Box, Part, Triple
 
@@ -83,3 +85,22 @@ class Scene:
     parts: tuple[Part, ...] = field(default_factory=lambda: (Box(),))
     light_barriers: tuple[LightBarrier, ...] = ()
     camera: Triple = CAMERA
+
+    @classmethod
+    def from_mjcf(
+        cls, path: str | PathLike[str], *, parts: Sequence[str] = (), fixtures: Sequence[str] = ()
+    ) -> Scene:
+        """Fixtures and parts from a file in MuJoCo's format; what is not named stays out.
+
+        Args:
+            path: of the file.
+            parts: names of bodies with one shape that collides, a box or a cylinder; they weigh what they
+                weigh there.
+            fixtures: names of bodies or shapes that are boxes. Their friction is the shapes'.
+
+        Raises:
+            BadModel: something is not there, or of another shape.
+        """
+        from .models.scene_file import scene_from_mjcf  # noqa: PLC0415  # it loads MuJoCo
+
+        return scene_from_mjcf(path, parts, fixtures)

@@ -10,6 +10,8 @@ import pytest
 from mutabot_cell import Cell, current
 
 from .conftest import NAMES, file_of, robot_named
+from .test_files import arm
+from .test_scene_file import THINGS
 
 PAGE = (Path(__file__).parents[4] / "docs" / "robots.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
@@ -50,8 +52,16 @@ def test_arm_and_gripper_are_read_from_files(tmp_path: Path, monkeypatch: pytest
     assert cell.truth.opening() == pytest.approx(0.0, abs=0.001)
 
 
+def test_a_whole_cell_is_read_from_one_file(tmp_path: Path) -> None:
+    file = tmp_path / "cell.xml"
+    text = arm().replace('<body name="link 1" pos="0 0 0.2">', '<body name="base" pos="0.2 0 0.5">')
+    file.write_text(text.replace("<worldbody>", f"<worldbody>{THINGS}"), encoding="utf-8")
+    cell = cell_after(BLOCKS[2].replace('"cell.xml"', repr(str(file))))
+    assert {"arm/tool.x", "brick.x", "can.x"} <= set(cell.truth.world())
+
+
 def test_two_robots_run_in_one_cell() -> None:
     robot_named("ur5e")
-    cell = cell_after(BLOCKS[2])
+    cell = cell_after(BLOCKS[3])
     assert cell.truth.opening("right") == pytest.approx(0.0, abs=0.001)
     assert cell.truth.opening("left") > 0.08

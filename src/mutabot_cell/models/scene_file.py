@@ -1,0 +1,91 @@
+"""Scenes from MuJoCo's files: named bodies and shapes become fixtures and parts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from os import PathLike
+
+import mujoco
+
+from mutabot_cell.errors import BadModel
+from mutabot_cell.geometry import Array, euler_from_rotation
+from mutabot_cell.parts import Box, Cylinder, Part, Triple
+from mutabot_cell.scene import Fixture, Scene
+
+from .checks import compiled
+from .loading import names_of, read
+
+_BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
+_Path = str | PathLike[str]
+
+
+def scene_from_mjcf(path: _Path, parts: Sequence[str], fixtures: Sequence[str]) -> Scene:
+    """See `Scene.from_mjcf`."""
+    spec = read(path)
+    model = compiled(spec, path)
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    shapes = {name: _shape_of(spec, model, name, path) for name in (*parts, *fixtures)}
+    return Scene(
+        fixtures=tuple(_fixture(model, data, name, shapes[name], path) for name in fixtures),
+        marks=(),
+        parts=tuple(_part(model, data, name, shapes[name], path) for name in parts),
+    )
+
+
+def _shape_of(spec: mujoco.MjSpec, model: mujoco.MjModel, name: str, path: _Path) -> int:
+    """The number of the one shape of a body, or of a shape, that collides."""
+    if spec.body(name) is not None:
+        body = model.body(name).id
+        found = [
+            geom for geom in range(model.ngeom) if model.geom_bodyid[geom] == body and _touches(model, geom)
+        ]
+        if len(found) != 1:
+            raise BadModel(f"body {name!r} of {path} has {len(found)} shapes that collide; Scene takes one")
+        return found[0]
+    if spec.geom(name) is None:
+        raise BadModel(f"{path} has no body or geom {name!r}; bodies: {names_of(spec.bodies)}")
+    return int(model.geom(name).id)
+
+
+def _touches(model: mujoco.MjModel, geom: int) -> bool:
+    return bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
+
+
+def _fixture(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: _Path) -> Fixture:
+    if model.geom_type[geom] != _BOX:
+        raise BadModel(f"fixture {name!r} of {path} is no box: give it a geom of type box")
+    return Fixture(
+        name,
+        _triple(2 * model.geom_size[geom]),
+        _triple(data.geom_xpos[geom]),
+        tuple(model.geom_rgba[geom].tolist()),
+        float(model.geom_friction[geom, 0]),
+        euler_from_rotation(data.geom_xmat[geom].reshape(3, 3)),
+    )
+
+
+def _part(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: _Path) -> Part:
+    body = int(model.geom_bodyid[geom])
+    mass, size = float(model.body_mass[body]), model.geom_size[geom]
+    if body == 0 or mass <= 0.0:
+        raise BadModel(f"part {name!r} of {path} does not weigh anything: make it a body with a mass (kg)")
+    angles = euler_from_rotation(data.geom_xmat[geom].reshape(3, 3))
+    part: Part
+    if model.geom_type[geom] == _BOX:
+        part = Box(name=name, size=_triple(2 * size), mass=mass, angles=angles)
+    elif model.geom_type[geom] == _CYLINDER:
+        diameter, height = (float(length) for length in 2 * size[:2])
+        part = Cylinder(name=name, diameter=diameter, height=height, mass=mass, angles=angles)
+    else:
+        raise BadModel(
+            f"part {name!r} of {path} is neither a box nor a cylinder: give it such a geom, or use Mesh"
+        )
+    x, y, z = _triple(data.geom_xpos[geom])
+    return replace(part, position=(x, y, z - part.middle_height), rgba=tuple(model.geom_rgba[geom].tolist()))
+
+
+def _triple(values: Array) -> Triple:
+    x, y, z = values.tolist()
+    return x, y, z
