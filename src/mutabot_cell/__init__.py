@@ -48,6 +48,9 @@ from .parts import (
     Mesh as Mesh,
 )
 from .scene import (
+    Belt as Belt,
+)
+from .scene import (
     Fixture as Fixture,
 )
 from .scene import (
@@ -100,6 +103,7 @@ _LAZY = {
 __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "BadArgument",
     "BadModel",
+    "Belt",
     "Box",
     "CellError",
     "ConditionBroken",
