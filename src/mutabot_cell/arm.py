@@ -11,13 +11,17 @@ import numpy as np
 
 from mutabot_cell.models.assembly import compensation_of
 from mutabot_cell.models.options import PHYSICS_STEP
+from mutabot_cell.motion.braking import braked, braked_joints
 from mutabot_cell.motion.feedforward import FeedForward
 from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.motion.line import Line
+from mutabot_cell.motion.online import JointSteps, OnlineMotion
+from mutabot_cell.motion.tracking import Belt, Tracking
 from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
-from .errors import BadArgument, MotionRefused, ProtectiveStop
+from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
 from .geometry import Array, Pose, pose_of, rotation_from_euler
+from .move import Move
 from .robot import Robot
 from .simulation import STEPS_PER_TICK, TICK, Simulation
 
@@ -51,6 +55,11 @@ class Arm:
         self.explained: list[Callable[[], Array]] = []
         self._stream: Array | None = None
         self._streamed = 0
+        self._move: Move | None = None
+        self._online: OnlineMotion | None = None
+        self._tracking: Tracking | None = None
+        self._steps: JointSteps | None = None
+        self._lost: PathLost | None = None
         self._pressed_ticks = 0
         self._first_contact = ("", "", 0.0)
         self._stop: ProtectiveStop | None = None
@@ -74,7 +83,9 @@ class Arm:
         return tuple(np.degrees(self._setpoint).tolist())
 
     def commanded_pose(self) -> Pose:
-        """Tool pose that the setpoints stand for: relative moves start here."""
+        """Tool pose that the setpoints stand for: relative moves start here. In the belt's frame while tracking."""
+        if self._tracking is not None:
+            return pose_of(*self._tracking.pose())
         position, rotation = self.kinematics.tool(self._setpoint)
         return pose_of(position, rotation)
 
@@ -84,8 +95,11 @@ class Arm:
         Raises:
             ProtectiveStop: something was in the way.
         """
-        self._check_ready()
-        self._move_joints(np.array(self._model.home), 1.0)
+        self.start_home().wait()
+
+    def start_home(self) -> Move:
+        """Like `home`, but returns at once."""
+        return self._start_joints(np.array(self._model.home), 1.0)
 
     def move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> None:
         """Move all joints to `angles` (one each, degrees) at once, arriving together.
@@ -98,12 +112,17 @@ class Arm:
             MotionRefused: an angle is beyond its joint's limit.
             ProtectiveStop: something was in the way.
         """
+        self.start_move_joints(angles, speed=speed).wait()
+
+    def start_move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> Move:
+        """Like `move_joints`, but returns at once."""
         _check_numbers("angles", angles, len(self._setpoint))
         _check_speed(speed)
-        self._check_ready()
-        self._move_joints(np.radians(np.array(angles, dtype=float)), speed)
+        return self._start_joints(np.radians(np.array(angles, dtype=float)), speed)
 
-    def _move_joints(self, target: Array, speed: float) -> None:
+    def _start_joints(self, target: Array, speed: float) -> Move:
+        self._check_ready()
+        self._check_base()
         for index, (low, high) in enumerate(self._model.ranges):
             if math.isinf(high - low):
                 turns = round((self._setpoint[index] - target[index]) / (2 * math.pi))
@@ -120,7 +139,7 @@ class Arm:
                     excess=excess,
                     unit="deg",
                 )
-        self._run(joint_motion(self._setpoint, target, PHYSICS_STEP, self._model.limits, speed))
+        return self._start(joint_motion(self._setpoint, target, PHYSICS_STEP, self._model.limits, speed))
 
     def move_to(self, pose: Pose, *, speed: float = 1.0) -> None:
         """Move the tool in a straight line to `pose`, turning evenly on the way.
@@ -133,18 +152,27 @@ class Arm:
             MotionRefused: some point of the line is out of reach or limits; nothing has moved.
             ProtectiveStop: something was in the way.
         """
+        self.start_move_to(pose, speed=speed).wait()
+
+    def start_move_to(self, pose: Pose, *, speed: float = 1.0) -> Move:
+        """Like `move_to`, but returns at once."""
         values = (pose.x, pose.y, pose.z, pose.theta_x, pose.theta_y, pose.theta_z)
         _check_numbers("pose", values, 6)
         _check_speed(speed)
         self._check_ready()
-        start, rotation = self.kinematics.tool(self._setpoint)
-        end_rotation = rotation_from_euler(*values[3:])
-        line = Line.between(start, rotation, np.array(values[:3]), end_rotation)
+        tracking = self._tracking
+        start, rotation = self.kinematics.tool(self._setpoint) if tracking is None else tracking.pose()
+        line = Line.between(start, rotation, np.array(values[:3]), rotation_from_euler(*values[3:]))
         if line.length < 1e-7 and line.angle < 1e-7:
-            return
-        knots = self.kinematics.follow(self._setpoint, line)
-        lengths, limits = (line.length, line.angle), (self._model.limits, self._model.tool_limits)
-        self._run(line_motion(knots, *lengths, PHYSICS_STEP, *limits, speed))
+            return Move(self)
+        if tracking is None:
+            knots = self.kinematics.follow(self._setpoint, line)
+            lengths, limits = (line.length, line.angle), (self._model.limits, self._model.tool_limits)
+            return self._start(line_motion(knots, *lengths, PHYSICS_STEP, *limits, speed))
+        self.kinematics.follow(self._setpoint, tracking.meeting(line, speed))
+        tracking.move(line, speed)
+        self._move = Move(self)
+        return self._move
 
     def move_by(
         self,
@@ -158,9 +186,23 @@ class Arm:
         speed: float = 1.0,
     ) -> None:
         """Like `move_to`, relative: m (base frame) and degrees are added to the commanded pose's values."""
+        self.start_move_by(x, y, z, theta_x, theta_y, theta_z, speed=speed).wait()
+
+    def start_move_by(
+        self,
+        x: float = 0.0,
+        y: float = 0.0,
+        z: float = 0.0,
+        theta_x: float = 0.0,
+        theta_y: float = 0.0,
+        theta_z: float = 0.0,
+        *,
+        speed: float = 1.0,
+    ) -> Move:
+        """Like `move_by`, but returns at once."""
         _check_numbers("amounts", (x, y, z, theta_x, theta_y, theta_z), 6)
         now = self.commanded_pose()
-        self.move_to(
+        return self.start_move_to(
             Pose(
                 now.x + x,
                 now.y + y,
@@ -171,6 +213,64 @@ class Arm:
             ),
             speed=speed,
         )
+
+    def track(self, belt: Belt, since: float | None = None) -> None:
+        """Let the tool move with a belt; returns when it does, to within 0.2 mm and 5 mm/s.
+
+        From then on poses are in the belt's frame, in which a thing on the belt stays where it was when the
+        encoder read `since`: straight moves go there, wherever it has got to by now. Joint moves are refused.
+
+        Args:
+            belt: to follow.
+            since: encoder position, m, at which poses in the belt's frame are those in the base frame; now by
+                default.
+
+        Raises:
+            MotionRefused: the belt is faster than the tool may be; nothing has moved.
+            PathLost: a limit was met on the way; the arm has braked to rest and no longer tracks.
+            ProtectiveStop: something was in the way.
+        """
+        start = belt.position() if since is None else since
+        _check_numbers("since", (start,), 1)
+        self._check_ready()
+        self._check_base()
+        pace, limit = abs(belt.speed()), self._model.tool_limits.speed
+        if pace > limit:
+            raise MotionRefused(
+                f"motion refused: the belt's {pace:.3f} m/s are {pace - limit:.3f} m/s more than the "
+                f"tool's limit of {limit} m/s",
+                limit="tool speed",
+                value=pace,
+                allowed=limit,
+                excess=pace - limit,
+                unit="m/s",
+            )
+        self._steps = JointSteps(self.kinematics, self._model, self._setpoint, STEPS_PER_TICK, PHYSICS_STEP)
+        self._online = self._tracking = tracking = Tracking(
+            self._steps, belt, self._robot.in_base_frame(belt.direction), start, TICK, self._model.tool_limits
+        )
+        self._simulation.tick()
+        while not tracking.is_synchronous:
+            self._simulation.tick()
+
+    def stop_tracking(self) -> None:
+        """Bring the tool to rest; returns when it stands. Poses are in the base frame again.
+
+        Raises:
+            MotionRefused: a motion on the belt is under way.
+            ProtectiveStop: something was in the way.
+        """
+        if self._tracking is None:
+            return
+        self._check_ready()
+        self._tracking.end()
+        while self._tracking is not None or self._lost is not None:
+            self._simulation.tick()
+        self._settle()
+
+    def is_tracking(self) -> bool:
+        """Whether the arm follows a belt."""
+        return self._tracking is not None
 
     def set_payload(self, mass: float, centre: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
         """Tell the controller what the gripper holds, so that it carries the weight and expects the forces.
@@ -210,28 +310,83 @@ class Arm:
                 f"motion refused: not acknowledged: {self._stop}", limit="protective stop"
             ) from self._stop
 
-    def _run(self, motion: Motion) -> None:
-        steps = len(motion.joints)
-        if steps == 0:
+        if self._move is not None or self._lost is not None:
+            raise MotionRefused("motion refused: another one is under way", limit="motion under way")
+
+    def _check_base(self) -> None:
+        if self._tracking is not None:
+            raise MotionRefused("motion refused: the arm tracks a belt", limit="tracking")
+
+    def is_under_way(self, move: Move) -> bool:
+        """Whether this motion has not ended; see `Move.done`."""
+        return self._move is move
+
+    def finish(self, move: Move) -> None:
+        """See `Move.wait`."""
+        if self._move is not move:
             return
-        stream = motion.joints + self._lag * motion.speeds
+        while self._move is move:
+            self._simulation.tick()
+        self._settle()
+
+    def brake(self, move: Move) -> None:
+        """See `Move.stop`."""
+        if self._tracking is not None:
+            self._tracking.stop_move()
+        elif self._move is move and self._streamed:
+            self._load(braked(self._motion, self._streamed, PHYSICS_STEP, self._model.limits))
+        elif self._move is move:  # nothing of it has been carried out
+            self._stream = self._move = None
+
+    def _start(self, motion: Motion) -> Move:
+        move = Move(self)
+        if len(motion.joints):
+            self._load(motion)
+            self._move = move
+        return move
+
+    def _load(self, motion: Motion) -> None:
+        stream, joints = motion.joints + self._lag * motion.speeds, motion.joints
         if self._feed_forward is not None:
             stream += self._feed_forward.offsets(motion, PHYSICS_STEP)
-        rest = -steps % STEPS_PER_TICK
-        self._stream = np.concatenate((stream, np.repeat(motion.joints[-1:], rest, axis=0)))
+        rest = -len(joints) % STEPS_PER_TICK
+        if rest:
+            still = np.repeat(joints[-1:], rest, axis=0)
+            stream, joints = np.concatenate((stream, still)), np.concatenate((joints, still))
+        self._stream, self._motion_joints = stream, joints
         self._streamed = 0
-        self._motion_joints = np.concatenate((motion.joints, np.repeat(motion.joints[-1:], rest, axis=0)))
-        while self._stream is not None:
-            self._simulation.tick()
+        self._motion = motion
+
+    def _settle(self) -> None:
         for _ in range(_SETTLING_TICKS):
             if float(np.abs(self._following_error()).max()) < _SETTLED:
                 break
             self._simulation.tick()
 
+    def _ask(self, online: OnlineMotion) -> None:
+        """Load what an online motion wants in the coming tick."""
+        try:
+            motion = online.tick()
+        except PathLost as lost:
+            self._lost = lost
+            self._online = self._tracking = None
+            steps = self._steps
+            if steps is not None:
+                self._load(braked_joints(steps, PHYSICS_STEP, self._model.limits))
+            return
+        if motion is None:
+            self._online = self._tracking = self._move = None
+            return
+        self._load(motion)
+        if self._tracking is not None and not self._tracking.is_moving:
+            self._move = None
+
     def _drive(self) -> None:
         setpoints = self._simulation.setpoints[:, self._robot.servos]
         # a servo brings its encoder to the setpoint, so the joint to where the encoder reads that
         error = self._robot.encoder_error
+        if self._stream is None and self._online is not None:
+            self._ask(self._online)
         if self._stream is None:
             setpoints[:] = self._setpoint - error
             return
@@ -241,6 +396,8 @@ class Arm:
         self._streamed = end
         if end >= len(self._stream):
             self._stream = None
+            if self._online is None:
+                self._move = None
 
     def _following_error(self) -> Array:
         error: Array = self._setpoint - self._robot.encoders()
@@ -252,6 +409,9 @@ class Arm:
             self._warm()
         if self._stop is not None:
             return
+        if self._lost is not None and self._stream is None:
+            lost, self._lost = self._lost, None
+            raise lost
         external, error = self._external(), self._following_error()
         # this runs at every tick, and nearly always the lengths are below the lowest limits of their parts
         if (
@@ -286,7 +446,7 @@ class Arm:
 
     def _stopped(self, stop: ProtectiveStop) -> ProtectiveStop:
         self._stop = stop
-        self._stream = None
+        self._stream = self._online = self._tracking = self._move = self._lost = None
         self._setpoint = self._robot.encoders()
         return stop
 

@@ -26,7 +26,7 @@ class ConveyorBelt:
 
     Attributes:
         name: of the fixture whose surface moves.
-        direction: unit vector of positive speed, shape (3,), base frame (whose axes are the world's).
+        direction: unit vector of positive speed, shape (3,), world frame.
     """
 
     def __init__(self, simulation: Simulation, name: str, belt: Belt, noise: SeededNoise) -> None:

@@ -123,6 +123,10 @@ class Robot:
         """Exact tool position, base frame; quicker than the whole pose, for checks at every tick."""
         return Position(*self._tool_place().tolist())
 
+    def in_base_frame(self, direction: Array) -> Array:
+        """A direction of the world, shape (3,), as the robot's base frame has it."""
+        return direction if self._turned is None else self._turned.T @ direction
+
     def _tool_place(self) -> Array:
         place: Array = self._data.site_xpos[self.site] - self._base
         return place if self._turned is None else self._turned.T @ place

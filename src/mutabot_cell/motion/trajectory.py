@@ -21,6 +21,8 @@ _GRID = 0.01
 _SMOOTHING = 0.15
 """Half width of the window over which slowing down is spread, s."""
 
+_SHORTEST_BRAKING = 0.05
+"""Half of the time for braking on the path that is tried first, s."""
 _SAFETY = 0.98
 
 
@@ -101,7 +103,7 @@ def joint_motion(start: Array, end: Array, step: float, limits: JointLimits, spe
     """
     speeds, accelerations, jerks = _arrays(limits)
     times, values, rates, _ = _ruckig(start, end, speeds * speed, accelerations, jerks)
-    return _sampled(times, values, rates, step)
+    return sampled(times, values, rates, step)
 
 
 def line_motion(
@@ -148,8 +150,8 @@ def line_motion(
     stretch = _smooth(np.maximum(factor, 1.0), times[1] - times[0])
     stretched = np.concatenate(([0.0], np.cumsum(0.5 * (stretch[1:] + stretch[:-1]) * np.diff(times))))
     values, rates = spline.value(places), speeds / stretch[:, None]
-    scale = _needed_slowdown(_sampled(stretched, values, rates, _GRID), _GRID, highest)
-    return _sampled(stretched * scale, values, rates / scale, step)
+    scale = _needed_slowdown(sampled(stretched, values, rates, _GRID), _GRID, highest)
+    return sampled(stretched * scale, values, rates / scale, step)
 
 
 def _arrays(limits: JointLimits) -> tuple[Array, Array, Array]:
@@ -197,7 +199,7 @@ def _needed_slowdown(motion: Motion, step: float, highest: tuple[Array, Array, A
     return over
 
 
-def _sampled(times: Array, values: Array, rates: Array, step: float) -> Motion:
+def sampled(times: Array, values: Array, rates: Array, step: float) -> Motion:
     """Cubic Hermite interpolation at every `step` s, the last sample at or just after the end."""
     count = math.ceil(times[-1] / step - 1e-9)
     wanted = np.minimum(np.arange(1, count + 1) * step, times[-1])
