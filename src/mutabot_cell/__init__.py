@@ -27,6 +27,9 @@ from .errors import (
     MotionRefused as MotionRefused,
 )
 from .errors import (
+    PathLost as PathLost,
+)
+from .errors import (
     ProtectiveStop as ProtectiveStop,
 )
 from .errors import (
@@ -113,6 +116,7 @@ __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "Mark",
     "Mesh",
     "MotionRefused",
+    "PathLost",
     "ProtectiveStop",
     "Scene",
     "SensorError",

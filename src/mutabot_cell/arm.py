@@ -83,7 +83,7 @@ class Arm:
         return tuple(np.degrees(self._setpoint).tolist())
 
     def commanded_pose(self) -> Pose:
-        """Tool pose that the setpoints stand for: relative moves start here. In the belt's frame while tracking."""
+        """Tool pose that the setpoints stand for, in a tracked belt's frame: relative moves start here."""
         if self._tracking is not None:
             return pose_of(*self._tracking.pose())
         position, rotation = self.kinematics.tool(self._setpoint)
@@ -169,8 +169,7 @@ class Arm:
             knots = self.kinematics.follow(self._setpoint, line)
             lengths, limits = (line.length, line.angle), (self._model.limits, self._model.tool_limits)
             return self._start(line_motion(knots, *lengths, PHYSICS_STEP, *limits, speed))
-        self.kinematics.follow(self._setpoint, tracking.meeting(line, speed))
-        tracking.move(line, speed)
+        tracking.move(line, speed, lambda line: self.kinematics.follow(self._setpoint, line))
         self._move = Move(self)
         return self._move
 

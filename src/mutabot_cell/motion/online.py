@@ -53,7 +53,8 @@ class JointSteps:
         self, kinematics: Kinematics, robot: RobotModel, joints: Array, steps: int, step: float
     ) -> None:
         self._kinematics = kinematics
-        self._limits = _Limits(robot)
+        self.limits = robot.limits
+        self._bounds = _Bounds(robot)
         self.joints: Array = joints.copy()
         self.speeds: Array = np.zeros_like(joints)
         self.accelerations: Array = np.zeros_like(joints)
@@ -85,7 +86,7 @@ class JointSteps:
         self._inverse = self._inverted()
         speeds = self._inverse @ velocity
         accelerations = (speeds - self.speeds) / self._tick
-        self._limits.check(joints, speeds, accelerations)
+        self._bounds.check(joints, speeds, accelerations)
         motion = self._between(joints, speeds)
         self.joints, self.speeds, self.accelerations = joints, speeds, accelerations
         return motion
@@ -124,7 +125,7 @@ class JointSteps:
         return Motion(self.joints + values, rates / width)
 
 
-class _Limits:
+class _Bounds:
     """Of a robot's joints, as arrays."""
 
     def __init__(self, robot: RobotModel) -> None:

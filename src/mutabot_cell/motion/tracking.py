@@ -8,30 +8,36 @@ straight moves.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 import ruckig
 
 from mutabot_cell.geometry import Array
-from mutabot_cell.models.robot import ToolLimits
+from mutabot_cell.models.robot import JointLimits, ToolLimits
 
 from .line import Line
 from .online import JointSteps
-from .trajectory import Motion
+from .trajectory import Motion, Spline
 
 FILTER_TIME = 0.05
-"""Time constant of the filter that estimates the belt's speed from whole encoder counts, s (our choice).
-An even speed is estimated without error; while the belt accelerates by a, the estimate is a·FILTER_TIME²
-behind."""
+"""Time constant of the filter that estimates the belt's motion from whole encoder counts, s (our choice)."""
 _SHARE = 0.5
 """Part of the tool's acceleration and jerk limits that following has, and that a superimposed move has."""
+_SAFETY = 0.9
+_CHECKS = 41
+_SLOWER = 1.02
+"""Planning a move ends when the joints' limits lengthen it by less than this factor."""
 _SYNCHRONOUS = 2e-4
 _SYNCHRONOUS_SPEED = 5e-3
 
 
 class BeltEstimate:
-    """Position and speed of a belt from its encoder's counts: a critically damped g-h filter.
+    """Position, speed and acceleration of a belt from its encoder's counts.
+
+    A critically damped g-h-k filter (fading memory): even speed and even acceleration are followed without an
+    error; a change of acceleration is known after some `FILTER_TIME`.
 
     Args:
         position: the encoder's reading, m.
@@ -40,17 +46,22 @@ class BeltEstimate:
     """
 
     def __init__(self, position: float, speed: float, period: float) -> None:
-        self.position, self.speed = position, speed
+        self.position, self.speed, self.acceleration = position, speed, 0.0
         self._period = period
         kept = math.exp(-period / FILTER_TIME)
-        self._g, self._h = 1.0 - kept**2, (1.0 - kept) ** 2
+        self._g = 1.0 - kept**3
+        self._h = 1.5 * (1.0 - kept) ** 2 * (1.0 + kept) / period
+        self._k = (1.0 - kept) ** 3 / period**2
 
     def update(self, reading: float) -> None:
         """Take the next reading, one period after the last."""
-        predicted = self.position + self.speed * self._period
-        surprise = reading - predicted
-        self.position = predicted + self._g * surprise
-        self.speed += self._h / self._period * surprise
+        period = self._period
+        self.position += (self.speed + self.acceleration * period / 2) * period
+        self.speed += self.acceleration * period
+        surprise = reading - self.position
+        self.position += self._g * surprise
+        self.speed += self._h * surprise
+        self.acceleration += self._k * surprise
 
 
 class Follower:
@@ -73,17 +84,19 @@ class Follower:
         self._request.target_position, self._request.target_velocity = [0.0], [0.0]
         self._answer = ruckig.OutputParameter(1)
 
-    def follow(self, target: float, speed: float) -> None:
-        """Go on by one period towards a target that is at `target` (m) now and has `speed` (m/s)."""
+    def follow(self, target: float, speed: float, acceleration: float) -> None:
+        """Go on by one period towards a target that is at `target` now, with this speed and acceleration."""
         request = self._request
         request.control_interface = ruckig.ControlInterface.Position
         request.current_position = [self.position - target]
         request.current_velocity = [self.speed - speed]
         request.max_velocity = [self._fastest - speed]
         request.min_velocity = [-self._fastest - speed]
+        self.acceleration -= acceleration
         self._go_on()
-        self.position += target + speed * self._period
-        self.speed += speed
+        self.position += target + (speed + acceleration * self._period / 2) * self._period
+        self.speed += speed + acceleration * self._period
+        self.acceleration += acceleration
 
     def brake(self) -> None:
         """Go on by one period towards rest."""
@@ -174,16 +187,27 @@ class Tracking:
         """Commanded position, shape (3,), m, and rotation, shape (3, 3), in the belt's frame."""
         return self._place.copy(), self._rotation.copy()
 
-    def meeting(self, line: Line, speed: float) -> Line:
-        """Where in the base frame a move would begin and end if the belt goes on as it does."""
-        law = LineLaw(line, speed, abs(self._estimate.speed), self._period, self._limits)
-        along = self._along
-        begin = line.start + self._offset.position * along
-        return Line(begin, line.rotation, line.shift + self._estimate.speed * law.duration * along, line.turn)
+    def move(self, line: Line, speed: float, follow: Callable[[Line], Array]) -> None:
+        """Begin a straight move in the belt's frame.
 
-    def move(self, line: Line, speed: float) -> None:
-        """Begin a straight move in the belt's frame."""
-        self._move = LineLaw(line, speed, abs(self._estimate.speed), self._period, self._limits)
+        Args:
+            speed: part of the tool's speed limits, 0..1.
+            follow: gives joint angles along a line in the base frame; raises what refuses it.
+        """
+        law = LineLaw(line, speed, abs(self._estimate.speed), self._period, self._limits)
+        while True:
+            duration = law.duration
+            law.slow_down(Spline(follow(self._meeting(line, duration))), self._steps.limits)
+            if law.duration < duration * _SLOWER:
+                break
+        self._move = law
+
+    def _meeting(self, line: Line, duration: float) -> Line:
+        """The line in the base frame if the belt goes on as it does."""
+        begin = line.start + self._offset.position * self._along
+        return Line(
+            begin, line.rotation, line.shift + self._estimate.speed * duration * self._along, line.turn
+        )
 
     def stop_move(self) -> None:
         """Let the move under way come to rest on its line; following goes on."""
@@ -202,7 +226,8 @@ class Tracking:
         if self._ending:
             self._offset.brake()
         else:
-            self._offset.follow(self._estimate.position - self._since, self._estimate.speed)
+            belt = self._estimate
+            self._offset.follow(belt.position - self._since, belt.speed, belt.acceleration)
         along = self._along
         velocity = np.concatenate((self._offset.speed * along, np.zeros(3)))
         if self._move is not None:
@@ -238,10 +263,25 @@ class LineLaw:
         ]
         request.max_jerk = [_SHARE * min(limits.jerk / length, limits.turn_jerk / angle)]
         request.target_position = [1.0]
-        trajectory = ruckig.Trajectory(1)
-        self._law.calculate(request, trajectory)
-        self.duration: float = trajectory.duration
+        self.duration = self._duration()
         self.is_done = False
+
+    def _duration(self) -> float:
+        trajectory = ruckig.Trajectory(1)
+        self._law.calculate(self._request, trajectory)
+        return float(trajectory.duration)
+
+    def slow_down(self, joints: Spline, limits: JointLimits) -> None:
+        """Be slower where the joints that this line needs would be too fast, all along it."""
+        fractions = np.linspace(0.0, 1.0, _CHECKS)
+        slope, bend = np.abs(joints.slope(fractions)), np.abs(joints.bend(fractions))
+        speed, acceleration = np.array(limits.speed), np.array(limits.acceleration)
+        rate = min(_least(speed, slope), math.sqrt(_SHARE * _least(acceleration, bend)))
+        request = self._request
+        request.max_velocity = [min(request.max_velocity[0], _SAFETY * rate)]
+        gain = _SHARE * _SAFETY * _least(acceleration, slope)
+        request.max_acceleration = [min(request.max_acceleration[0], gain)]
+        self.duration = self._duration()
 
     def stop(self) -> None:
         """From now on brake, on the line."""
@@ -255,3 +295,8 @@ class LineLaw:
         line = self._line
         velocity = np.concatenate((line.shift, line.rotation @ line.turn)) * rate
         return line.position_at(fraction), line.rotation_at(fraction), velocity
+
+
+def _least(most: Array, values: Array) -> float:
+    """The factor by which `values`, shape (n, joints), reach `most`, shape (joints,), first."""
+    return 1.0 / max(float((values / most).max()), 1e-9)
