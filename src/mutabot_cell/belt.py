@@ -47,7 +47,6 @@ class ConveyorBelt:
         # travel at each tick's beginning, the last one of tick `_known`
         self._past = deque([0.0], maxlen=_KEPT_TICKS)
         self._known = simulation.ticks
-        simulation.before_tick.append(self._drive)
 
     def run(self, speed: float) -> None:
         """Bring the belt to `speed` (m/s; negative is backwards). Returns at once; the drive accelerates.
@@ -59,8 +58,11 @@ class ConveyorBelt:
         if not isinstance(speed, (int, float)) or isinstance(speed, bool) or not abs(speed) <= limit:
             raise BadArgument(f"Expected -{limit} <= speed <= {limit} m/s but got speed={speed!r}")
         self._commanded = float(speed)
-        if speed:
+        if not self._moving and speed:
             self._simulation.model.flg_surfacevel = True
+            self._moving = True
+            self._catch_up()
+            self._simulation.before_tick.append(self._drive)
 
     def stop(self) -> None:
         """Bring the belt to rest. Returns at once; the drive decelerates."""
@@ -99,6 +101,7 @@ class ConveyorBelt:
 
     def _travelled(self, at: float | None) -> float:
         """Exact travel at a time, s; now by default. Within a tick the belt runs evenly."""
+        self._catch_up()
         now = self._simulation.ticks
         tick = float(now) if at is None else at / TICK
         oldest = self._known - len(self._past) + 1
@@ -113,16 +116,26 @@ class ConveyorBelt:
         end = self._past[index - oldest + 1] if index < self._known else begin
         return begin + part * (end - begin)
 
+    def _catch_up(self) -> None:
+        """Note that the belt has stood since it was driven last."""
+        missing = self._simulation.ticks - self._known
+        if missing > 0:
+            self._past.extend([self._past[-1]] * min(missing, _KEPT_TICKS))
+            self._known += missing
+
     def _drive(self) -> None:
         change = self._belt.acceleration * TICK
         missing = self._commanded - self._drive_speed
         self._drive_speed += math.copysign(min(change, abs(missing)), missing)
         self._speed = self._drive_speed * (1.0 + self._wandered())
-        if self._speed or self._moving:
-            self._simulation.model.geom_surfacevel[self._geom, :3] = self._speed * self._along
-        self._moving = self._speed != 0.0
+        self._simulation.model.geom_surfacevel[self._geom, :3] = self._speed * self._along
         self._past.append(self._past[-1] + self._speed * TICK)
         self._known += 1
+        if not self._drive_speed and not self._commanded:
+            self._moving = False
+            # a list of its own: the one that is being gone through stays as it is
+            simulation = self._simulation
+            simulation.before_tick = [hook for hook in simulation.before_tick if hook != self._drive]
 
     def _wandered(self) -> float:
         """By what part the speed is off: an Ornstein-Uhlenbeck process, stepped exactly."""

@@ -16,7 +16,7 @@ START = Box(position=(0.55, -0.8, 1.0), jitter=0.0)
 
 
 def cell_with(belt: Belt, box: Box = START) -> Cell:
-    return Cell(1, scene=Scene(fixtures=(replace(CONVEYOR, belt=belt), TARGET_TABLE), boxes=(box,)))
+    return Cell(1, scene=Scene(fixtures=(replace(CONVEYOR, belt=belt), TARGET_TABLE), parts=(box,)))
 
 
 def carried(cell: Cell, seconds: float) -> float:
@@ -118,7 +118,7 @@ def test_a_wandering_drive_has_the_deviation_and_the_memory_it_was_given() -> No
     """Ornstein and Uhlenbeck: deviation sigma, correlation exp(-t / tau)."""
     jitter, memory = 0.05, 0.2
     fixture = replace(CONVEYOR, belt=Belt(jitter=jitter, jitter_time=memory))
-    cell = Cell(1, scene=Scene(fixtures=(fixture,), boxes=()))
+    cell = Cell(1, scene=Scene(fixtures=(fixture,), parts=()))
     cell.belt().run(0.1)
     cell.wait(1.0)
     speeds = []
@@ -133,7 +133,7 @@ def test_a_wandering_drive_has_the_deviation_and_the_memory_it_was_given() -> No
 def test_the_same_seed_wanders_the_same_way_and_another_seed_another_way() -> None:
     ends = []
     for seed in (1, 1, 2):
-        scene = Scene(fixtures=(replace(CONVEYOR, belt=Belt(jitter=0.1)),), boxes=())
+        scene = Scene(fixtures=(replace(CONVEYOR, belt=Belt(jitter=0.1)),), parts=())
         cell = Cell(seed, scene=scene)
         cell.belt().run(0.2)
         cell.wait(2.0)

@@ -21,7 +21,7 @@ OVER_BELT = (20, 26, 180, -78, 0, -76, 90)
 def over_belt(speed: float, belt: Belt | None = None, *boxes: Box) -> Cell:
     """The arm waits over the belt, which runs evenly."""
     conveyor = replace(CONVEYOR, belt=belt or Belt())
-    cell = Cell(1, scene=Scene(fixtures=(conveyor, TARGET_TABLE), boxes=boxes))
+    cell = Cell(1, scene=Scene(fixtures=(conveyor, TARGET_TABLE), parts=boxes))
     cell.arm.move_joints(OVER_BELT)
     cell.belt().run(speed)
     cell.wait(2.0)
