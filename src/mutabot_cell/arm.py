@@ -11,7 +11,9 @@ import numpy as np
 
 from mutabot_cell.models.assembly import compensation_of
 from mutabot_cell.models.options import PHYSICS_STEP
+from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.motion.braking import braked, braked_joints
+from mutabot_cell.motion.compliance import Push, UntilContact
 from mutabot_cell.motion.feedforward import FeedForward
 from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.motion.line import Line
@@ -20,6 +22,7 @@ from mutabot_cell.motion.tracking import Belt, Tracking
 from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
 from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
+from .force_sensor import ForceSensor
 from .geometry import Array, Pose, pose_of, rotation_from_euler
 from .move import Move
 from .robot import Robot
@@ -27,6 +30,9 @@ from .simulation import STEPS_PER_TICK, TICK, Simulation
 
 WARMING_TIME = 30.0
 """In this time a joint warms up by two thirds of what its torque makes of it in the end, s (our choice)."""
+MOST_FELT_SPEED = 0.05
+"""Limit of motions that the force sensor decides, m/s (our choice): something as stiff as a table resists with
+40 N before an arm of this speed has come to rest."""
 
 _WARMING_TICKS = 10
 _RELAXING_TICKS = 20
@@ -46,7 +52,7 @@ class Arm:
         explained: what else than contacts acts on the tool, as a torque on each joint, shape (joints,), Nm.
     """
 
-    def __init__(self, simulation: Simulation, robot: Robot) -> None:
+    def __init__(self, simulation: Simulation, robot: Robot, force_sensor: ForceSensor) -> None:
         self._simulation = simulation
         self._robot = robot
         self._model, limits = robot.model, robot.model.limits
@@ -55,6 +61,7 @@ class Arm:
         self.explained: list[Callable[[], Array]] = []
         self._stream: Array | None = None
         self._streamed = 0
+        self._force_sensor = force_sensor
         self._move: Move | None = None
         self._online: OnlineMotion | None = None
         self._tracking: Tracking | None = None
@@ -66,6 +73,7 @@ class Arm:
         self._lag = robot.lag()
         fed = self._model.is_fed_forward
         self._feed_forward = FeedForward(self._model, robot.stiffness()) if fed else None
+        self._flange = _flange_in_tool(self._model)
         self._torque_limit = np.array(limits.external_torque)
         self._lowest_torque_limit, self._following_limit = min(limits.external_torque), limits.following_error
         self._payload = 0.0
@@ -270,6 +278,98 @@ class Arm:
     def is_tracking(self) -> bool:
         """Whether the arm follows a belt."""
         return self._tracking is not None
+
+    def move_until_contact(
+        self, x: float = 0.0, y: float = 0.0, z: float = 0.0, *, force: float = 5.0, speed: float = 0.02
+    ) -> bool:
+        """Move the tool in a straight line by at most this much, until something resists; it stops there.
+
+        The force is what the wrist's sensor reads: call its `zero` before, away from what will be touched.
+
+        Args:
+            x, y, z: m, base frame.
+            force: along the way that counts as contact, N.
+            speed: m/s.
+
+        Returns:
+            Whether something resisted.
+
+        Raises:
+            BadArgument: no way to go, or a value out of its range.
+            MotionRefused: some point of the line is out of reach or limits; nothing has moved.
+            PathLost: a limit was met on the way; the arm has braked to rest.
+            ProtectiveStop: it resisted too hard.
+        """
+        _check_numbers("amounts", (x, y, z), 3)
+        _check_positive("force", force)
+        shift = np.array((x, y, z), dtype=float)
+        if not shift.any():
+            raise BadArgument("Expected a way to go but got x=0, y=0, z=0")
+        steps = self._steered(speed)
+        start, rotation = steps.tool()
+        self.kinematics.follow(self._setpoint, Line(start, rotation, shift, np.zeros(3)))
+        motion = UntilContact(steps, shift, speed, force, self._felt, TICK)
+        self._carry_out(motion)
+        return motion.touched
+
+    def push(
+        self,
+        *,
+        x: float | None = None,
+        y: float | None = None,
+        z: float | None = None,
+        seconds: float,
+        travel: float = 0.02,
+        speed: float = 0.02,
+    ) -> None:
+        """Push with a force for some time, by the wrist's force sensor; the tool keeps its orientation.
+
+        Along an axis with a force, also with 0 N, the tool gives way; along one with None it keeps its place.
+        Call the sensor's `zero` before, away from what will be touched.
+
+        Args:
+            x, y, z: force that the tool exerts along the base frame's axes, N.
+            seconds: how long.
+            travel: the motion ends sooner when the tool has gone so far, m.
+            speed: at most, m/s along each axis.
+
+        Raises:
+            BadArgument: no force, or a value out of its range.
+            PathLost: a limit was met on the way; the arm has braked to rest.
+            ProtectiveStop: something resisted too hard.
+        """
+        forces = (x, y, z)
+        if forces == (None, None, None):
+            raise BadArgument("Expected a force along x, y or z but got none")
+        _check_numbers("forces", [0.0 if force is None else force for force in forces], 3)
+        _check_positive("seconds", seconds)
+        _check_positive("travel", travel)
+        self._carry_out(Push(self._steered(speed), forces, speed, travel, seconds, self._felt, TICK))
+
+    def _steered(self, speed: float) -> JointSteps:
+        """The joints, for a motion that the force sensor decides."""
+        _check_positive("speed", speed)
+        if speed > MOST_FELT_SPEED:
+            raise BadArgument(f"Expected 0 < speed <= {MOST_FELT_SPEED} m/s but got speed={speed!r}")
+        self._check_ready()
+        self._check_base()
+        if self.force_sensor is None:
+            raise BadArgument(
+                "a motion by force needs a tool and its force sensor, and the robot has no tool"
+            )
+        self._steps = JointSteps(self.kinematics, self._model, self._setpoint, STEPS_PER_TICK, PHYSICS_STEP)
+        return self._steps
+
+    def _carry_out(self, motion: OnlineMotion) -> None:
+        self._online, self._move = motion, Move(self)
+        self._move.wait()
+
+    def _felt(self) -> Array:
+        """What the surroundings exert on the tool by the zeroed sensor: base frame, N, shape (3,)."""
+        wrench = self._force_sensor.wrench()
+        _, rotation = self.kinematics.tool(self._setpoint)
+        felt: Array = rotation @ self._flange @ (wrench.fx, wrench.fy, wrench.fz)
+        return felt
 
     def set_payload(self, mass: float, centre: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
         """Tell the controller what the gripper holds, so that it carries the weight and expects the forces.
@@ -538,6 +638,21 @@ def _check_numbers(name: str, values: Sequence[float], count: int) -> None:
     )
     if not fine:
         raise BadArgument(f"Expected {count} finite numbers but got {name}={values!r}")
+
+
+def _check_positive(name: str, value: float) -> None:
+    _check_numbers(name, (value,), 1)
+    if value <= 0.0:
+        raise BadArgument(f"Expected {name} > 0 but got {name}={value!r}")
+
+
+def _flange_in_tool(robot: RobotModel) -> Array:
+    """Rotation matrix, shape (3, 3), of the flange's frame, in which forces are read, in the tool's frame."""
+    if robot.tool is None:
+        return np.eye(3)
+    turned = np.zeros(9)
+    mujoco.mju_quat2Mat(turned, np.array(robot.tool.turn))
+    return turned.reshape(3, 3).T
 
 
 def _check_speed(speed: float) -> None:

@@ -35,7 +35,8 @@ class RobotSystem:
         grip_force: float | None,
         finger_speed: float | None,
     ) -> None:
-        self.arm = Arm(simulation, robot)
+        self.force_sensor = ForceSensor(simulation, robot, noise)
+        self.arm = Arm(simulation, robot, self.force_sensor)
         self._gripper: Gripper | None = None
         self._suction: Suction | None = None
         effector = None if robot.model.tool is None else robot.model.tool.effector
@@ -44,7 +45,6 @@ class RobotSystem:
         elif isinstance(effector, SuctionCup):
             self._suction = Suction(simulation, robot, effector, noise)
             self.arm.explained.append(self._suction.arm_torque)
-        self.force_sensor = ForceSensor(simulation, robot, noise)
         self.sensors = Sensors(simulation, robot, self.arm.kinematics, noise, scene, numbers)
         self._name = robot.model.name
 
