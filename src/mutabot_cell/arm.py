@@ -31,8 +31,8 @@ from .simulation import STEPS_PER_TICK, TICK, Simulation
 WARMING_TIME = 30.0
 """In this time a joint warms up by two thirds of what its torque makes of it in the end, s (our choice)."""
 MOST_FELT_SPEED = 0.05
-"""Limit of motions that the force sensor decides, m/s (our choice): something as stiff as a table resists with
-40 N before an arm of this speed has come to rest."""
+"""Limit of motions that the force sensor decides, m/s (our choice): something as stiff as a table resists
+with 40 N before an arm of this speed has come to rest."""
 
 _WARMING_TICKS = 10
 _RELAXING_TICKS = 20

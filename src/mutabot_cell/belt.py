@@ -9,6 +9,7 @@ import numpy as np
 
 from mutabot_cell.models.noise import SeededNoise
 
+from .carried import Carried
 from .errors import BadArgument, SensorError
 from .geometry import Array
 from .scene import Belt
@@ -44,6 +45,7 @@ class ConveyorBelt:
         self._wander = 0.0
         self._speed = 0.0
         self._moving = False
+        self._awake = Carried(simulation, self._geom)
         # travel at each tick's beginning, the last one of tick `_known`
         self._past = deque([0.0], maxlen=_KEPT_TICKS)
         self._known = simulation.ticks
@@ -131,8 +133,10 @@ class ConveyorBelt:
         self._simulation.model.geom_surfacevel[self._geom, :3] = self._speed * self._along
         self._past.append(self._past[-1] + self._speed * TICK)
         self._known += 1
+        self._awake.keep()
         if not self._drive_speed and not self._commanded:
             self._moving = False
+            self._awake.let_sleep()
             # a list of its own: the one that is being gone through stays as it is
             simulation = self._simulation
             simulation.before_tick = [hook for hook in simulation.before_tick if hook != self._drive]

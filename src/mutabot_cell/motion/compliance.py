@@ -1,6 +1,6 @@
 """Motions that the wrist's force sensor decides: stop on contact, push with a force.
 
-Both steer the tool's velocity at every tick; in the field: guarded motion, and force control by an *admittance*,
+Both steer the tool's velocity at every tick. In the field: guarded motion, and control by an *admittance*,
 velocity = gain · missing force. The orientation stays.
 """
 
