@@ -18,7 +18,7 @@ from mutabot_cell.motion.feedforward import FeedForward
 from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.motion.line import Line
 from mutabot_cell.motion.online import JointSteps, OnlineMotion
-from mutabot_cell.motion.tracking import Belt, Tracking
+from mutabot_cell.motion.tracking import TrackedBelt, Tracking
 from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
 from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
@@ -221,7 +221,7 @@ class Arm:
             speed=speed,
         )
 
-    def track(self, belt: Belt, since: float | None = None) -> None:
+    def track(self, belt: TrackedBelt, since: float | None = None) -> None:
         """Let the tool move with a belt; returns when it does, to within 0.2 mm and 5 mm/s.
 
         From then on poses are in the belt's frame, in which a thing on the belt stays where it was when the

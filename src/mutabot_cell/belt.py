@@ -9,11 +9,11 @@ import numpy as np
 
 from mutabot_cell.models.noise import SeededNoise
 
-from .carried import Carried
 from .errors import BadArgument, SensorError
 from .geometry import Array
 from .scene import Belt
 from .simulation import TICK, Simulation
+from .wakefulness import PartsOnBelt
 
 _KEPT_TICKS = 500
 _SPEED_WINDOW = 0.1
@@ -45,7 +45,7 @@ class ConveyorBelt:
         self._wander = 0.0
         self._speed = 0.0
         self._moving = False
-        self._awake = Carried(simulation, self._geom)
+        self._awake = PartsOnBelt(simulation, self._geom)
         # travel at each tick's beginning, the last one of tick `_known`
         self._past = deque([0.0], maxlen=_KEPT_TICKS)
         self._known = simulation.ticks

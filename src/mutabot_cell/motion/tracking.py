@@ -119,7 +119,7 @@ class Follower:
         return result
 
 
-class Belt(Protocol):
+class TrackedBelt(Protocol):
     """What tracking needs of a belt: `mutabot_cell.belt.ConveyorBelt` is one.
 
     Attributes:
@@ -154,7 +154,7 @@ class Tracking:
     def __init__(
         self,
         steps: JointSteps,
-        belt: Belt,
+        belt: TrackedBelt,
         along: Array,
         since: float,
         period: float,

@@ -17,7 +17,7 @@ _WAKING = 1e-12
 """Speed that wakes a part, m/s."""
 
 
-class Carried:
+class PartsOnBelt:
     """Keeps what lies on a moving belt awake.
 
     MuJoCo lets parts at rest sleep until something touches them; that a surface begins to move is no touch.
