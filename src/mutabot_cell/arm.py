@@ -23,10 +23,12 @@ from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
 from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
 from .force_sensor import ForceSensor
+from .foresight import Glance, Plan
 from .geometry import Array, Pose, pose_of, rotation_from_euler
 from .move import Move
 from .robot import Robot
 from .simulation import STEPS_PER_TICK, TICK, Simulation
+from .stretch import LONGEST, Stretch
 
 WARMING_TIME = 30.0
 """In this time a joint warms up by two thirds of what its torque makes of it in the end, s (our choice)."""
@@ -36,6 +38,8 @@ with 40 N before an arm of this speed has come to rest."""
 
 _WARMING_TICKS = 10
 _RELAXING_TICKS = 20
+_SURELY = 1.0 - 1e-9
+"""What is below a limit by this factor is below it however it is rounded."""
 _SETTLED = 0.001
 _SETTLING_TICKS = 50
 
@@ -82,9 +86,14 @@ class Arm:
         # views of the physics' own memory
         self._constraints: Array = simulation.data.qfrc_constraint[robot.dofs]
         self._motors = simulation.data.qfrc_actuator[robot.dofs]
+        # of each tick of a stretch: where the joints should be at its end, what pushed them, what they gave
+        self._planned, self._pushes, self._loads = np.zeros((3, LONGEST, len(self._setpoint)))
+        self._heats: list[tuple[int, Array]] = []
         self.set_payload(0.0)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
+        simulation.foresight.drives(self._drive, Plan(self._write, self._keep))
+        simulation.foresight.checks(self._guard, Glance(self._until, self._note, self._quiet, self._warm_in))
 
     def commanded_joints(self) -> tuple[float, ...]:
         """Setpoints of the joints, degrees, not wrapped."""
@@ -425,7 +434,7 @@ class Arm:
         if self._move is not move:
             return
         while self._move is move:
-            self._simulation.tick()
+            self._simulation.tick(LONGEST)
         self._settle()
 
     def brake(self, move: Move) -> None:
@@ -498,6 +507,32 @@ class Arm:
             if self._online is None:
                 self._move = None
 
+    def _write(self, inputs: Array) -> int:
+        """`_drive`, for the coming ticks."""
+        if self._online is not None:
+            return 1
+        error, wanted = self._robot.encoder_error, inputs[:, :, self._robot.servos]
+        if self._stream is None:
+            wanted[:] = self._setpoint - error
+            self._planned[:] = self._setpoint - error
+            return len(inputs)
+        start = self._streamed
+        ticks = min(len(inputs), (len(self._stream) - start) // STEPS_PER_TICK)
+        end = start + ticks * STEPS_PER_TICK
+        stream = self._stream[start:end].reshape(ticks, STEPS_PER_TICK, -1)
+        np.subtract(stream, error, out=wanted[:ticks])
+        ends = self._motion_joints[start + STEPS_PER_TICK - 1 : end : STEPS_PER_TICK]
+        np.subtract(ends, error, out=self._planned[:ticks])
+        return ticks
+
+    def _keep(self, ticks: int) -> None:
+        if self._stream is None:
+            return
+        self._streamed += ticks * STEPS_PER_TICK
+        self._setpoint = self._motion_joints[self._streamed - 1]
+        if self._streamed >= len(self._stream):
+            self._stream = self._move = None
+
     def _following_error(self) -> Array:
         error: Array = self._setpoint - self._robot.encoders()
         return error
@@ -543,6 +578,43 @@ class Arm:
             )
         )
 
+    def _until(self) -> int:
+        decides = self._pressed_ticks or self._stop is not None or self._lost is not None
+        return 1 if decides else LONGEST
+
+    def _note(self, number: int) -> None:
+        self._pushes[number] = self._external()
+        self._loads[number] = self._motors
+
+    def _quiet(self, stretch: Stretch, ticks: int) -> int:
+        pushes = (self._pushes[:ticks] / self._torque_limit).ravel()
+        errors = (self._planned[:ticks] - stretch.places[:ticks, self._robot.joints]).ravel()
+        # mostly even the lengths of all together are below the limits of their parts; not so if one is NaN
+        if not (pushes.dot(pushes) < 1.0 and errors.dot(errors) < self._following_limit**2):
+            fine = (np.abs(pushes) < _SURELY) & (np.abs(errors) < _SURELY * self._following_limit)
+            ticks = min([ticks, *(np.flatnonzero(~fine) // len(self._setpoint)).tolist()])
+        self._heats, heat = [], self._heat
+        for number in range(-(self._simulation.ticks + 1) % _WARMING_TICKS, ticks, _WARMING_TICKS):
+            heat = self._warmer(heat, self._loads[number])
+            if not self._is_cool(heat):
+                return number
+            self._heats.append((number, heat))
+        return ticks
+
+    def _warm_in(self, stretch: Stretch, ticks: int) -> None:
+        """`_warm`, for ticks of a stretch."""
+        self._heat = next((heat for number, heat in reversed(self._heats) if number < ticks), self._heat)
+
+    def _warmer(self, heat: Array, torques: Array) -> Array:
+        """How warm the motors are when these torques have lasted for `_WARMING_TICKS`."""
+        share = _WARMING_TICKS * TICK / WARMING_TIME
+        warmer: Array = heat + share * ((torques / self._continuous) ** 2 - heat)
+        return warmer
+
+    @staticmethod
+    def _is_cool(heat: Array) -> bool:
+        return bool(heat.dot(heat) <= 1.0 or heat.max() <= 1.0)
+
     def _stopped(self, stop: ProtectiveStop) -> ProtectiveStop:
         self._stop = stop
         self._stream = self._online = self._tracking = self._move = self._lost = None
@@ -585,9 +657,8 @@ class Arm:
 
     def _warm(self) -> None:
         """Let the motors warm up with the square of their torque; stop when one is too warm."""
-        share = _WARMING_TICKS * TICK / WARMING_TIME
-        self._heat += share * ((self._motors / self._continuous) ** 2 - self._heat)
-        if self._stop is not None or float(self._heat.max()) <= 1.0:
+        self._heat = self._warmer(self._heat, self._motors)
+        if self._stop is not None or self._is_cool(self._heat):
             return
         joint = int(np.argmax(self._heat))
         raise self._stopped(

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import mujoco
 import numpy as np
 
 from mutabot.evidence import Feed
+from mutabot_cell.foresight import Glance
 from mutabot_cell.robot import Robot
 from mutabot_cell.scene import Scene
-from mutabot_cell.simulation import Simulation
+from mutabot_cell.simulation import TICK, Simulation
+from mutabot_cell.stretch import LONGEST
 
 from .camera import Camera, View
 from .contacts import Contacts
@@ -35,6 +38,7 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
         feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)
     feed.camera(Camera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)
     simulation.after_tick.append(feed.tick)
+    simulation.foresight.checks(feed.tick, Glance(lambda: _ticks_until(feed.due, simulation.time)))
     return feed
 
 
@@ -46,6 +50,12 @@ def _tool_pose(data: mujoco.MjData, robot: Robot) -> Callable[[], list[float]]:
         return [*data.site_xpos[site].tolist(), *turned.tolist()]
 
     return tool
+
+
+def _ticks_until(due: float, time: float) -> int:
+    """Within how many ticks the feed must be called: rather one too few than too many."""
+    left = (due - time) / TICK
+    return LONGEST if left >= LONGEST else max(1, math.ceil(left - 0.01))
 
 
 def _pose(data: mujoco.MjData, body: int) -> Callable[[], list[float]]:
