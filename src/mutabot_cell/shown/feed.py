@@ -54,8 +54,7 @@ def _tool_pose(data: mujoco.MjData, robot: Robot) -> Callable[[], list[float]]:
 
 def _ticks_until(due: float, time: float) -> int:
     """Within how many ticks the feed must be called: rather one too few than too many."""
-    left = (due - time) / TICK
-    return LONGEST if left >= LONGEST else max(1, math.ceil(left - 0.01))
+    return math.ceil(min(max((due - time) / TICK - 0.01, 1), LONGEST))
 
 
 def _pose(data: mujoco.MjData, body: int) -> Callable[[], list[float]]:
