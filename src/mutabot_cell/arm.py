@@ -23,7 +23,7 @@ from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
 
 from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
 from .force_sensor import ForceSensor
-from .foresight import Glance, Plan
+from .foresight import Glance, InputPlan
 from .geometry import Array, Pose, pose_of, rotation_from_euler
 from .move import Move
 from .robot import Robot
@@ -92,7 +92,7 @@ class Arm:
         self.set_payload(0.0)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
-        simulation.foresight.drives(self._drive, Plan(self._write, self._keep))
+        simulation.foresight.drives(self._drive, InputPlan(self._write, self._keep))
         simulation.foresight.checks(self._guard, Glance(self._until, self._note, self._quiet, self._warm_in))
 
     def commanded_joints(self) -> tuple[float, ...]:

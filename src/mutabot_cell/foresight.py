@@ -18,7 +18,7 @@ Hook = Callable[[], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class InputPlan:
     """What a driver does instead of being called before each tick.
 
     Attributes:
@@ -57,13 +57,13 @@ class Foresight:
     """
 
     def __init__(self) -> None:
-        self._plans: dict[Hook, Plan] = {}
+        self._plans: dict[Hook, InputPlan] = {}
         self._glances: dict[Hook, Glance] = {}
         self._quiet: list[Callable[[Stretch, int], int]] = []
         self._passed: list[Callable[[Stretch, int], None]] = []
         self.notes: list[Callable[[int], None]] = []
 
-    def drives(self, hook: Hook, plan: Plan) -> None:
+    def drives(self, hook: Hook, plan: InputPlan) -> None:
         """In a stretch, this plan stands for `hook`, which is called before each tick."""
         self._plans[hook] = plan
 

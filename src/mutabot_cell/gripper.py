@@ -9,7 +9,7 @@ from mutabot_cell.models.tool import Fingers
 
 from .curve import Curve
 from .errors import BadArgument
-from .foresight import Glance, Plan
+from .foresight import Glance, InputPlan
 from .geometry import Array
 from .robot import Robot
 from .simulation import TICK, Simulation
@@ -50,7 +50,7 @@ class Gripper:
         self.set_speed(fingers.speed if speed is None else speed)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._detect)
-        simulation.foresight.drives(self._drive, Plan(self._write, self._keep))
+        simulation.foresight.drives(self._drive, InputPlan(self._write, self._keep))
         simulation.foresight.checks(self._detect, Glance(lambda: LONGEST, passed=self._detect_in))
 
     def set_force(self, newtons: float) -> None:
