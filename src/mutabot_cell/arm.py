@@ -362,10 +362,6 @@ class Arm:
             raise BadArgument(f"Expected 0 < speed <= {MOST_FELT_SPEED} m/s but got speed={speed!r}")
         self._check_ready()
         self._check_base()
-        if self.force_sensor is None:
-            raise BadArgument(
-                "a motion by force needs a tool and its force sensor, and the robot has no tool"
-            )
         self._steps = JointSteps(self.kinematics, self._model, self._setpoint, STEPS_PER_TICK, PHYSICS_STEP)
         return self._steps
 

@@ -51,9 +51,7 @@ def watch_box(cell: Cell, name: str) -> None:
     """For boxes that are picked and set down: gently, and in time."""
     motion = Motion(cell, lambda: cell.truth.box_position(name))
     cell.always(lambda: height(cell, name) > -SINKING, f"{name} is not pressed into belt or table")
-    cell.always(
-        lambda: cell.truth.opening() < LOOSE or height(cell, name) < LOW, f"{name} is never dropped"
-    )
+    cell.always(lambda: cell.truth.opening() < LOOSE or height(cell, name) < LOW, f"{name} is never dropped")
     cell.always(
         lambda: motion.sideways() < PUSHING_SPEED or height(cell, name) > CARRYING_HEIGHT,
         f"{name} is carried high",
@@ -87,7 +85,7 @@ def _top(x: float) -> float:
 
 
 class Motion:
-    """A speed over what lies below, maybe the moving belt; 0 if no time has passed since the last question."""
+    """A speed over what lies below, maybe the moving belt; 0 if no time has passed since the last one."""
 
     def __init__(self, cell: Cell, position: Callable[[], Position]) -> None:
         self._cell = cell

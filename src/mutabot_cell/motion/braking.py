@@ -8,7 +8,7 @@ import numpy as np
 import ruckig
 
 from mutabot_cell.geometry import Array
-from mutabot_cell.models.robot import JointLimits
+from mutabot_cell.models.limits import JointLimits
 
 from .online import JointSteps
 from .trajectory import Motion, sampled

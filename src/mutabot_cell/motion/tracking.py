@@ -15,7 +15,7 @@ import numpy as np
 import ruckig
 
 from mutabot_cell.geometry import Array
-from mutabot_cell.models.robot import JointLimits, ToolLimits
+from mutabot_cell.models.limits import JointLimits, ToolLimits
 
 from .line import Line
 from .online import JointSteps
