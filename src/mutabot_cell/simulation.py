@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models.assembly import build_cell
-from mutabot_cell.models.options import PHYSICS_STEP, ignore_warning
+from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.models.robot import RobotModel
 
 from .errors import SimulationDiverged
@@ -47,7 +47,6 @@ class Simulation:
     """
 
     def __init__(self, scene: Scene, robots: Mapping[str, RobotModel]) -> None:
-        mujoco.set_mju_user_warning(ignore_warning)
         self.model = build_cell(scene, robots)
         self.data = mujoco.MjData(self.model)
         self.robots = {

@@ -257,3 +257,13 @@ def test_process_has_one_thread_after_a_motion_so_it_may_fork() -> None:
         "print([l.split()[1] for l in open('/proc/self/status') if l.startswith('Threads')][0])"
     )
     assert run_python(code) == "1\n"
+
+
+def test_putting_models_together_writes_nothing_into_the_working_directory(tmp_path: Path) -> None:
+    """MuJoCo writes its warnings there."""
+    code = "import mutabot_cell; from mutabot_cell.models.assembly import build_robot as build\n"
+    code += "build(mutabot_cell.gen3())"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert (list(tmp_path.iterdir()), done.stderr) == ([], "")
