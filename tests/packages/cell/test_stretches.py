@@ -13,8 +13,27 @@ import numpy as np
 import pytest
 
 from mutabot.evidence import tape
-from mutabot_cell import Box, Cell, CellError, ProtectiveStop, Scene, SimulationDiverged
+from mutabot_cell import (
+    BadModel,
+    Box,
+    Cell,
+    CellError,
+    LightBarrier,
+    PathLost,
+    Pose,
+    ProtectiveStop,
+    RobotModel,
+    Scene,
+    SimulationDiverged,
+    gen3,
+    robots,
+    suction_cup,
+)
+from mutabot_cell.gripper import Gripper
+from mutabot_cell.models.sleeping import MANY
 from mutabot_cell.simulation import Simulation
+from mutabot_cell.suction import Suction
+from mutabot_cell.system import RobotSystem
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 DOWN = (0.0, 26.0, 180.0, -78.0, 0.0, -76.0, 90.0)
@@ -52,16 +71,24 @@ def moment(cell: Cell) -> tuple[object, ...]:
     number, frame = simulation.frame()
     numbers = (
         data.qpos, data.qvel, data.ctrl, data.qacc_warmstart, data.qfrc_constraint, data.qfrc_actuator,
-        data.xpos, data.site_xpos, data.sensordata, simulation.setpoints, frame, cell.arm._heat,
+        data.xpos, data.site_xpos, data.sensordata, data.xfrc_applied, simulation.setpoints, frame,
     )  # fmt: skip
+    barriers = cell.sensors.light_barriers
     return (
         number,
-        cell.time,
-        cell.gripper.holding(),
-        cell.arm.commanded_joints(),
-        cell.arm._pressed_ticks,
+        cell.truth.world(),
+        [barriers.is_interrupted(name) for name in barriers.names],
+        [
+            (arm.commanded_joints(), arm._pressed_ticks, arm._heat.tobytes())
+            for arm in (system.arm for system in cell.robots.values())
+        ],
+        [tool.holding() for system in cell.robots.values() if (tool := _holder(system)) is not None],
         *(np.asarray(values).tobytes() for values in numbers),
     )
+
+
+def _holder(system: RobotSystem) -> Gripper | Suction | None:
+    return system._gripper or system._suction
 
 
 def told(story: Story, make: Callable[[], Cell], *, singly: bool) -> Witness:
@@ -201,6 +228,132 @@ def test_a_force_from_outside_is_the_same() -> None:
     check_same(story)
 
 
+def over_the_box(cell: Cell, height: float) -> None:
+    """The tool point so high over the box's bottom, m, looking down."""
+    cell.arm.move_joints(DOWN)
+    pose, box = cell.arm.commanded_pose(), cell.truth.box_position()
+    cell.arm.move_by(x=box.x - pose.x, y=box.y - pose.y, z=box.z + height - 0.9 - pose.z)
+
+
+def test_a_belt_that_starts_runs_and_stops_is_the_same() -> None:
+    def story(cell: Cell) -> None:
+        cell.wait(0.3)
+        cell.belt().run(0.2)
+        cell.arm.move_by(y=0.1)
+        cell.belt().stop()
+        cell.wait(1.0)
+        assert cell.truth.belt_position() > 0.1
+
+    check_same(story)
+
+
+def test_nothing_is_stepped_in_a_stretch_while_a_belt_runs(cell: Cell) -> None:
+    cell.belt().run(0.1)
+    assert longest(cell) == 1
+
+
+def test_a_belt_that_is_tracked_is_the_same() -> None:
+    def story(cell: Cell) -> None:
+        cell.arm.move_joints(DOWN)
+        cell.belt().run(0.1)
+        cell.arm.track(cell.belt())
+        cell.arm.move_by(z=-0.05)
+        cell.arm.stop_tracking()
+        cell.belt().stop()
+        cell.arm.home()
+
+    assert check_same(story).error is None
+
+
+def test_a_belt_that_leads_out_of_reach_is_lost_at_the_same_tick_with_the_same_words() -> None:
+    def story(cell: Cell) -> None:
+        cell.arm.move_joints(DOWN)
+        cell.belt().run(0.4)
+        cell.arm.track(cell.belt())
+        cell.wait(10.0)
+
+    assert isinstance(check_same(story).error, PathLost)
+
+
+def test_motions_by_force_are_the_same() -> None:
+    def story(cell: Cell) -> None:
+        over_the_box(cell, 0.12)
+        cell.gripper.command(1, wait=True)
+        cell.force_sensor.zero()
+        assert cell.arm.move_until_contact(z=-0.08)
+        cell.arm.push(z=-10, seconds=0.3)
+        cell.arm.move_by(z=0.05)
+
+    assert check_same(story).error is None
+
+
+def test_a_part_that_a_suction_cup_lifts_and_lets_fall_is_the_same() -> None:
+    def story(cell: Cell) -> None:
+        over_the_box(cell, 0.055)
+        cell.arm.move_by(z=-0.008, speed=0.1)
+        cell.suction.on()
+        cell.wait(0.6)
+        cell.arm.move_by(z=0.05)
+        assert cell.truth.box_position().z > 1.03
+        cell.suction.off()
+        cell.wait(0.6)
+        cell.arm.move_by(z=0.05)
+        assert cell.truth.box_position().z < 1.01
+
+    check_same(story, lambda: Cell(1, robot=gen3().with_tool(suction_cup())))
+
+
+def test_nothing_is_stepped_in_a_stretch_while_a_suction_cup_draws() -> None:
+    cell = Cell(1, robot=gen3().with_tool(suction_cup()))
+    cell.suction.on()
+    assert longest(cell) == 1
+
+
+def test_a_light_barrier_that_looks_seldom_sees_the_same() -> None:
+    def story(cell: Cell) -> None:
+        cell.arm.move_by(z=0.2)
+        cell.arm.move_by(z=-0.2)
+
+    pose = Cell(1).arm.commanded_pose()
+    gate = LightBarrier("gate", (pose.x, pose.y - 0.4, 1.5), (pose.x, pose.y + 0.4, 1.5), rate=10.0)
+    found = check_same(story, lambda: Cell(1, scene=Scene(light_barriers=(gate,))))
+    assert {moments[2][0] for moments in found.moments.values()} == {True, False}
+
+
+@pytest.mark.parametrize("other", ["gen3", "ur5e"])
+def test_robots_that_share_a_clock_are_the_same(other: str) -> None:
+    """One moves while the other one does; the servos of a UR5e are fed the torques that a motion needs."""
+    try:
+        model: RobotModel = getattr(robots, other)()
+    except BadModel as error:
+        pytest.skip(str(error))
+
+    def story(cell: Cell) -> None:
+        right = cell.robots["right"].arm.start_move_by(z=0.05)
+        cell.robots["left"].arm.move_by(y=0.05)
+        cell.robots["left"].gripper.command(1)
+        right.wait()
+
+    beside = model.at(Pose(0.0, 1.6, 0.9, 0.0, 0.0, 0.0))
+    assert check_same(story, lambda: Cell(1, robots={"left": gen3(), "right": beside})).error is None
+
+
+def test_parts_that_may_sleep_are_stepped_singly() -> None:
+    """A stretch sets states, and that would wake what sleeps."""
+    places = [(0.5 + 0.1 * number, 0.1, 1.0) for number in range(MANY)]
+    boxes = tuple(Box(name=f"box {place[0]:.1f}", position=place) for place in places)
+    assert longest(Cell(1, scene=Scene(parts=boxes))) == 1
+    assert longest(Cell(1, scene=Scene(parts=boxes[1:]))) == 50
+
+
+def longest(cell: Cell) -> int:
+    """The longest stretch of half a second, ticks."""
+    witness = Witness()
+    witness.watch(cell)
+    cell.wait(0.5)
+    return witness.longest
+
+
 @pytest.mark.parametrize("torque", [1e3, 1e12], ids=["too fast", "MuJoCo warns"])
 def test_physics_that_diverge_are_found_at_the_same_tick(torque: float) -> None:
     def story(cell: Cell) -> None:
@@ -239,10 +392,7 @@ def test_a_monitor_sees_each_tick_and_no_stretch_is_made_while_it_watches(cell: 
     cell.wait(0.5)
     assert seen == list(range(51))
     cell.monitors.forget(watched)
-    witness = Witness()
-    witness.watch(cell)
-    cell.wait(0.5)
-    assert witness.longest == 50
+    assert longest(cell) == 50
 
 
 def test_no_more_ticks_pass_than_wanted(cell: Cell) -> None:
