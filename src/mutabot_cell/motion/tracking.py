@@ -19,7 +19,7 @@ from mutabot_cell.models.limits import JointLimits, ToolLimits
 
 from .line import Line
 from .online import JointSteps
-from .trajectory import Motion, Spline
+from .trajectory import Motion, Spline, calculated
 
 FILTER_TIME = 0.05
 """Time constant of the filter that estimates the belt's motion from whole encoder counts, s (our choice)."""
@@ -80,7 +80,7 @@ class Follower:
         self._law = ruckig.Ruckig(1, period)
         self._request = ruckig.InputParameter(1)
         self._request.max_acceleration = [limits.acceleration * _SHARE]
-        self._request.max_jerk = [limits.jerk * _SHARE]
+        self._jerk = limits.jerk * _SHARE
         self._request.target_position, self._request.target_velocity = [0.0], [0.0]
         self._answer = ruckig.OutputParameter(1)
 
@@ -113,6 +113,8 @@ class Follower:
 
     def _go_on(self) -> ruckig.Result:
         self._request.current_acceleration = [self.acceleration]
+        self._request.max_jerk = [self._jerk]
+        calculated(self._law, self._request)
         result = self._law.update(self._request, self._answer)
         self.position, self.speed = self._answer.new_position[0], self._answer.new_velocity[0]
         self.acceleration = self._answer.new_acceleration[0]
@@ -267,9 +269,7 @@ class LineLaw:
         self.is_done = False
 
     def _duration(self) -> float:
-        trajectory = ruckig.Trajectory(1)
-        self._law.calculate(self._request, trajectory)
-        return float(trajectory.duration)
+        return float(calculated(self._law, self._request).duration)
 
     def slow_down(self, joints: Spline, limits: JointLimits) -> None:
         """Be slower where the joints that this line needs would be too fast, all along it."""

@@ -24,6 +24,7 @@ _SMOOTHING = 0.15
 _SHORTEST_BRAKING = 0.05
 """Half of the time for braking on the path that is tried first, s."""
 _SAFETY = 0.98
+_LESS_JERK = (1.0, 0.999, 0.99)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,12 +169,31 @@ def _ruckig(
     request.current_position, request.target_position = start.tolist(), end.tolist()
     request.max_velocity, request.max_acceleration = speed.tolist(), acceleration.tolist()
     request.max_jerk = jerk.tolist()
-    trajectory = ruckig.Trajectory(count)
-    ruckig.Ruckig(count).calculate(request, trajectory)
+    trajectory = calculated(ruckig.Ruckig(count), request)
     times = np.linspace(0.0, trajectory.duration, max(2, math.ceil(trajectory.duration / _GRID) + 1))
     rows = [trajectory.at_time(time)[:3] for time in times.tolist()]
     states = np.array(rows).reshape(len(rows), 3, count)
     return times, states[:, 0], states[:, 1], states[:, 2]
+
+
+def calculated(law: ruckig.Ruckig, request: ruckig.InputParameter) -> ruckig.Trajectory:
+    """The time law that is asked for.
+
+    Where two kinds of laws meet (a length of exactly 2 a³/j², say) ruckig finds neither in a few cases of a
+    hundred, for the rounding of its inputs. A little less jerk, which the request then has, leads away.
+    """
+    trajectory = ruckig.Trajectory(request.degrees_of_freedom)
+    jerks = list(request.max_jerk)
+    for part in _LESS_JERK:
+        request.max_jerk = [part * jerk for jerk in jerks]
+        try:
+            law.calculate(request, trajectory)
+        except ruckig.RuckigError:
+            if part == _LESS_JERK[-1]:
+                raise
+            continue
+        break
+    return trajectory
 
 
 def _smooth(factor: Array, grid: float) -> Array:
