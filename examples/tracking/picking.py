@@ -29,6 +29,8 @@ CYCLE = 9.0
 """What setting a box down and coming back takes, s, rounded up: so long the belt runs on by itself."""
 LATEST = 0.0
 """A box that would get past this meanwhile must wait: the belt stops (y), m."""
+LONGEST_WAIT = 20
+"""What a box takes to come from the belt's beginning, s, rounded up."""
 
 EDGE = 0.05
 """Of a box, m."""
@@ -73,8 +75,7 @@ def run(cell: Cell, names: Sequence[str]) -> Report:
     waiting = list(names)
     while (name := next_box(cell, waiting)) is not None:
         waiting.remove(name)
-        await_box(cell, name)
-        colour = pick(cell, name)
+        colour = pick(cell, name) if await_box(cell, name) else None
         stop_for(cell, next_box(cell, waiting))
         if colour is not None and place(cell, name, colour, report.placed.count(colour)):
             report.placed.append(colour)
@@ -102,11 +103,17 @@ def find(cell: Cell, name: str) -> Position | None:
     return box if on_belt else None
 
 
-def await_box(cell: Cell, name: str) -> None:
-    """Let the belt bring the box to where it can be picked."""
-    while (box := find(cell, name)) is not None and box.y < START:
+def await_box(cell: Cell, name: str) -> bool:
+    """Let the belt bring the box to where it can be picked; False if it does not come."""
+    for _ in range(LONGEST_WAIT * 10):
+        box = find(cell, name)
+        if box is None:
+            return False
+        if box.y >= START:
+            return True
         cell.belt().run(SPEED)
         cell.wait(0.1)
+    return False
 
 
 def stop_for(cell: Cell, name: str | None) -> None:

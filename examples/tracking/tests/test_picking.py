@@ -124,6 +124,16 @@ def test_what_the_gripper_does_not_reach_or_is_not_on_the_belt_is_left_alone(
     check_at_rest(cell)
 
 
+def test_a_box_that_the_belt_does_not_bring_is_reported(cell_with: CellWith) -> None:
+    cell = cell_with(replace(UPSTREAM, friction=0.0))
+
+    assert picking.run(cell, ["box 1"]) == Report([], ["box 1"])
+
+    assert cell.time < picking.LONGEST_WAIT + 7.0
+    check_on_belt(cell, "box 1")
+    check_at_rest(cell)
+
+
 def test_something_lower_than_a_box_is_left_on_the_belt(cell_with: CellWith) -> None:
     low = replace(UPSTREAM, position=(0.5, -0.3, BELT_TOP), size=(0.05, 0.05, 0.025))
     cell = cell_with(low, troubled=("box 1",))
