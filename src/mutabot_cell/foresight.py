@@ -37,7 +37,8 @@ class Glance:
 
     Attributes:
         until: gives within how many ticks it must be called again, whatever happens; at least 1.
-        note: called after each tick with its number in the stretch, to remember what the stretch does not.
+        note: called after each tick with its number in the stretch, in the order in which checks were made
+            known, to remember what the stretch does not.
         quiet: of the first so many ticks of the stretch, at how many in a row the check would have found
             nothing; in doubt too few. It changes nothing.
         passed: so many ticks have passed without it.

@@ -146,6 +146,20 @@ class Simulation:
         self._ticks += ticks
         return True
 
+    def call_within_stretch(self, hook: Callable[[], None], number: int) -> None:
+        """After a tick of a stretch (its number), call a hook that only looks, as after a single tick.
+
+        Nothing is called if that tick, or one before, may be taken back because a check is needed.
+        """
+        ticks = number + 1
+        if self.foresight.quiet(self._stretch, self._sane(ticks)) < ticks:
+            return
+        self._ticks += ticks
+        try:
+            hook()
+        finally:
+            self._ticks -= ticks
+
     def _sane(self, ticks: int) -> int:
         """After how many of the first so many ticks of the stretch nothing was wrong in the physics."""
         states = self._stretch.states[:ticks].ravel()
