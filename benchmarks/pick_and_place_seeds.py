@@ -53,9 +53,9 @@ def _message(report: pytest.TestReport) -> str:
     return " ".join(crash.message.split()) if crash is not None else str(report.longrepr)
 
 
-def main(count: int, first: int) -> int:
+def main(count: int, first: int, example: Path = EXAMPLE) -> int:
     """Run `count` seeds; the exit code is 0 if every test passes with every seed."""
-    os.chdir(EXAMPLE)
+    os.chdir(example)
     sys.dont_write_bytecode = True
     plugin = EverySeed(range(first, first + count))
     start = time.perf_counter()

@@ -27,6 +27,9 @@ from .errors import (
     MotionRefused as MotionRefused,
 )
 from .errors import (
+    PathLost as PathLost,
+)
+from .errors import (
     ProtectiveStop as ProtectiveStop,
 )
 from .errors import (
@@ -46,6 +49,9 @@ from .parts import (
 )
 from .parts import (
     Mesh as Mesh,
+)
+from .scene import (
+    Belt as Belt,
 )
 from .scene import (
     Fixture as Fixture,
@@ -100,6 +106,7 @@ _LAZY = {
 __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "BadArgument",
     "BadModel",
+    "Belt",
     "Box",
     "CellError",
     "ConditionBroken",
@@ -109,6 +116,7 @@ __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "Mark",
     "Mesh",
     "MotionRefused",
+    "PathLost",
     "ProtectiveStop",
     "Scene",
     "SensorError",

@@ -14,6 +14,7 @@ from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.shown.feed import tell_of
 
+from .belt import ConveyorBelt
 from .errors import BadArgument
 from .force_sensor import Wrench, true_wrench
 from .geometry import Pose, Position
@@ -34,10 +35,15 @@ class Truth:
     """The cell's exact state: for tests, monitors and mutabot. A robot program has sensors instead."""
 
     def __init__(
-        self, simulation: Simulation, systems: Mapping[str, RobotSystem], parts: tuple[Part, ...]
+        self,
+        simulation: Simulation,
+        systems: Mapping[str, RobotSystem],
+        parts: tuple[Part, ...],
+        belts: Mapping[str, ConveyorBelt],
     ) -> None:
         self._simulation = simulation
         self._systems = systems
+        self._belts = belts
         self._barriers = next(iter(systems.values())).sensors.light_barriers
         self._parts = {part.name: part for part in parts}
 
@@ -56,6 +62,14 @@ class Truth:
     def box_tilt(self, name: str = "box") -> float:
         """Angle between the box's up and the world's up, degrees."""
         return true_box_tilt(self._simulation, self._parts[name])
+
+    def belt_position(self, name: str = "conveyor") -> float:
+        """How far the belt has run since the cell was made, m."""
+        return self._belts[name].true_position()
+
+    def belt_speed(self, name: str = "conveyor") -> float:
+        """Speed of the belt's surface, m/s."""
+        return self._belts[name].true_speed()
 
     def opening(self, robot: str | None = None) -> float:
         """Distance between the pads, m; 0 without fingers."""
@@ -97,6 +111,7 @@ class Truth:
             position = self.box_position(name)
             state |= {f"{name}.x": position.x, f"{name}.y": position.y, f"{name}.z": position.z}
             state[f"{name}.tilt"] = self.box_tilt(name)
+        state |= {f"{name}.travel": belt.true_position() for name, belt in self._belts.items()}
         return state | {name: float(self._barriers.true_state(name)) for name in self._barriers.names}
 
     def _robot(self, name: str | None) -> Robot:
@@ -166,7 +181,12 @@ class Cell:
         }
         first = next(iter(self.robots.values()))
         self.arm, self.sensors, self.force_sensor = first.arm, first.sensors, first.force_sensor
-        self.truth = Truth(self.simulation, self.robots, placed.parts)
+        self._belts = {
+            fixture.name: ConveyorBelt(self.simulation, fixture.name, fixture.belt, draws)
+            for fixture in placed.fixtures
+            if fixture.belt is not None
+        }
+        self.truth = Truth(self.simulation, self.robots, placed.parts, self._belts)
         self.feed = tell_of(self.simulation, placed)
         self.monitors = Monitors(self.simulation, self.truth.world)
         _current = weakref.ref(self)
@@ -217,6 +237,19 @@ class Cell:
     def time(self) -> float:
         """Simulated time since the cell was made, s."""
         return self.simulation.time
+
+    def belt(self, name: str | None = None) -> ConveyorBelt:
+        """A conveyor belt by the name of its fixture; without a name, the first one.
+
+        Raises:
+            BadArgument: there is no such belt.
+        """
+        if name is None and self._belts:
+            return next(iter(self._belts.values()))
+        if name not in self._belts:
+            known = ", ".join(self._belts) or "none"
+            raise BadArgument(f"Expected the name of a belt ({known}) but got name={name!r}")
+        return self._belts[name]
 
     def wait(self, seconds: float) -> None:
         """Let simulated time pass.

@@ -5,6 +5,7 @@
     ├── BadArgument (ValueError)           a value of the wrong type, or not finite, at the border
     ├── BadModel (ValueError)              a file of a robot or tool lacks something, or has a wrong unit
     ├── MotionRefused                      target out of reach or limits; nothing has moved
+    ├── PathLost                           the tool could not follow what it tracked; it has braked to rest
     ├── ProtectiveStop                     the arm hit something hard; the motion has ended
     ├── SensorError                        nothing to read (no box in the cell)
     ├── ConditionBroken (AssertionError)   an `always` condition was false at some tick
@@ -70,6 +71,35 @@ class MotionRefused(CellError):
         self.excess = excess
         self.unit = unit
         self.fraction = fraction
+
+
+class PathLost(CellError):
+    """What the tool followed led it out of the arm's limits; the arm brakes to rest by itself.
+
+    Attributes:
+        limit: what would be exceeded: "reach", "joint 1 speed", "joint 1 angle" and so on.
+        value: the value that following would need, in `unit`; None where there is none.
+        allowed: the nearest allowed value, in `unit`; None where there is none.
+        excess: by how much the limit would be exceeded (>= 0), in `unit`.
+        unit: "m", "deg" or "deg/s".
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        limit: str,
+        value: float | None = None,
+        allowed: float | None = None,
+        excess: float = 0.0,
+        unit: str = "",
+    ) -> None:
+        super().__init__(message)
+        self.limit = limit
+        self.value = value
+        self.allowed = allowed
+        self.excess = excess
+        self.unit = unit
 
 
 class ProtectiveStop(CellError):

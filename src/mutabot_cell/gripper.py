@@ -9,8 +9,11 @@ from mutabot_cell.models.tool import Fingers
 
 from .curve import Curve
 from .errors import BadArgument
+from .foresight import Glance, InputPlan
+from .geometry import Array
 from .robot import Robot
 from .simulation import TICK, Simulation
+from .stretch import LONGEST, Stretch
 
 _BLOCKED = 0.003
 _STANDING = 0.004
@@ -42,10 +45,13 @@ class Gripper:
         self._holding = False
         self._other_ticks = 0
         self._read: tuple[int, float] = (-1, 0.0)
+        self._planned: list[float] = []
         self.set_force(fingers.force if force is None else force)
         self.set_speed(fingers.speed if speed is None else speed)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._detect)
+        simulation.foresight.drives(self._drive, InputPlan(self._write, self._keep))
+        simulation.foresight.checks(self._detect, Glance(lambda: LONGEST, passed=self._detect_in))
 
     def set_force(self, newtons: float) -> None:
         """Grip force at each pad, N; the 2F-85 gives 20..235 N.
@@ -115,9 +121,17 @@ class Gripper:
         return self._holding
 
     def _detect(self) -> None:
-        blocked = abs(self._target - self._robot.closed_path()) > _BLOCKED
-        pressing = abs(float(self._simulation.data.actuator_force[self._servo])) > 0.9 * self._force
-        if (blocked and pressing and self._stands()) == self._holding:
+        path, speed, force = self._robot.finger_state()
+        self._count(self._grips(path, speed, force))
+
+    def _grips(self, path: float, speed: float, force: float) -> bool:
+        """Whether the fingers are blocked, press and stand."""
+        return (
+            abs(self._target - path) > _BLOCKED and abs(force) > 0.9 * self._force and abs(speed) < _STANDING
+        )
+
+    def _count(self, grips: bool) -> None:
+        if grips == self._holding:
             self._other_ticks = 0
             return
         self._other_ticks += 1
@@ -128,6 +142,35 @@ class Gripper:
         return abs(self._robot.closing_speed()) < _STANDING
 
     def _drive(self) -> None:
-        missing = self._target - self._setpoint
-        self._setpoint += math.copysign(min(self._speed * TICK, abs(missing)), missing)
-        self._simulation.setpoints[:, self._servo] = self._control(self._setpoint)
+        self._setpoint = self._next(self._setpoint)
+        self._simulation.setpoints[:, self._servo] = self._input(self._setpoint)
+
+    def _next(self, setpoint: float) -> float:
+        """The setpoint one tick later."""
+        missing = self._target - setpoint
+        return setpoint + math.copysign(min(self._speed * TICK, abs(missing)), missing)
+
+    def _input(self, setpoint: float) -> float:
+        return self._control(setpoint)
+
+    def _write(self, inputs: Array) -> int:
+        """`_drive`, for the coming ticks."""
+        wanted, setpoint = inputs[:, :, self._servo], self._setpoint
+        if setpoint == self._target:
+            self._planned = [setpoint] * len(inputs)
+            wanted[:] = self._input(setpoint)
+            return len(inputs)
+        self._planned = []
+        for tick in wanted:
+            setpoint = self._next(setpoint)
+            self._planned.append(setpoint)
+            tick[:] = self._input(setpoint)
+        return len(inputs)
+
+    def _keep(self, ticks: int) -> None:
+        self._setpoint = self._planned[ticks - 1]
+
+    def _detect_in(self, stretch: Stretch, ticks: int) -> None:
+        """`_detect`, for ticks of a stretch."""
+        for reading in stretch.readings[:ticks, self._robot.sensors].tolist():
+            self._count(self._grips(*self._robot.finger_state_of(*reading)))

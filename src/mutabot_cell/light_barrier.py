@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from .errors import SensorError
+from .foresight import Glance
 from .geometry import Array
 from .scene import LightBarrier
 from .simulation import TICK, Simulation
@@ -24,8 +25,10 @@ class LightBarriers:
         self._barriers = {barrier.name: barrier for barrier in barriers}
         self._read: dict[str, tuple[int, bool]] = {}
         self._geom = np.zeros(1, dtype=np.int32)
-        if any(_period(barrier) > 1 for barrier in self._barriers.values()):
+        self._periods = {_period(barrier) for barrier in self._barriers.values()} - {1}
+        if self._periods:  # the others look when they are asked
             simulation.after_tick.append(self._look)
+            simulation.foresight.checks(self._look, Glance(self._until))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -51,6 +54,10 @@ class LightBarriers:
         if name not in self._read or ticks >= self._read[name][0] + _period(self._barriers[name]):
             self._read[name] = ticks, self._is_hit(self._barriers[name])
         return self._read[name][1]
+
+    def _until(self) -> int:
+        """Control ticks until one has to look."""
+        return min(period - self._simulation.ticks % period for period in self._periods)
 
     def _look(self) -> None:
         for name, barrier in self._barriers.items():

@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from .errors import ConditionBroken
+from .foresight import Glance
 from .simulation import Simulation
+from .stretch import LONGEST
 
 Values = Callable[[], Mapping[str, object]]
 
@@ -29,6 +31,7 @@ class Monitors:
         self._watched: list[Condition] = []
         self.broken: list[ConditionBroken] = []
         simulation.after_tick.append(self._check)
+        simulation.foresight.checks(self._check, Glance(lambda: 1 if self._watched else LONGEST))
 
     def always(self, condition: Callable[[], object], name: str, values: Values | None = None) -> Condition:
         """Watch `condition` from now on, at every tick. See `Cell.always`."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from mutabot_cell.models.assembly import PAYLOAD_BODY, TOOL_SITE
+from mutabot_cell.models.assembly import FINGER_SENSORS, PAYLOAD_BODY, TOOL_SITE
 from mutabot_cell.models.model import ROBOT_BODY
 from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.models.tool import Fingers
@@ -27,6 +27,7 @@ class Robot:
         dofs: where its joints' speeds and torques are in `qvel`, `qfrc_constraint` and their like.
         servos: where the inputs of its joints' servos are in `ctrl`.
         fingers: number of the servo that moves its fingers; -1 without fingers.
+        sensors: where what its gripper measures is in `sensordata`: length, speed and force of the servo.
         site, body, payload: numbers of the tool point, of the body at its base, and of the payload's body.
         encoder_error: what each joint's encoder reads too much, rad; zero for a well calibrated arm. Servos,
             protective stop, planner and sensors know the encoders alone. Set it by `set_encoder_error`.
@@ -46,9 +47,12 @@ class Robot:
         self.payload = int(physics.body(prefix + PAYLOAD_BODY).id)
         effector = None if model.tool is None else model.tool.effector
         self._fingers = effector if isinstance(effector, Fingers) else None
-        if self._fingers is not None:
-            self._closed = Curve(self._fingers.lengths, self._fingers.paths)
         self.fingers = -1 if self._fingers is None else physics.actuator(prefix + self._fingers.actuator).id
+        if self._fingers is not None:
+            first = int(physics.sensor(prefix + FINGER_SENSORS[0]).adr[0])
+            self.sensors = slice(first, first + len(FINGER_SENSORS))
+            self._closed = Curve(self._fingers.lengths, self._fingers.paths)
+            self._sensed = data.sensordata[self.sensors]
         base = model.base
         self._base = np.array([base.x, base.y, base.z])
         turned = rotation_from_euler(base.theta_x, base.theta_y, base.theta_z)
@@ -97,9 +101,7 @@ class Robot:
 
     def closed_path(self) -> float:
         """How far the fingers have closed, m; 0 when they are open, and without fingers."""
-        if self._fingers is None:
-            return 0.0
-        return self._closed(float(self._data.actuator_length[self.fingers]))
+        return 0.0 if self._fingers is None else self.finger_state()[0]
 
     def opening(self) -> float:
         """Distance between the pads as the fingers' servo tells it, m; 0 without fingers."""
@@ -107,10 +109,15 @@ class Robot:
 
     def closing_speed(self) -> float:
         """How fast the fingers close, m/s."""
-        if self._fingers is None:
-            return 0.0
-        measured = float(self._data.actuator_length[self.fingers])
-        return float(self._data.actuator_velocity[self.fingers]) * self._closed.slope(measured)
+        return 0.0 if self._fingers is None else self.finger_state()[1]
+
+    def finger_state(self) -> tuple[float, float, float]:
+        """How far and how fast the fingers close, m and m/s, and their servo's force, in its own unit."""
+        return self.finger_state_of(*self._sensed.tolist())
+
+    def finger_state_of(self, length: float, speed: float, force: float) -> tuple[float, float, float]:
+        """The same from what the sensors of the servo read."""
+        return self._closed(length), speed * self._closed.slope(length), force
 
     def tool_pose(self) -> Pose:
         """Exact tool pose, base frame."""
@@ -122,6 +129,10 @@ class Robot:
     def tool_position(self) -> Position:
         """Exact tool position, base frame; quicker than the whole pose, for checks at every tick."""
         return Position(*self._tool_place().tolist())
+
+    def in_base_frame(self, direction: Array) -> Array:
+        """A direction of the world, shape (3,), as the robot's base frame has it."""
+        return direction if self._turned is None else self._turned.T @ direction
 
     def _tool_place(self) -> Array:
         place: Array = self._data.site_xpos[self.site] - self._base

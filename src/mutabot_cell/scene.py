@@ -23,6 +23,28 @@ typical values of tables of materials. The target table has the mat: what falls 
 
 
 @dataclass(frozen=True, slots=True)
+class Belt:
+    """What makes a fixture a conveyor: a drive for its surface, and an encoder. It stands until it is run.
+
+    Attributes:
+        direction: of positive speed, in the fixture's frame; its length does not matter.
+        speed_limit: of the drive, both ways, m/s.
+        acceleration: with which the drive changes its speed, m/s².
+        resolution: of the encoder, m of belt for one count.
+        jitter: standard deviation of the speed as part of the commanded one; 0 for a drive that runs evenly.
+            The speed then wanders as an Ornstein-Uhlenbeck process drawn from the round's seed.
+        jitter_time: correlation time of that process, s.
+    """
+
+    direction: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    speed_limit: float = 0.5
+    acceleration: float = 0.5
+    resolution: float = 0.0001
+    jitter: float = 0.0
+    jitter_time: float = 0.5
+
+
+@dataclass(frozen=True, slots=True)
 class Fixture:
     """A block that never moves: conveyor, table, wall.
 
@@ -30,6 +52,7 @@ class Fixture:
         size: full edge lengths.
         angles: Euler angles x, y, z about its centre.
         friction: sliding friction coefficient of its surface against a dry part.
+        belt: makes its surface move; the block itself stays where it is.
     """
 
     name: str
@@ -38,6 +61,7 @@ class Fixture:
     rgba: tuple[float, float, float, float] = (0.6, 0.6, 0.62, 1.0)
     friction: float = FRICTION_ON_STEEL
     angles: Triple = (0.0, 0.0, 0.0)
+    belt: Belt | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +89,9 @@ class LightBarrier:
     rate: float = 100.0
 
 
-CONVEYOR = Fixture("conveyor", (1.0, 2.5, 0.1), (0.6, 0.0, 0.95), (0.27, 0.29, 0.31, 1.0), FRICTION_ON_BELT)
+CONVEYOR = Fixture(
+    "conveyor", (1.0, 2.5, 0.1), (0.6, 0.0, 0.95), (0.27, 0.29, 0.31, 1.0), FRICTION_ON_BELT, belt=Belt()
+)
 TARGET_TABLE = Fixture(
     "target table", (0.8, 1.6, 0.06), (-0.6, 0.0, 0.73), (0.72, 0.60, 0.44, 1.0), FRICTION_ON_RUBBER
 )

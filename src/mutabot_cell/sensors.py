@@ -17,7 +17,7 @@ from .light_barrier import SOLID, LightBarriers
 from .parts import Part
 from .robot import Robot
 from .scene import Scene
-from .simulation import Simulation
+from .simulation import TICK, Simulation
 
 DISTANCE_RANGE = (0.02, 2.0)
 """Range of the distance sensor, m; further away it reads its upper end."""
@@ -89,6 +89,10 @@ class Sensors:
         if found is None:
             raise SensorError(f"the camera does not see {box.name!r}: something is in the way")
         return found
+
+    def picture_time(self) -> float:
+        """Simulated time, s, at which the picture was taken that `box_position` reads from now."""
+        return self._simulation.frame()[0] * TICK
 
     def _look_for(self, box: Part) -> Position | None:
         """Where the picture shows the box; None if less than a third of it can be seen."""

@@ -11,13 +11,16 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models.assembly import build_cell
-from mutabot_cell.models.options import PHYSICS_STEP, ignore_warning
+from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.models.robot import RobotModel
+from mutabot_cell.models.sleeping import may_sleep
 
 from .errors import SimulationDiverged
+from .foresight import Foresight
 from .geometry import Array
 from .robot import Robot
 from .scene import Scene
+from .stretch import Stretch
 
 STEPS_PER_TICK = 5
 TICK = STEPS_PER_TICK * PHYSICS_STEP
@@ -41,10 +44,10 @@ class Simulation:
             rad, fingers in the unit of their servo. Drivers fill it before each tick.
         before_tick: called before each tick, in order; they write `setpoints`.
         after_tick: called after each tick, in order; they may raise.
+        foresight: says of hooks how they do without being called at each tick.
     """
 
     def __init__(self, scene: Scene, robots: Mapping[str, RobotModel]) -> None:
-        mujoco.set_mju_user_warning(ignore_warning)
         self.model = build_cell(scene, robots)
         self.data = mujoco.MjData(self.model)
         self.robots = {
@@ -56,10 +59,13 @@ class Simulation:
         self.setpoints: Array = np.tile(self.data.ctrl, (STEPS_PER_TICK, 1))
         self.before_tick: list[Callable[[], None]] = []
         self.after_tick: list[Callable[[], None]] = []
+        self.foresight = Foresight()
+        self._stretch = Stretch(self.model, self.data, STEPS_PER_TICK)
         self._ticks = 0
         self._frames: deque[tuple[int, Array]] = deque([(0, self.data.qpos.copy())], maxlen=_KEPT_FRAMES)
         self._ids: dict[tuple[str, str], int] = {}
-        self._speeds, self._places = self.data.qvel, self.data.qpos  # views of the physics' own memory
+        # views of the physics' own memory
+        self._speeds, self._places, self._servos = self.data.qvel, self.data.qpos, self.data.ctrl
 
     @property
     def time(self) -> float:
@@ -88,30 +94,80 @@ class Simulation:
             found = self._ids[kind, name] = int(getattr(self.model, kind)(name).id)
         return found
 
-    def tick(self) -> float:
+    def tick(self, most: int = 1) -> float:
         """Advance by one control tick (`TICK` s) and return the simulated time, s.
+
+        Args:
+            most: so many control ticks may pass instead, where nothing has to decide in between. All is bit
+                by bit the same as one by one.
 
         Raises:
             SimulationDiverged: the physics gave NaN or absurd speeds.
             ProtectiveStop, ConditionBroken: from the safety check and the monitors.
         """
-        for drive in self.before_tick:
-            drive()
-        data, cell_model, step = self.data, self.model, mujoco.mj_step
-        ctrl = data.ctrl
-        for row in self.setpoints:
-            ctrl[:] = row
-            step(cell_model, data)
-        self._ticks += 1
-        if self._ticks % FRAME_TICKS == 0:
-            self._frames.append((self._ticks, self._places.copy()))
-        # one number tells of all: not below the limit also if a value is NaN
-        speeds, places = self._speeds, self._places
-        if not (speeds.dot(speeds) < _ABSURD_SPEED**2 and math.isfinite(places.dot(places))):
+        if most < 2 or not self._take_stretch(most):
+            for drive in self.before_tick:
+                drive()
+            self._step()
+        if not _are_sane(self._places, self._speeds):
             self._check_speeds()
         for check in self.after_tick:
             check()
         return self.time
+
+    def _step(self) -> None:
+        data, cell_model, step, servos = self.data, self.model, mujoco.mj_step, self._servos
+        for row in self.setpoints:
+            servos[:] = row
+            step(cell_model, data)
+        self._ticks += 1
+        if self._ticks % FRAME_TICKS == 0:
+            self._frames.append((self._ticks, self._places.copy()))
+
+    def _take_stretch(self, most: int) -> bool:
+        """Let at most so many ticks pass, up to the first at which a check is needed; False: none passed."""
+        if may_sleep(self.model):  # a stretch sets states, and that wakes what sleeps
+            return False
+        stretch, foresight = self._stretch, self.foresight
+        ticks = foresight.write(self.before_tick, self.after_tick, stretch.inputs[:most])
+        if ticks < 2:
+            return False
+        if not stretch.run(ticks, foresight.notes):
+            stretch.go_back(0)
+            return False
+        quiet = foresight.quiet(stretch, self._sane(ticks - 1))
+        if quiet < ticks - 1:
+            ticks = quiet + 1
+            stretch.go_back(ticks)
+        foresight.keep(stretch, ticks)
+        self.setpoints[:] = stretch.inputs[ticks - 1]
+        for number in range(-(self._ticks + 1) % FRAME_TICKS, ticks, FRAME_TICKS):
+            self._frames.append((self._ticks + 1 + number, stretch.places[number].copy()))
+        self._ticks += ticks
+        return True
+
+    def call_within_stretch(self, hook: Callable[[], None], number: int) -> None:
+        """After a tick of a stretch (its number), call a hook that only looks, as after a single tick.
+
+        Nothing is called if that tick, or one before, may be taken back because a check is needed.
+        """
+        ticks = number + 1
+        if self.foresight.quiet(self._stretch, self._sane(ticks)) < ticks:
+            return
+        self._ticks += ticks
+        try:
+            hook()
+        finally:
+            self._ticks -= ticks
+
+    def _sane(self, ticks: int) -> int:
+        """After how many of the first so many ticks of the stretch nothing was wrong in the physics."""
+        states = self._stretch.states[:ticks].ravel()
+        # one number tells of all, in doubt each tick is looked at; it is not below the limit if one is NaN
+        if states.dot(states) < _ABSURD_SPEED**2:
+            return ticks
+        moments = zip(self._stretch.places[:ticks], self._stretch.speeds[:ticks], strict=True)
+        return next((tick for tick, moment in enumerate(moments) if not _are_sane(*moment)), ticks)
 
     def _check_speeds(self) -> None:
         fastest = float(np.abs(self._speeds).max())
@@ -120,5 +176,11 @@ class Simulation:
 
     def advance(self, seconds: float) -> None:
         """Run whole ticks until at least `seconds` have passed (rounded to the nearest tick)."""
-        for _ in range(round(seconds / TICK)):
-            self.tick()
+        end = self._ticks + round(seconds / TICK)
+        while self._ticks < end:
+            self.tick(end - self._ticks)
+
+
+def _are_sane(places: Array, speeds: Array) -> bool:
+    """Whether one number tells that all are finite and no speed is absurd; in doubt not."""
+    return bool(speeds.dot(speeds) < _ABSURD_SPEED**2 and math.isfinite(places.dot(places)))

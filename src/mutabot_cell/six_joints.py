@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .arm import Arm
+from .move import Move
 from .sensors import Sensors
 
 
@@ -20,7 +21,11 @@ class SixJointArm(Arm):
 
     def move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> None:
         """Move all joints to `angles` (six, degrees) at once; see `Arm.move_joints`."""
-        self._move_to_angles(angles, speed)
+        self._start_angles(angles, speed).wait()
+
+    def start_move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> Move:
+        """Like `move_joints`, but returns at once."""
+        return self._start_angles(angles, speed)
 
 
 class SixJointSensors(Sensors):

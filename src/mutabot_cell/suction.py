@@ -15,9 +15,11 @@ from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.tool import SEALED_GAP, SuctionCup
 from mutabot_cell.models.vacuum import Vacuum
 
+from .foresight import Glance
 from .geometry import Array
 from .robot import Robot
 from .simulation import TICK, Simulation
+from .stretch import LONGEST
 
 SWITCHING_POINT, HYSTERESIS = 55e3, 1e3
 """Vacuum above which it reports a part, and by how much less it must be to report none, Pa: the factory
@@ -55,6 +57,7 @@ class Suction:
         self._dofs = robot.dofs
         self._torque = np.zeros(model.nv)
         simulation.after_tick.append(self._pull)
+        simulation.foresight.checks(self._pull, Glance(lambda: 1 if self._acts() else LONGEST))
 
     def on(self) -> None:
         """Start the ejector. Returns at once; the vacuum comes within some tenths of a second."""
@@ -98,8 +101,12 @@ class Suction:
             )
         return self._torque[self._dofs]
 
+    def _acts(self) -> bool:
+        """Whether it draws, presses or has a vacuum; otherwise nothing changes with the time."""
+        return self._is_on or bool(self._pulled) or self._vacuum.pressure != 0.0
+
     def _pull(self) -> None:
-        if not self._is_on and not self._pulled and self._vacuum.pressure == 0.0:
+        if not self._acts():
             return
         touched, opening = self._touched()
         self._vacuum.advance(TICK, self.leak + opening, is_on=self._is_on)

@@ -36,8 +36,10 @@ class RobotSystem:
         grip_force: float | None,
         finger_speed: float | None,
     ) -> None:
+        self.force_sensor = ForceSensor(simulation, robot, noise)
         has_six = len(robot.model.joints) == 6
-        self.arm = SixJointArm(simulation, robot) if has_six else Arm(simulation, robot)
+        arm = SixJointArm if has_six else Arm
+        self.arm = arm(simulation, robot, self.force_sensor)
         self._gripper: Gripper | None = None
         self._suction: Suction | None = None
         effector = None if robot.model.tool is None else robot.model.tool.effector
@@ -46,7 +48,6 @@ class RobotSystem:
         elif isinstance(effector, SuctionCup):
             self._suction = Suction(simulation, robot, effector, noise)
             self.arm.explained.append(self._suction.arm_torque)
-        self.force_sensor = ForceSensor(simulation, robot, noise)
         sensors = SixJointSensors if has_six else Sensors
         self.sensors = sensors(simulation, robot, self.arm.kinematics, noise, scene, numbers)
         self._name = robot.model.name

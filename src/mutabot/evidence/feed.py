@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from math import floor, isfinite
+from math import floor, inf, isfinite
 from typing import Any
 
 from . import tape as tapes
@@ -97,6 +97,19 @@ class Feed:
         now = self._now(tape) if tape is not None else None
         if tape is not None and now is not None:
             tape.note(self._offset + now, "note", text)
+
+    @property
+    def due(self) -> float:
+        """The simulated time, s, before which ``tick`` has nothing to tell; inf while no test is recorded.
+
+        For a simulator that takes many steps at once: calls of ``tick`` before it may be left out.
+        """
+        tape = tapes.running()
+        if tape is None:
+            return inf
+        if tape is not self._tape:
+            return -inf
+        return self._due if tape.film is None else min(self._due, self._next_picture)
 
     def tick(self) -> None:
         """Simulated time has passed: to be called after each step, or whenever something is heard."""

@@ -16,7 +16,7 @@ from .options import compile_quietly
 from .parts import add_grip, add_part, add_surfaces
 from .robot import RobotModel
 from .sleeping import MANY, let_sleep
-from .tool import Tool
+from .tool import Fingers, Tool
 
 TOOL_SITE, PAYLOAD_BODY = "tool", "payload"
 """Behind a robot's prefix, names of what the cell adds to it: the tool point, and the empty body at which the
@@ -24,6 +24,14 @@ controller compensates the declared payload's weight."""
 
 _CLASSES_OF_A_ROBOT, _ALL_CLASSES = 2, 2**31 - 1
 """A robot needs two bits of the collision classes, one for the arm and one for the gripper; there are 31."""
+FINGER_SENSORS = ("finger path", "finger speed", "finger force")
+"""Behind a robot's prefix, what its gripper measures of the servo of its fingers."""
+
+_MEASURED = (
+    mujoco.mjtSensor.mjSENS_ACTUATORPOS,
+    mujoco.mjtSensor.mjSENS_ACTUATORVEL,
+    mujoco.mjtSensor.mjSENS_ACTUATORFRC,
+)
 _PAYLOAD_MARKER = 1e-6
 """Mass of the empty body at which the controller compensates a payload, kg."""
 
@@ -86,12 +94,20 @@ def _equipped(robot: RobotModel, tool: Tool | None) -> mujoco.MjSpec:
         keep_apart(spec, flange.parent, tool)
         frame = flange.parent.add_frame(pos=flange.pos, quat=flange.quat)
         spec.attach(tool.spec.copy(), frame=frame, prefix="")
+        if isinstance(tool.effector, Fingers):
+            _measure(spec, tool.effector.actuator)
     point, turn = _tool_point(flange, robot.tool)
     flange.parent.add_site(name=TOOL_SITE, pos=point, quat=turn, size=(0.002,) * 3, rgba=(0, 0, 0, 0))
     payload = flange.parent.add_body(name=PAYLOAD_BODY, pos=point, quat=turn, gravcomp=1.0)
     payload.mass, payload.inertia, payload.ipos = _PAYLOAD_MARKER, (1e-9,) * 3, (0.0, 0.0, 0.0)
     payload.explicitinertial = True
     return spec
+
+
+def _measure(spec: mujoco.MjSpec, servo: str) -> None:
+    """Let it sense what a gripper measures of the servo of its fingers."""
+    for name, sensor in zip(FINGER_SENSORS, _MEASURED, strict=True):
+        spec.add_sensor(name=name, type=sensor, objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=servo)
 
 
 def keep_apart(spec: mujoco.MjSpec, link: mujoco.MjsBody, tool: Tool) -> None:

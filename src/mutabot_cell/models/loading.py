@@ -15,7 +15,6 @@ from mutabot_cell.geometry import Pose, pose_of
 from .checks import check_chain, check_masses, check_size, check_touch, compiled
 from .lean import ARM_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
 from .limits import Limits, ToolLimits
-from .options import ignore_warning
 from .robot import ON_PEDESTAL, RobotModel
 from .servos import make_servos, servos_of, torque_of
 
@@ -47,7 +46,6 @@ def read(path: str | PathLike[str]) -> mujoco.MjSpec:
     """The spec of a file. Raises BadModel if MuJoCo cannot read it."""
     if not Path(path).is_file():
         raise BadModel(f"there is no file {fspath(path)!r}")
-    mujoco.set_mju_user_warning(ignore_warning)
     try:
         return mujoco.MjSpec.from_file(fspath(path))
     except (ValueError, mujoco.FatalError) as error:

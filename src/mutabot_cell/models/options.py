@@ -46,8 +46,10 @@ def compile_quietly(spec: mujoco.MjSpec) -> mujoco.MjModel:
         return spec.compile()
 
 
-def ignore_warning(message: str) -> None:
-    """For `mujoco.set_mju_user_warning`: MuJoCo would write warnings into a file in the working directory.
+def _ignore_warning(message: str) -> None:
+    """Models are checked, and `Simulation.tick` finds what matters itself."""
 
-    Models are checked, and `Simulation.tick` finds what matters itself.
-    """
+
+# here, since whoever builds a model imports this: MuJoCo writes the first warning into MUJOCO_LOG.TXT in the
+# working directory, which building alone can cause
+mujoco.set_mju_user_warning(_ignore_warning)

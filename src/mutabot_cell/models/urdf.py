@@ -15,7 +15,6 @@ from mutabot_cell.errors import BadModel
 
 from .limits import Limits
 from .loading import names_of, robot_from_spec
-from .options import ignore_warning
 from .robot import RobotModel
 
 # Names of meshes are paths from the file; links without joints keep their names; looks are left out.
@@ -41,7 +40,6 @@ def robot_from_urdf(
     text = _PACKAGE.sub(lambda found: f"{Path(packages[found[1]]).resolve()}/", text)
     head, end = _opening(text, path)
     folder = Path(path).resolve().parent
-    mujoco.set_mju_user_warning(ignore_warning)
     try:
         spec = mujoco.MjSpec.from_string(text[:end] + _COMPILER.format(folder) + text[end:])
     except (ValueError, mujoco.FatalError) as error:

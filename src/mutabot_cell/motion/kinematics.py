@@ -63,6 +63,13 @@ class Kinematics:
         mujoco.mj_kinematics(self._model, self._data)
         return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
 
+    def jacobian(self) -> Array:
+        """Of the tool where `tool` was asked for last: base frame, m and rad per rad, shape (6, 7)."""
+        mujoco.mj_comPos(self._model, self._data)
+        jacobian = np.zeros((6, self._model.nv))
+        mujoco.mj_jacSite(self._model, self._data, jacobian[:3], jacobian[3:], self._site)
+        return jacobian
+
     def follow(self, joints: Array, line: Line) -> Array:
         """Joint angles at evenly spaced points of `line`, starting at `joints`: shape (knots, joints), rad.
 

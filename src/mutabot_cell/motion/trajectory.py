@@ -21,7 +21,10 @@ _GRID = 0.01
 _SMOOTHING = 0.15
 """Half width of the window over which slowing down is spread, s."""
 
+_SHORTEST_BRAKING = 0.05
+"""Half of the time for braking on the path that is tried first, s."""
 _SAFETY = 0.98
+_LESS_JERK = (1.0, 0.999, 0.99)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +104,7 @@ def joint_motion(start: Array, end: Array, step: float, limits: JointLimits, spe
     """
     speeds, accelerations, jerks = _arrays(limits)
     times, values, rates, _ = _ruckig(start, end, speeds * speed, accelerations, jerks)
-    return _sampled(times, values, rates, step)
+    return sampled(times, values, rates, step)
 
 
 def line_motion(
@@ -148,8 +151,8 @@ def line_motion(
     stretch = _smooth(np.maximum(factor, 1.0), times[1] - times[0])
     stretched = np.concatenate(([0.0], np.cumsum(0.5 * (stretch[1:] + stretch[:-1]) * np.diff(times))))
     values, rates = spline.value(places), speeds / stretch[:, None]
-    scale = _needed_slowdown(_sampled(stretched, values, rates, _GRID), _GRID, highest)
-    return _sampled(stretched * scale, values, rates / scale, step)
+    scale = _needed_slowdown(sampled(stretched, values, rates, _GRID), _GRID, highest)
+    return sampled(stretched * scale, values, rates / scale, step)
 
 
 def _arrays(limits: JointLimits) -> tuple[Array, Array, Array]:
@@ -166,12 +169,31 @@ def _ruckig(
     request.current_position, request.target_position = start.tolist(), end.tolist()
     request.max_velocity, request.max_acceleration = speed.tolist(), acceleration.tolist()
     request.max_jerk = jerk.tolist()
-    trajectory = ruckig.Trajectory(count)
-    ruckig.Ruckig(count).calculate(request, trajectory)
+    trajectory = calculated(ruckig.Ruckig(count), request)
     times = np.linspace(0.0, trajectory.duration, max(2, math.ceil(trajectory.duration / _GRID) + 1))
     rows = [trajectory.at_time(time)[:3] for time in times.tolist()]
     states = np.array(rows).reshape(len(rows), 3, count)
     return times, states[:, 0], states[:, 1], states[:, 2]
+
+
+def calculated(law: ruckig.Ruckig, request: ruckig.InputParameter) -> ruckig.Trajectory:
+    """The time law that is asked for.
+
+    Where two kinds of laws meet (a length of exactly 2 a³/j², say) ruckig finds neither in a few cases of a
+    hundred, for the rounding of its inputs. A little less jerk, which the request then has, leads away.
+    """
+    trajectory = ruckig.Trajectory(request.degrees_of_freedom)
+    jerks = list(request.max_jerk)
+    for part in _LESS_JERK:
+        request.max_jerk = [part * jerk for jerk in jerks]
+        try:
+            law.calculate(request, trajectory)
+        except ruckig.RuckigError:
+            if part == _LESS_JERK[-1]:
+                raise
+            continue
+        break
+    return trajectory
 
 
 def _smooth(factor: Array, grid: float) -> Array:
@@ -197,7 +219,7 @@ def _needed_slowdown(motion: Motion, step: float, highest: tuple[Array, Array, A
     return over
 
 
-def _sampled(times: Array, values: Array, rates: Array, step: float) -> Motion:
+def sampled(times: Array, values: Array, rates: Array, step: float) -> Motion:
     """Cubic Hermite interpolation at every `step` s, the last sample at or just after the end."""
     count = math.ceil(times[-1] / step - 1e-9)
     wanted = np.minimum(np.arange(1, count + 1) * step, times[-1])

@@ -8,9 +8,11 @@ import mujoco
 import numpy as np
 
 from mutabot.evidence import Feed
+from mutabot_cell.foresight import Glance
 from mutabot_cell.robot import Robot
 from mutabot_cell.scene import Scene
-from mutabot_cell.simulation import Simulation
+from mutabot_cell.simulation import TICK, Simulation
+from mutabot_cell.stretch import LONGEST
 
 from .camera import Camera, View
 from .contacts import Contacts
@@ -18,6 +20,8 @@ from .contacts import Contacts
 #: of a film: from where robot, conveyor and table are seen, pixels, pictures per simulated second
 _VIEW = View(azimuth=90.0, elevation=-33.0, distance=2.05, look_at=(0.0, 0.1, 0.96))
 _HEIGHT, _WIDTH, _RATE = 450, 600, 12.5
+#: s: rather is the feed called before it has something to tell than too late
+_EARLY = 1e-5
 
 
 def tell_of(simulation: Simulation, scene: Scene) -> Feed:
@@ -34,7 +38,7 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
     for fixture in scene.fixtures:
         feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)
     feed.camera(Camera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)
-    simulation.after_tick.append(feed.tick)
+    _Teller(simulation, feed)
     return feed
 
 
@@ -46,6 +50,26 @@ def _tool_pose(data: mujoco.MjData, robot: Robot) -> Callable[[], list[float]]:
         return [*data.site_xpos[site].tolist(), *turned.tolist()]
 
     return tool
+
+
+class _Teller:
+    """Calls a feed whenever it has something to tell, also in the middle of a stretch."""
+
+    def __init__(self, simulation: Simulation, feed: Feed) -> None:
+        self._simulation, self._feed = simulation, feed
+        self._due = 0.0
+        simulation.after_tick.append(feed.tick)
+        simulation.foresight.checks(feed.tick, Glance(self._until, self._note))
+
+    def _until(self) -> int:
+        self._due = self._feed.due - _EARLY
+        return 1 if self._due < self._simulation.time else LONGEST
+
+    def _note(self, number: int) -> None:
+        if (self._simulation.ticks + number + 1) * TICK < self._due:
+            return
+        self._simulation.call_within_stretch(self._feed.tick, number)
+        self._due = self._feed.due - _EARLY
 
 
 def _pose(data: mujoco.MjData, body: int) -> Callable[[], list[float]]:

@@ -21,7 +21,7 @@ from mutabot_cell import (
     simulated_time,
     world,
 )
-from mutabot_cell.simulation import TICK
+from mutabot_cell.simulation import TICK, Simulation
 
 pytest_plugins = ["pytester"]
 
@@ -52,15 +52,20 @@ def test_tick_returns_the_simulated_time(cell: Cell) -> None:
 
 
 def test_every_advance_of_time_goes_through_tick(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
-    ticks = []
+    passed = []
     original = cell.simulation.tick
-    monkeypatch.setattr(
-        type(cell.simulation), "tick", lambda simulation: ticks.append(simulation) or original()
-    )
+
+    def tick(simulation: Simulation, most: int = 1) -> float:
+        before = simulation.time
+        now = original(most)
+        passed.append(now - before)
+        return now
+
+    monkeypatch.setattr(Simulation, "tick", tick)
     cell.arm.move_by(y=0.05)
     cell.gripper.command(0.5, wait=True)
     cell.wait(0.2)
-    assert len(ticks) * TICK == pytest.approx(cell.time)
+    assert sum(passed) == pytest.approx(cell.time)
 
 
 @pytest.mark.parametrize("seconds", [-1.0, float("nan"), float("inf"), "1"])
@@ -252,3 +257,13 @@ def test_process_has_one_thread_after_a_motion_so_it_may_fork() -> None:
         "print([l.split()[1] for l in open('/proc/self/status') if l.startswith('Threads')][0])"
     )
     assert run_python(code) == "1\n"
+
+
+def test_putting_models_together_writes_nothing_into_the_working_directory(tmp_path: Path) -> None:
+    """MuJoCo writes its warnings there."""
+    code = "import mutabot_cell; from mutabot_cell.models.assembly import build_robot as build\n"
+    code += "build(mutabot_cell.gen3())"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert (list(tmp_path.iterdir()), done.stderr) == ([], "")

@@ -107,3 +107,18 @@ def test_unknown_colour_and_seed_are_refused() -> None:
         Cell(1, scene=Scene(parts=(Box(colour="green"),)))
     with pytest.raises(BadArgument, match="seed"):
         Cell("one")  # type: ignore[arg-type]
+
+
+def test_the_encoder_tells_where_the_belt_was_when_the_camera_took_its_picture() -> None:
+    """So a box on a moving belt is where the picture showed it plus what the belt has run since."""
+    cell = Cell(1, noise=False, scene=Scene(parts=(Box(position=(0.55, -0.6, 1.0), jitter=0.0),)))
+    belt = cell.belt()
+    belt.run(0.2)
+    cell.wait(1.0)
+    for _ in range(20):
+        cell.simulation.tick()
+        age = cell.time - cell.sensors.picture_time()
+        assert 0.04 <= age + 1e-9 <= 0.07 + 2e-9
+        seen = cell.sensors.box_position().y + belt.position() - belt.position(cell.sensors.picture_time())
+        count, stale = 1e-4, 0.2 * 0.002  # places are those at the beginning of a physics step
+        assert seen == pytest.approx(cell.truth.box_position().y, abs=count + stale)

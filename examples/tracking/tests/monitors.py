@@ -1,0 +1,115 @@
+"""What must hold at every moment. Lengths in m, world frame; speeds in m/s."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from mutabot_cell import Cell, Position
+
+BELT_TOP, BELT_EDGE = 1.0, 0.1
+"""Height of the belt, and the x at which it begins."""
+TABLE_TOP, TABLE_EDGE = 0.76, -0.2
+"""Height of the table, and the x at which it ends."""
+BASE_HEIGHT = 0.9
+
+FINGERS = 0.021
+"""The fingers of a gripper that looks down reach this far below the tool point."""
+FINGER_CLEARANCE = 0.005
+"""No nearer to belt and table; the program means to keep 0.009."""
+SINKING = 0.002
+"""What lies or lands on a surface sinks in a little: contacts are soft. 0.001 is usual."""
+LOOSE, OPEN = 0.052, 0.08
+"""Fingers further apart than this do not hold a box of 0.05; and are as good as open."""
+NEAR, STANDING = 0.1, 0.05
+"""Nearer to a surface than this, the tool stands still over it while the fingers open or close: below this
+speed, on the belt as seen from it. (A finger that meets the box makes it twitch at 0.01.)"""
+LOW = 0.005
+"""A box may fall this deep when it is let go: the program means 0.0015; the noise of its camera is 0.0005."""
+LARGEST_TILT = 3.0
+"""Degrees. A joint move between two poses that both look down leans over by 1.3° on its way."""
+CARRYING_HEIGHT, PUSHING_SPEED = 0.1, 0.15
+"""Nearer to a surface than this a box may only be pushed by closing fingers: 0.05 each, and a little more
+at the moment they touch it."""
+PAST = 0.4
+"""No box of the batch goes further along the belt than this (y): it would be beyond the arm's reach."""
+
+
+def watch_gripper(cell: Cell) -> None:
+    """For every test case: no finger touches what boxes lie on, and the arm waits for the fingers."""
+    motion = Motion(cell, cell.truth.tool_position)
+    cell.always(lambda: clearance(cell) > FINGER_CLEARANCE, "the fingers keep clear of belt and table")
+    cell.always(
+        lambda: (
+            motion.speed() < STANDING or clearance(cell) > NEAR or not LOOSE < cell.truth.opening() < OPEN
+        ),
+        "the arm waits for the fingers",
+    )
+
+
+def watch_box(cell: Cell, name: str) -> None:
+    """For boxes that are picked and set down: gently, and in time."""
+    motion = Motion(cell, lambda: cell.truth.box_position(name))
+    cell.always(lambda: height(cell, name) > -SINKING, f"{name} is not pressed into belt or table")
+    cell.always(lambda: cell.truth.opening() < LOOSE or height(cell, name) < LOW, f"{name} is never dropped")
+    cell.always(
+        lambda: motion.sideways() < PUSHING_SPEED or height(cell, name) > CARRYING_HEIGHT,
+        f"{name} is carried high",
+    )
+    cell.always(lambda: cell.truth.box_tilt(name) < LARGEST_TILT, f"{name} stays upright")
+    cell.always(lambda: not is_past(cell, name), f"{name} does not get past the robot")
+
+
+def is_past(cell: Cell, name: str) -> bool:
+    """Whether the belt has carried the box out of reach."""
+    box = cell.truth.box_position(name)
+    return box.y > PAST and box.x > BELT_EDGE and height(cell, name) < LOW
+
+
+def height(cell: Cell, name: str) -> float:
+    """Of a box above belt or table; between them, above the floor."""
+    box = cell.truth.box_position(name)
+    return box.z - _top(box.x)
+
+
+def clearance(cell: Cell) -> float:
+    """Of the fingers above belt, table or floor, when they point down."""
+    tool = cell.truth.tool_position()
+    return tool.z + BASE_HEIGHT - FINGERS - _top(tool.x)
+
+
+def _top(x: float) -> float:
+    if x > BELT_EDGE:
+        return BELT_TOP
+    return TABLE_TOP if x < TABLE_EDGE else 0.0
+
+
+class Motion:
+    """A speed over what lies below, maybe the moving belt; 0 if no time has passed since the last one."""
+
+    def __init__(self, cell: Cell, position: Callable[[], Position]) -> None:
+        self._cell = cell
+        self._position = position
+        self._time, self._place, self._travel = cell.time, position(), cell.truth.belt_position()
+
+    def speed(self) -> float:
+        """In all directions."""
+        return math.hypot(*self._velocity())
+
+    def sideways(self) -> float:
+        """In the horizontal directions."""
+        return math.hypot(*self._velocity()[:2])
+
+    def _velocity(self) -> tuple[float, float, float]:
+        before, self._place = self._place, self._position()
+        ran, self._travel = self._travel, self._cell.truth.belt_position()
+        passed, self._time = self._cell.time - self._time, self._cell.time
+        if passed <= 0:
+            return (0.0, 0.0, 0.0)
+        now = self._place
+        below = self._travel - ran if now.x > BELT_EDGE else 0.0
+        return (
+            (now.x - before.x) / passed,
+            (now.y - before.y - below) / passed,
+            (now.z - before.z) / passed,
+        )

@@ -1,0 +1,116 @@
+"""What hooks of the simulation know beforehand, so that control ticks can be stepped in stretches.
+
+What drivers and checks compute between two ticks can take as long as the physics. In a stretch, drivers lay
+down the inputs of all its ticks first, and checks look at what all its ticks were like afterwards. The first
+tick at which one of them would have found something ends the stretch, so a stretch is bit by bit the same as
+its ticks one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from .geometry import Array
+from .stretch import Stretch
+
+Hook = Callable[[], None]
+
+
+@dataclass(frozen=True, slots=True)
+class InputPlan:
+    """What a driver does instead of being called before each tick.
+
+    Attributes:
+        write: writes its servos' inputs, an array of the shape (ticks, physics steps in a tick, servos), and
+            gives how many of the ticks these are good for. It changes nothing else.
+        keep: told how many of these ticks have passed.
+    """
+
+    write: Callable[[Array], int]
+    keep: Callable[[int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Glance:
+    """What a check does instead of being called after each tick but the last one of a stretch.
+
+    Attributes:
+        until: gives within how many ticks it must be called again, whatever happens; at least 1.
+        note: called after each tick with its number in the stretch, in the order in which checks were made
+            known, to remember what the stretch does not.
+        quiet: of the first so many ticks of the stretch, at how many in a row the check would have found
+            nothing; in doubt too few. It changes nothing.
+        passed: so many ticks have passed without it.
+    """
+
+    until: Callable[[], int]
+    note: Callable[[int], None] | None = None
+    quiet: Callable[[Stretch, int], int] | None = None
+    passed: Callable[[Stretch, int], None] | None = None
+
+
+class Foresight:
+    """What is known of a simulation's hooks. One of which nothing is known is called at each tick.
+
+    Attributes:
+        notes: what is to be called after each tick of a stretch.
+    """
+
+    def __init__(self) -> None:
+        self._plans: dict[Hook, InputPlan] = {}
+        self._glances: dict[Hook, Glance] = {}
+        self._quiet: list[Callable[[Stretch, int], int]] = []
+        self._passed: list[Callable[[Stretch, int], None]] = []
+        self.notes: list[Callable[[int], None]] = []
+
+    def drives(self, hook: Hook, plan: InputPlan) -> None:
+        """In a stretch, this plan stands for `hook`, which is called before each tick."""
+        self._plans[hook] = plan
+
+    def checks(self, hook: Hook, glance: Glance) -> None:
+        """In a stretch, it is enough to glance instead of calling `hook` after each tick."""
+        self._glances[hook] = glance
+        if glance.note is not None:
+            self.notes.append(glance.note)
+        if glance.quiet is not None:
+            self._quiet.append(glance.quiet)
+        if glance.passed is not None:
+            self._passed.append(glance.passed)
+
+    def write(self, drivers: Sequence[Hook], checks: Sequence[Hook], inputs: Array) -> int:
+        """Lay down the inputs of as many ticks as can be stepped in one stretch; gives how many these are.
+
+        It is 1 as long as there is a hook of which nothing is known.
+
+        Args:
+            drivers, checks: the hooks before and after a tick.
+            inputs: shape (ticks, physics steps in a tick, servos).
+        """
+        ticks = len(inputs)
+        if len(drivers) != len(self._plans) or len(checks) != len(self._glances):
+            return 1
+        for check in checks:
+            glance = self._glances.get(check)
+            ticks = min(ticks, glance.until()) if glance is not None else 1
+            if ticks == 1:
+                return 1
+        for driver in drivers:
+            plan = self._plans.get(driver)
+            ticks = min(ticks, plan.write(inputs[:ticks])) if plan is not None else 1
+            if ticks == 1:
+                return 1
+        return ticks
+
+    def quiet(self, stretch: Stretch, ticks: int) -> int:
+        """At how many in a row, of the first so many ticks, no check would have found anything."""
+        for quiet in self._quiet:
+            ticks = quiet(stretch, ticks)
+        return ticks
+
+    def keep(self, stretch: Stretch, ticks: int) -> None:
+        """So many ticks have passed; after the last of them the hooks are called."""
+        for plan in self._plans.values():
+            plan.keep(ticks)
+        for passed in self._passed:
+            passed(stretch, ticks - 1)
