@@ -3,7 +3,7 @@
     python benchmarks/cell_physics.py [FACT ...]
 
 Facts: path, encoders, repeatability, coulomb, payload, holding, creep, rebound, limits, inertia, friction,
-sensors, sight, energy.
+sensors, sight, suction, rolling, weighing, energy.
 All of them without an argument.
 """
 
@@ -18,9 +18,11 @@ from contextlib import contextmanager
 import mujoco
 import numpy as np
 
-from mutabot_cell import Box, Cell, CellError, Scene
+from mutabot_cell import Box, Cell, CellError, Cylinder, Scene, gen3, suction_cup
 from mutabot_cell.models import kinova
 from mutabot_cell.models.assembly import build_arm
+from mutabot_cell.models.parts import ROLLING
+from mutabot_cell.models.vacuum import Ejector
 
 GRAVITY = 9.81
 DOWN = (0.0, 26.0, 180.0, -78.0, 0.0, -76.0, 90.0)
@@ -311,6 +313,70 @@ def sight() -> Iterator[str]:
         yield f"under a closed hood: {error}"
 
 
+def suction() -> Iterator[str]:
+    """What a suction cup holds, beside vacuum times area: the part is pulled down until it comes off."""
+    for diameter, limit in ((0.02, 60e3), (0.03, 60e3), (0.03, 30e3), (0.04, 40e3)):
+        cell = _sucked(diameter, limit)
+        force, weight = limit * math.pi * diameter**2 / 4, 0.5 * GRAVITY
+        down = cell.simulation.model.joint("box").dofadr[0] + 2
+        pull = 0.0
+        while cell.suction.holding() or cell.suction.vacuum() > 0.9 * limit:
+            pull += 0.1
+            cell.simulation.data.qfrc_applied[down] = weight - pull
+            cell.simulation.tick()
+        cup = f"{1000 * diameter:.0f} mm at {limit / 1e3:.0f} kPa"
+        yield f"{cup}: off at {pull:.1f} N, the law says {force:.1f} N"
+
+
+def _sucked(diameter: float, limit: float) -> Cell:
+    """A box of 0.5 kg that hangs on a suction cup."""
+    robot = gen3().with_tool(suction_cup(diameter, ejector=Ejector(limit=limit)))
+    box = Box(mass=0.5, size=(0.1, 0.1, 0.04), position=(0.5, 0.1, 1.0), jitter=0.0)
+    cell = Cell(1, noise=False, scene=Scene(parts=(box,)), robot=robot)
+    cell.arm.move_joints(DOWN)
+    pose = cell.arm.commanded_pose()
+    cell.arm.move_by(x=0.5 - pose.x, y=0.1 - pose.y)
+    cell.arm.move_by(z=0.137 - pose.z)
+    cell.suction.on()
+    cell.wait(1)
+    cell.arm.set_payload(2.0)  # within what the arm takes for a collision
+    cell.arm.move_by(z=0.05, speed=0.1)
+    return cell
+
+
+def rolling() -> Iterator[str]:
+    """How far a lying cylinder rolls in 0.5 s, and where boxes tip, by tilting gravity."""
+    for degrees in (0.5, 3.0, 6.0):
+        bar = Cylinder(position=(-0.6, 0.3, 0.76), angles=(90, 0, 0), jitter=0.0)
+        cell, slope = Cell(1, scene=Scene(parts=(bar,))), math.radians(degrees)
+        cell.simulation.model.opt.gravity[:] = (GRAVITY * math.sin(slope), 0, -GRAVITY * math.cos(slope))
+        cell.wait(0.5)
+        moved = float(cell.simulation.data.body("box").xpos[0]) + 0.6
+        drive = max(0.0, math.sin(slope) - ROLLING / 0.025 * math.cos(slope))
+        law = 2 / 3 * GRAVITY * drive * 0.5**2 / 2
+        yield f"{degrees} deg: rolls {1000 * moved:.1f} mm, mechanics says {1000 * law:.1f} mm"
+    for offset in (0.0, 0.01, 0.02):
+        tall = Box(position=(-0.6, 0.3, 0.76), size=(0.05, 0.05, 0.2), centre_of_mass=(offset, 0, 0))
+        for tenths in range(0, 300, 2):
+            cell, slope = Cell(1, scene=Scene(parts=(tall,))), math.radians(tenths / 10)
+            cell.simulation.model.opt.gravity[:] = (GRAVITY * math.sin(slope), 0, -GRAVITY * math.cos(slope))
+            cell.wait(1.5)
+            if cell.truth.box_tilt() > 45:
+                break
+        law = math.degrees(math.atan2(0.025 - offset, 0.1))
+        yield f"mass {1000 * offset:.0f} mm off: tips from {tenths / 10} deg on, geometry says {law:.1f}"
+
+
+def weighing() -> Iterator[str]:
+    """The gripper's weight and its torque as the force sensor reads them, in four postures."""
+    for angles in (DOWN, BEHIND, (0, 15, 180, -130, 0, 55, 90), (30, -20, 150, -80, 90, 30, -10)):
+        cell = Cell(1, noise=False, scene=Scene(parts=()))
+        cell.arm.move_joints(angles)
+        cell.wait(1)
+        wrench = cell.force_sensor.wrench()
+        yield f"{wrench.force:.3f} N of {0.9 * GRAVITY:.3f} N, torque {wrench.tx:.3f} {wrench.ty:.3f} Nm"
+
+
 def energy() -> Iterator[str]:
     """Energy of the arm that swings freely for 5 s from home, J."""
     model = build_arm(kinova.gen3())
@@ -334,7 +400,7 @@ def energy() -> Iterator[str]:
 FACTS: dict[str, Callable[[], Iterator[str]]] = {
     fact.__name__: fact
     for fact in (path, encoders, repeatability, coulomb, payload, holding, creep, rebound, limits, inertia,
-                 friction, sensors, sight, energy)
+                 friction, sensors, sight, suction, rolling, weighing, energy)
 }  # fmt: skip
 
 

@@ -188,6 +188,9 @@ class Cell:
         }
         self.truth = Truth(self.simulation, self.robots, placed.parts, self._belts)
         self.feed = tell_of(self.simulation, placed)
+        for name, system in self.robots.items():
+            if system.vacuum() is not None:
+                self.feed.value(f"{prefix_of(name)}vacuum", system.suction.true_vacuum, unit="Pa")
         self.monitors = Monitors(self.simulation, self.truth.world)
         _current = weakref.ref(self)
 

@@ -8,6 +8,7 @@ import mujoco
 
 from mutabot_cell.models.model import ROBOT_BODY
 from mutabot_cell.models.sleeping import awake
+from mutabot_cell.models.tool import SuctionCup
 from mutabot_cell.simulation import Simulation
 
 
@@ -20,7 +21,9 @@ class Contacts:
         self._parts = {prefix + ROBOT_BODY: f"{prefix}arm" for prefix in simulation.robots}
         for prefix, robot in simulation.robots.items():
             if robot.model.tool is not None:
-                self._parts[prefix + robot.model.tool.body] = f"{prefix}gripper"
+                has_cup = isinstance(robot.model.tool.effector, SuctionCup)
+                name = "suction cup" if has_cup else "gripper"
+                self._parts[prefix + robot.model.tool.body] = prefix + name
         self._names = [self._name(self._model, geom) for geom in range(self._model.ngeom)]
         self._sleepers = b""
         self._sleeping: set[tuple[int, int]] = set()

@@ -9,7 +9,7 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
-from mutabot_cell import Box, Cell, Fixture, ProtectiveStop, Scene, gen3, suction_cup
+from mutabot_cell import BadArgument, Box, Cell, Fixture, ProtectiveStop, Scene, gen3, suction_cup
 from mutabot_cell.models.cup import PRELOAD, STIFFNESS
 from mutabot_cell.models.kinova import TOOL_ACCELERATION
 from mutabot_cell.models.tool import Tool
@@ -240,3 +240,26 @@ def test_same_commands_give_a_bit_identical_run() -> None:
         cell = held(place(1.0), off=0.01)
         runs.append((cell.simulation.data.qpos.tobytes(), cell.suction.true_vacuum(), cell.time))
     assert runs[0] == runs[1]
+
+
+def test_the_distance_sensor_looks_through_the_cup() -> None:
+    cell = above(place(0.5))
+    tool = cell.truth.tool_position()
+    cell.arm.move_by(z=0.05)
+    cell.wait(0.3)
+    assert cell.sensors.distance() == pytest.approx(0.06 + tool.z + 0.05 + 0.9 - 1.04, abs=0.002)
+
+
+def test_tool_and_vacuum_are_in_the_final_state_of_the_world() -> None:
+    cell = held(place(0.5))
+    world = cell.truth.world()
+    assert world["vacuum"] == pytest.approx(cell.suction.true_vacuum() / 1e5)
+    assert 1e3 * world["force"] == pytest.approx(cell.truth.wrench().force)
+    assert cell.truth.vacuum() == cell.suction.true_vacuum()
+
+
+def test_a_cell_with_a_cup_has_no_gripper_and_one_with_a_gripper_no_cup() -> None:
+    with pytest.raises(BadArgument, match="no gripper"):
+        above(place(0.5)).gripper  # noqa: B018
+    with pytest.raises(BadArgument, match="no suction cup"):
+        Cell(1).suction  # noqa: B018
