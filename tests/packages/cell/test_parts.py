@@ -166,6 +166,24 @@ def test_the_camera_sees_cylinders_and_meshes() -> None:
         assert cell.sensors.box_position() == cell.truth.box_position()
 
 
+@pytest.mark.parametrize(
+    "part", [Box(size=(0.05, 0.08, 0.04)), Cylinder(), Mesh(vertices=HEXAGON, angles=(0.0, 0.0, 30.0))]
+)
+def test_the_fingers_hold_boxes_cylinders_and_meshes_by_friction(part: Part) -> None:
+    cell = Cell(1, scene=Scene(parts=(part,)))
+    place = cell.truth.box_position()
+    cell.arm.move_joints((0.0, 26.0, 180.0, -78.0, 0.0, -76.0, 90.0))
+    pose = cell.arm.commanded_pose()
+    cell.arm.move_by(x=place.x - pose.x, y=place.y - pose.y)
+    cell.arm.move_by(z=place.z + 0.025 - 0.9 - pose.z)
+    cell.gripper.command(1, wait=True)
+    cell.arm.move_by(z=0.1)
+    cell.wait(1.0)
+    assert cell.gripper.holding()
+    assert cell.truth.box_position().z == pytest.approx(1.1, abs=0.002)
+    assert cell.truth.box_tilt() < 1
+
+
 RAMP = Fixture("ramp", (0.4, 0.4, 0.04), (0.55, 0.2, 1.1), friction=0.3, angles=(0.0, 20.0, 0.0))
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import statistics
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from mutabot_cell import BadArgument, Box, Cell, Fixture, ProtectiveStop, Scene, gen3, suction_cup
+from mutabot_cell import BadArgument, Box, Cell, Fixture, Pose, ProtectiveStop, Scene, gen3, suction_cup
 from mutabot_cell.models.cup import PRELOAD, STIFFNESS
 from mutabot_cell.models.kinova import TOOL_ACCELERATION
 from mutabot_cell.models.tool import Tool
@@ -150,6 +151,16 @@ def test_sideways_the_lip_carries_friction_times_force(share: float, holds: bool
     assert (cell.truth.box_position().z > 1.1) == holds
 
 
+def test_an_oily_part_can_be_lifted_but_not_be_held_sideways() -> None:
+    oily = replace(place(0.3, size=(0.1, 0.1, 0.01)), friction=0.05)
+    assert 0.05 * FORCE < 0.3 * GRAVITY < 0.5 * FORCE
+    cell = held(oily)
+    assert cell.suction.holding()
+    cell.arm.move_by(theta_y=90, speed=0.5)
+    cell.wait(1.0)
+    assert not cell.suction.holding()
+
+
 @pytest.mark.parametrize(("share", "holds"), [(0.7, True), (1.2, False)])
 def test_a_part_peels_off_when_its_weight_tilts_it_more_than_the_cup_holds(share: float, holds: bool) -> None:
     """The lip presses with what force exceeds weight: at its edge, against the weight beside it."""
@@ -263,3 +274,15 @@ def test_a_cell_with_a_cup_has_no_gripper_and_one_with_a_gripper_no_cup() -> Non
         above(place(0.5)).gripper  # noqa: B018
     with pytest.raises(BadArgument, match="no suction cup"):
         Cell(1).suction  # noqa: B018
+
+
+def test_each_of_several_robots_has_its_own_tool() -> None:
+    opposite = gen3().at(Pose(1.4, 0.0, 0.9, 0.0, 0.0, 180.0))
+    cell = Cell(1, noise=False, robots={"left": gen3().with_tool(CUP), "right": opposite})
+    cell.robots["left"].suction.on()
+    cell.robots["right"].gripper.command(1.0)
+    cell.wait(1.0)
+    assert cell.truth.vacuum("left") > 0.0 == cell.truth.vacuum("right")
+    assert cell.truth.opening("right") < 0.01
+    weights = [cell.robots[name].force_sensor.wrench().force for name in ("left", "right")]
+    assert weights == pytest.approx([0.25 * GRAVITY, 0.9 * GRAVITY], abs=0.05)
