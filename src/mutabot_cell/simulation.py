@@ -13,7 +13,6 @@ import numpy as np
 from mutabot_cell.models.assembly import build_cell
 from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.models.robot import RobotModel
-from mutabot_cell.models.sleeping import may_sleep
 
 from .errors import SimulationDiverged
 from .foresight import Foresight
@@ -126,8 +125,6 @@ class Simulation:
 
     def _take_stretch(self, most: int) -> bool:
         """Let at most so many ticks pass, up to the first at which a check is needed; False: none passed."""
-        if may_sleep(self.model):  # a stretch sets states, and that wakes what sleeps
-            return False
         stretch, foresight = self._stretch, self.foresight
         ticks = foresight.write(self.before_tick, self.after_tick, stretch.inputs[:most])
         if ticks < 2:

@@ -27,11 +27,6 @@ def let_sleep(spec: mujoco.MjSpec) -> None:
     spec.option.sleep_tolerance = SLOWEST
 
 
-def may_sleep(model: mujoco.MjModel) -> bool:
-    """Whether parts at rest may sleep."""
-    return bool(model.opt.enableflags & _SLEEP)
-
-
 @contextmanager
 def awake(model: mujoco.MjModel) -> Iterator[None]:
     """Inside, nothing sleeps, and the places of fixtures are computed anew, else only once."""

@@ -30,7 +30,6 @@ from mutabot_cell import (
     suction_cup,
 )
 from mutabot_cell.gripper import Gripper
-from mutabot_cell.models.sleeping import MANY
 from mutabot_cell.simulation import Simulation
 from mutabot_cell.suction import Suction
 from mutabot_cell.system import RobotSystem
@@ -338,12 +337,27 @@ def test_robots_that_share_a_clock_are_the_same(other: str) -> None:
     assert check_same(story, lambda: Cell(1, robots={"left": gen3(), "right": beside})).error is None
 
 
-def test_parts_that_may_sleep_are_stepped_singly() -> None:
-    """A stretch sets states, and that would wake what sleeps."""
-    places = [(0.5 + 0.1 * number, 0.1, 1.0) for number in range(MANY)]
-    boxes = tuple(Box(name=f"box {place[0]:.1f}", position=place) for place in places)
-    assert longest(Cell(1, scene=Scene(parts=boxes))) == 1
-    assert longest(Cell(1, scene=Scene(parts=boxes[1:]))) == 50
+def test_parts_that_fall_asleep_and_are_pushed_over_are_the_same() -> None:
+    """A stretch sets states, but only such as there are, and that wakes nothing."""
+    places = [(0.5 + 0.052 * (number % 3), 0.052 * (number // 3 % 3), number // 9) for number in range(12)]
+    boxes = tuple(
+        Box(name=f"box {number}", position=(x, y, 1.0 + 0.05 * layer), jitter=0.0)
+        for number, (x, y, layer) in enumerate(places)
+    )
+
+    def story(cell: Cell) -> None:
+        cell.wait(0.5)
+        data = cell.simulation.data
+        assert data.nbody_awake < data.body_awake.size
+        cell.gripper.command(1, wait=True)
+        cell.arm.move_joints(DOWN)
+        pose = cell.arm.commanded_pose()
+        cell.arm.move_by(x=0.55 - pose.x, y=-0.12 - pose.y)
+        cell.arm.move_by(z=0.135 - pose.z)
+        cell.arm.move_by(y=0.10, speed=0.3)
+        assert cell.truth.box_position("box 9").y > 0.01
+
+    check_same(story, lambda: Cell(1, scene=Scene(parts=boxes)))
 
 
 def longest(cell: Cell) -> int:
