@@ -21,21 +21,17 @@ class GuardCondition(Waitable):
 
     def __init__(self, context: Participant) -> None:
         super().__init__()
-        self._is_triggered = False
+        self.is_ready = False
         maker = sys._getframe(2)  # below it, rclpy's own class of guard conditions
         is_of_executor = maker.f_globals.get("__name__") == "rclpy.executors"
         self._executor = ref(maker.f_locals["self"]) if is_of_executor else None
 
     def trigger_guard_condition(self) -> None:
-        self._is_triggered = True
+        self.is_ready = True
         self.changed()
 
-    @property
-    def is_ready(self) -> bool:
-        return self._is_triggered
-
     def reset(self) -> None:
-        self._is_triggered = False
+        self.is_ready = False
 
     @property
     def tells_nothing_new(self) -> bool:
@@ -103,17 +99,15 @@ class WaitSet(Destroyable):
 
     def wait(self, timeout: int) -> None:
         """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
-        members = [member for kind in KINDS for member in self._members[kind]]
-        if not members:
+        if not any(self._members.values()):
             raise RCLError("failed to wait on wait set: wait set is empty")
         if timeout == 0:
             SCHEDULER.poll()
         self._look()
         if timeout and not SCHEDULER.is_preemptive:
             self._pass_over_what_is_known(sys._getframe(1))
-        if timeout and not any(map(any, self._ready.values())):
-            self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
-            self._look()
+        if timeout and not self._is_any_ready():
+            self._park(None if timeout < 0 else SCHEDULER.now + timeout)
         elif timeout and SCHEDULER.is_preemptive:
             SCHEDULER.pause()
             self._look()
@@ -126,6 +120,9 @@ class WaitSet(Destroyable):
         """Note which members are ready."""
         self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
 
+    def _is_any_ready(self) -> bool:
+        return any(map(any, self._ready.values()))
+
     def _pass_over_what_is_known(self, executor: FrameType) -> None:
         """Wait on if all that is ready is a guard condition that tells nothing new.
 
@@ -134,14 +131,16 @@ class WaitSet(Destroyable):
         """
         flags = self._ready["guard_condition"]
         if any(flags) and sum(map(sum, self._ready.values())) == 1:
-            guard = self._members["guard_condition"][flags.index(True)]
+            index = flags.index(True)
+            guard = self._members["guard_condition"][index]
             if guard.tells_nothing_new and not executor.f_locals.get("yielded_work", True):
                 guard.reset()
-                self._look()
+                flags[index] = False
 
-    def _park(self, members: list[Any], end: int | None) -> None:
+    def _park(self, end: int | None) -> None:
         """Wait until one of the members is ready, which none is now, or until the end."""
         task = SCHEDULER.current
+        members = [member for kind in KINDS for member in self._members[kind]]
         for member in members:
             member.watchers.append(task)
         try:
@@ -149,7 +148,8 @@ class WaitSet(Destroyable):
                 dues = [timer.deadline for timer in self._members["timer"]]
                 deadlines = [due for due in (*dues, end) if due is not None]
                 SCHEDULER.park(min(deadlines, default=None), "waits for ROS")
-                if any(member.is_ready for member in members):
+                self._look()
+                if self._is_any_ready():
                     break
         finally:
             for member in members:
