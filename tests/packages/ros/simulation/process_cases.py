@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 import multiprocessing
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -138,6 +140,30 @@ def test_other_programs_run_as_they_are() -> None:
 def test_what_starts_nodes_elsewhere_needs_real_ros() -> None:
     with pytest.raises(RuntimeError, match="needs real ROS: `ros2 run demo talker` starts nodes outside"):
         subprocess.Popen(["ros2", "run", "demo", "talker"])
+
+
+def by_asyncio(command: str) -> None:
+    asyncio.run(asyncio.create_subprocess_exec(*command.split()))
+
+
+@pytest.mark.parametrize(
+    "start_outside",
+    [
+        pytest.param(partial(subprocess.Popen, shell=True), id="shell"),
+        pytest.param(lambda command: subprocess.Popen(["bash", "-c", f"cd .; {command}"]), id="bash"),
+        pytest.param(lambda command: subprocess.Popen(["timeout", "5", *command.split()]), id="timeout"),
+        pytest.param(lambda command: os.system(f"{command} &"), id="os.system"),
+        pytest.param(by_asyncio, id="asyncio"),
+    ],
+)
+def test_a_node_below_what_is_not_simulated_needs_real_ros(start_outside: Callable[[str], object]) -> None:
+    with pytest.raises(RuntimeError, match="needs real ROS: `.*` starts nodes outside"):
+        start_outside(f"{sys.executable} {COUNTER}")
+
+
+def test_what_only_names_a_program_of_the_project_runs_as_it_is() -> None:
+    for options in ({"args": ["cat", COUNTER]}, {"args": f"cat {COUNTER}", "shell": True}):
+        assert "rclpy" in subprocess.run(**options, capture_output=True, text=True, check=True).stdout
 
 
 def publish(queue: Any, count: int) -> None:
