@@ -157,7 +157,7 @@ def by_asyncio(command: str) -> None:
     ],
 )
 def test_a_node_below_what_is_not_simulated_needs_real_ros(start_outside: Callable[[str], object]) -> None:
-    with pytest.raises(RuntimeError, match="needs real ROS: `.*` starts nodes outside"):
+    with pytest.raises(RuntimeError, match=r"needs real ROS: `.*` starts nodes outside"):
         start_outside(f"{sys.executable} {COUNTER}")
 
 
