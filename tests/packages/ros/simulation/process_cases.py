@@ -189,6 +189,16 @@ def test_multiprocessing_starts_processes_too(node: Node) -> None:
     assert process.exitcode == 0
 
 
+@pytest.mark.parametrize("name", ["Pool", "Manager", "get_logger", "shared_memory"])
+def test_what_multiprocessing_has_beside_processes_needs_real_ros(name: str) -> None:
+    with pytest.raises(RuntimeError, match=f"needs real ROS: multiprocessing.{name} is not simulated"):
+        getattr(multiprocessing, name)()
+
+
+def test_what_multiprocessing_does_not_have_is_no_matter_of_ros() -> None:
+    assert not hasattr(multiprocessing, "nothing")
+
+
 def test_launch_needs_real_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "site-packages" / "launch"
     package.mkdir(parents=True)
