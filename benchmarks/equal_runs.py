@@ -6,7 +6,7 @@ sent and received, every request and answer, and how each test ended. All runs o
 same.
 
 Use: ``python benchmarks/equal_runs.py [--count 200] [--first 0] [--examples ros2 ros2_docking] [--schedule
-random]``. The exit code is 1 if two runs differ; their notes are kept then.
+random]``. The exit code is 1 if two runs differ.
 """
 
 from __future__ import annotations

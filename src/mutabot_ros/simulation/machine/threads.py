@@ -3,87 +3,19 @@
 from __future__ import annotations
 
 import _thread as real_thread
-import sys
 import threading as real_threading
-from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from types import ModuleType
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, SimulatedThread
-from mutabot_ros.simulation.machine.who_asks import is_of_project
+from mutabot_ros.simulation.machine.locks import Lock, RLock
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER
 
 #: whose `threading` is known to stand on the names of `_thread` below
 PYTHONS = {(3, 11), (3, 12), (3, 13)}
 _TIMEOUT_MAX = 9_000_000_000.0
-
-
-def _is_asked_by_project() -> bool:
-    """Whether the project itself takes a lock: switching within rclpy would find races of rclpy alone."""
-    frame = sys._getframe(2)
-    if frame.f_code is Lock.__enter__.__code__ and frame.f_back is not None:
-        frame = frame.f_back
-    return is_of_project(str(frame.f_globals.get("__file__", "")))
-
-
-class Lock:
-    """`_thread.lock`, among simulated threads."""
-
-    def __init__(self) -> None:
-        self._is_held = False
-        self._waiting: deque[SimulatedThread] = deque()
-
-    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        if not blocking and timeout != -1:
-            raise ValueError("can't specify a timeout for a non-blocking call")
-        if timeout < 0 and timeout != -1:
-            raise ValueError("timeout value must be a non-negative number")
-        if SCHEDULER.is_preemptive and _is_asked_by_project():
-            SCHEDULER.may_switch()
-        if self._is_held and not (blocking and self._wait(timeout)):
-            return False
-        self._is_held = True
-        return True
-
-    def _wait(self, timeout: float) -> bool:
-        deadline = None if timeout == -1 else SCHEDULER.now + round(timeout * SECOND)
-        while self._is_held:
-            task = SCHEDULER.current
-            self._waiting.append(task)
-            try:
-                SCHEDULER.park(deadline, "waits for a lock or a condition")
-            finally:
-                if task in self._waiting:
-                    self._waiting.remove(task)
-            if self._is_held and deadline is not None and SCHEDULER.now >= deadline:
-                return False
-        return True
-
-    def release(self) -> None:
-        if not self._is_held:
-            raise RuntimeError("release unlocked lock")
-        self._is_held = False
-        if self._waiting:
-            SCHEDULER.wake(self._waiting.popleft())
-
-    def locked(self) -> bool:
-        return self._is_held
-
-    def __enter__(self) -> bool:
-        if self._is_held or SCHEDULER.is_preemptive:
-            return self.acquire()
-        self._is_held = True
-        return True
-
-    def __exit__(self, kind: object = None, error: object = None, trace: object = None) -> None:
-        if self._waiting or not self._is_held:
-            self.release()
-        self._is_held = False
-
-    def _at_fork_reinit(self) -> None:
-        self._is_held = False
 
 
 class Local:
@@ -197,7 +129,7 @@ def thread_module() -> ModuleType:
     module = ModuleType("_thread")
     module.__dict__.update(
         error=RuntimeError, _local=Local,
-        LockType=Lock, allocate_lock=Lock, allocate=Lock, TIMEOUT_MAX=_TIMEOUT_MAX,
+        LockType=Lock, allocate_lock=Lock, allocate=Lock, RLock=RLock, TIMEOUT_MAX=_TIMEOUT_MAX,
         get_ident=_ident, start_new_thread=_start_new_thread, start_new=_start_new_thread,
         _set_sentinel=_set_sentinel,
         start_joinable_thread=_start_joinable_thread, _ThreadHandle=ThreadHandle,

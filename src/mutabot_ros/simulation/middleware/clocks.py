@@ -103,28 +103,24 @@ class ClockEvent(Waitable):
 
     def __init__(self) -> None:
         super().__init__()
-        self._is_set = False
+        self.is_ready = False
 
     def set(self) -> None:
-        self._is_set = True
+        self.is_ready = True
         self.changed()
 
     def clear(self) -> None:
-        self._is_set = False
+        self.is_ready = False
 
     def is_set(self) -> bool:
-        return self._is_set
-
-    @property
-    def is_ready(self) -> bool:
-        return self._is_set
+        return self.is_ready
 
     def _wait_until(self, clock: RosClock, until: rcl_time_point_t) -> None:
         task = SCHEDULER.current
         clock.events.append(self)
         self.watchers.append(task)
         try:
-            while not self._is_set and clock.now() < until.nanoseconds:
+            while not self.is_ready and clock.now() < until.nanoseconds:
                 SCHEDULER.park(clock.steady_time_of(until.nanoseconds), "sleeps until a clock shows a time")
         finally:
             self.watchers.remove(task)

@@ -17,7 +17,15 @@ class Status:
         if hasattr(self.values, "last_policy_kind"):
             self.values.last_policy_kind = records.rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
         self.has_changed = False
-        self.handles: list[EventHandle] = []
+        self._handles: list[EventHandle] = []
+
+    def tell(self, handle: EventHandle) -> None:
+        """Let a handle know from now on whether something has happened."""
+        self._handles.append(handle)
+        handle.is_ready = self.has_changed
+
+    def forget(self, handle: EventHandle) -> None:
+        self._handles.remove(handle)
 
     def count(self, **changes: Any) -> None:
         """Add to the counts; each `name` that counts has a `name_change` beside it."""
@@ -27,8 +35,8 @@ class Status:
                 continue
             setattr(self.values, name, getattr(self.values, name) + change)
             setattr(self.values, f"{name}_change", getattr(self.values, f"{name}_change") + change)
-        self.has_changed = True
-        for handle in self.handles:
+        self._set(True)
+        for handle in self._handles:
             handle.changed()
 
     def take(self) -> Any:
@@ -36,8 +44,13 @@ class Status:
         for field in self.values.fields:
             if field.endswith("_change"):
                 setattr(self.values, field, 0)
-        self.has_changed = False
+        self._set(False)
         return taken
+
+    def _set(self, has_changed: bool) -> None:
+        self.has_changed = has_changed
+        for handle in self._handles:
+            handle.is_ready = has_changed
 
 
 class EventHandle(Waitable):
@@ -47,15 +60,12 @@ class EventHandle(Waitable):
         super().__init__()
         if event not in end.statuses:
             raise TypeError(f"__init__(): incompatible constructor arguments: no {event!r} of a {end.role}")
-        self._status = end.statuses[event]
-        self._status.handles.append(self)
+        self.is_ready = False
+        self._status: Status = end.statuses[event]
+        self._status.tell(self)
 
     def _release(self) -> None:
-        self._status.handles.remove(self)
-
-    @property
-    def is_ready(self) -> bool:
-        return bool(self._status.has_changed)
+        self._status.forget(self)
 
     def take_event(self) -> Any:
         return self._status.take()

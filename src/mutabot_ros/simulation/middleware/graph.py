@@ -95,15 +95,15 @@ class HandlesInUse:
 
 
 class Waitable(Destroyable):
-    """What a wait set can wait for."""
+    """What a wait set can wait for.
+
+    Each kind has `is_ready`. Wait sets look at all of their members again and again, so it is an attribute,
+    and a property only where it depends on time.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self.watchers: list[SimulatedThread] = []
-
-    @property
-    def is_ready(self) -> bool:
-        raise NotImplementedError
 
     def changed(self) -> None:
         """Let the threads go on that wait for this to become ready."""

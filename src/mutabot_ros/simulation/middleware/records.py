@@ -156,7 +156,7 @@ class rcl_duration_t(Record):  # noqa: N801
             raise TypeError(
                 "__init__(): incompatible constructor arguments: more nanoseconds than 64 bits hold"
             )
-        super().__init__(int(nanoseconds))
+        self.nanoseconds = int(nanoseconds)
 
 
 class rcl_time_point_t(Record):  # noqa: N801
@@ -166,7 +166,8 @@ class rcl_time_point_t(Record):  # noqa: N801
     nanoseconds: int
 
     def __init__(self, nanoseconds: int, clock_type: Any) -> None:
-        super().__init__(int(nanoseconds), ClockType(int(clock_type)))
+        self.nanoseconds = int(nanoseconds)
+        self.clock_type = clock_type if isinstance(clock_type, ClockType) else ClockType(int(clock_type))
 
 
 rmw_request_id_t = _record("rmw_request_id_t", "sequence_number", "writer")

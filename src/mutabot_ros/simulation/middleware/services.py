@@ -42,6 +42,7 @@ class _ServiceEnd(Endpoint):
         # an end both hears and speaks: what is left open is taken as for a writer
         self.profile = wanted.resolved(True, [])
         self.queue: deque[tuple[Any, rmw_service_info_t]] = deque(maxlen=self.profile.kept)
+        self.is_ready = False
         self.matched: list[Any] = []
         self._events: Publisher | None = None
         self._event_clock: RosClock | None = None
@@ -58,10 +59,6 @@ class _ServiceEnd(Endpoint):
         if self._events is not None:
             self._events.destroy_when_not_in_use()
 
-    @property
-    def is_ready(self) -> bool:
-        return bool(self.queue)
-
     def receive(self, message: Any, request: rmw_request_id_t, event: int) -> None:
         """Take a request or an answer into the queue, now or when it has been under way."""
         stamp = SCHEDULER.system_time
@@ -70,6 +67,7 @@ class _ServiceEnd(Endpoint):
         def arrive() -> None:
             if not self.is_destroyed:
                 self.queue.append((message, rmw_service_info_t(stamp, SCHEDULER.system_time, request)))
+                self.is_ready = True
                 self.changed()
 
         if at <= SCHEDULER.now:
@@ -82,6 +80,7 @@ class _ServiceEnd(Endpoint):
         if not self.queue:
             return None, None
         message, info = self.queue.popleft()
+        self.is_ready = bool(self.queue)
         self._tell(event, info.request_id, message)
         return converted(message, kind), info
 

@@ -146,10 +146,6 @@ class Publisher(_Topic):
         for subscription in list(self._others("subscription")):
             self.when_both_are_seen(subscription, partial(_meet, self, subscription))
 
-    @property
-    def is_ready(self) -> bool:
-        return False
-
     def get_subscription_count(self) -> int:
         return len(self.matched)
 

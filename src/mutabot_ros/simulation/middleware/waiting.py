@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from types import FrameType
 from typing import Any
 from weakref import ref
 
@@ -20,21 +21,17 @@ class GuardCondition(Waitable):
 
     def __init__(self, context: Participant) -> None:
         super().__init__()
-        self._is_triggered = False
+        self.is_ready = False
         maker = sys._getframe(2)  # below it, rclpy's own class of guard conditions
         is_of_executor = maker.f_globals.get("__name__") == "rclpy.executors"
         self._executor = ref(maker.f_locals["self"]) if is_of_executor else None
 
     def trigger_guard_condition(self) -> None:
-        self._is_triggered = True
+        self.is_ready = True
         self.changed()
 
-    @property
-    def is_ready(self) -> bool:
-        return self._is_triggered
-
     def reset(self) -> None:
-        self._is_triggered = False
+        self.is_ready = False
 
     @property
     def tells_nothing_new(self) -> bool:
@@ -102,47 +99,48 @@ class WaitSet(Destroyable):
 
     def wait(self, timeout: int) -> None:
         """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
-        members = [member for kind in KINDS for member in self._members[kind]]
-        if not members:
+        if not any(self._members.values()):
             raise RCLError("failed to wait on wait set: wait set is empty")
         if timeout == 0:
             SCHEDULER.poll()
         self._look()
-        timers = self._members["timer"]
-        # the last timer is that of the executor's time-out: it runs already if tasks came before this wait
-        has_just_begun = timeout < 0 or (timers and timers[-1].time_until_next_call() == timeout)
-        if timeout and has_just_begun and not SCHEDULER.is_preemptive:
-            self._pass_over_what_is_known()
-        if timeout and not any(map(any, self._ready.values())):
-            self._park(members, None if timeout < 0 else SCHEDULER.now + timeout)
-            self._look()
+        if timeout and not SCHEDULER.is_preemptive:
+            self._pass_over_what_is_known(sys._getframe(1))
+        if timeout and not self._is_any_ready():
+            self._park(None if timeout < 0 else SCHEDULER.now + timeout)
         elif timeout and SCHEDULER.is_preemptive:
             SCHEDULER.pause()
             self._look()
         if SCHEDULER.is_preemptive:
             self._keep_some()
-        for guard, is_ready in zip(
-            self._members["guard_condition"], self._ready["guard_condition"], strict=True
-        ):
-            if is_ready:
-                guard.reset()
+        for guard in self._members["guard_condition"]:
+            guard.reset()
 
     def _look(self) -> None:
         """Note which members are ready."""
         self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
 
-    def _pass_over_what_is_known(self) -> None:
-        """Wait on if all that is ready is a guard condition that tells nothing new."""
+    def _is_any_ready(self) -> bool:
+        return any(map(any, self._ready.values()))
+
+    def _pass_over_what_is_known(self, executor: FrameType) -> None:
+        """Wait on if all that is ready is a guard condition that tells nothing new.
+
+        Tasks that an executor has run just before this wait may have added nodes, or done what it waits for:
+        it looks at that again only after the wait.
+        """
         flags = self._ready["guard_condition"]
         if any(flags) and sum(map(sum, self._ready.values())) == 1:
-            guard = self._members["guard_condition"][flags.index(True)]
-            if guard.tells_nothing_new:
+            index = flags.index(True)
+            guard = self._members["guard_condition"][index]
+            if guard.tells_nothing_new and not executor.f_locals.get("yielded_work", True):
                 guard.reset()
-                self._look()
+                flags[index] = False
 
-    def _park(self, members: list[Any], end: int | None) -> None:
+    def _park(self, end: int | None) -> None:
         """Wait until one of the members is ready, which none is now, or until the end."""
         task = SCHEDULER.current
+        members = [member for kind in KINDS for member in self._members[kind]]
         for member in members:
             member.watchers.append(task)
         try:
@@ -150,16 +148,24 @@ class WaitSet(Destroyable):
                 dues = [timer.deadline for timer in self._members["timer"]]
                 deadlines = [due for due in (*dues, end) if due is not None]
                 SCHEDULER.park(min(deadlines, default=None), "waits for ROS")
-                if any(member.is_ready for member in members):
+                self._look()
+                if self._is_any_ready():
                     break
         finally:
             for member in members:
                 member.watchers.remove(task)
 
     def _keep_some(self) -> None:
-        """Report some of what is ready only, as the schedule says; the rest is ready at the next wait."""
+        """Report some of what is ready only, as the schedule says; the rest is ready at the next wait.
+
+        All guard conditions are reported. An executor triggers again those whose callback it has not run yet,
+        and runs it whether the wait reports them or not: if one stayed triggered, it would run twice.
+        """
         places = [
-            (kind, index) for kind in KINDS for index, is_ready in enumerate(self._ready[kind]) if is_ready
+            (kind, index)
+            for kind in KINDS
+            for index, is_ready in enumerate(self._ready[kind])
+            if is_ready and kind != "guard_condition"
         ]
         if len(places) > 1:
             for (kind, index), is_kept in zip(places, SCHEDULER.schedule.keeps(len(places)), strict=True):

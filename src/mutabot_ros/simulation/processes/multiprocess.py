@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import importlib
+import importlib.util
 import os
 import pickle
 import sys
@@ -195,6 +196,14 @@ def _multiprocessing() -> ModuleType:
         current_process=_current, active_children=list, TimeoutError=real.TimeoutError,
         Pool=_needs_real("Pool"), Manager=_needs_real("Manager"),
     )  # fmt: skip
+
+    def other(name: str) -> Any:
+        is_part = hasattr(real, name) or importlib.util.find_spec(f"multiprocessing.{name}") is not None
+        if name.startswith("_") or not is_part:
+            raise AttributeError(f"module 'multiprocessing' has no attribute {name!r}")
+        _needs_real(name)()
+
+    module.__dict__["__getattr__"] = other
     return module
 
 

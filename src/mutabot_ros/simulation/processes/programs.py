@@ -11,37 +11,18 @@ import signal as real_signal
 import subprocess as real_subprocess
 import sys
 from collections.abc import Callable, Mapping
-from functools import partial
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER, NeedsRealRos
-from mutabot_ros.simulation.machine.who_asks import add_root, copied, is_of_project, provide, refuse
+from mutabot_ros.simulation.machine.who_asks import add_root, copied, is_of_project, provide
+from mutabot_ros.simulation.processes import outside
 from mutabot_ros.simulation.processes.process import STARTED, Pipe, Process
 
-#: packages that start nodes in real processes, out of sight of the project's modules
-_LAUNCHERS = ("launch", "launch_ros", "launch_testing", "launch_testing_ros", "launch_pytest")
-#: programs that start nodes which are not Python's, or not seen here
-_STARTERS = {"ros2", "roslaunch", "gz", "gazebo", "ign", "gzserver", "rviz2"}
 _FLAGS_WITH_VALUE = {"-W", "-X", "--check-hash-based-pycs"}
 #: where Python looks for modules before pytest adds the tests' folders
 _BASE_PATH = list(sys.path)
-
-
-def _words(command: Any) -> list[str]:
-    if isinstance(command, str | bytes | os.PathLike):
-        command = [command]
-    return [os.fsdecode(word) for word in command]
-
-
-def _is_python(program: str) -> bool:
-    return program == sys.executable or os.path.basename(program).startswith("python")
-
-
-def _is_installed_node(program: str) -> bool:
-    prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
-    return any(os.path.realpath(program).startswith(os.path.join(prefix, "lib", "")) for prefix in prefixes)
 
 
 class _Program:
@@ -64,9 +45,9 @@ class _Program:
 
 def _program_of(words: list[str], folder: str) -> _Program | None:
     """The simulated program that a command starts; None if it starts another one."""
-    if os.path.basename(words[0]) in _STARTERS or _is_installed_node(words[0]):
-        raise NeedsRealRos(f"`{' '.join(words)[:80]}` starts nodes outside this process")
-    if _is_python(words[0]):
+    if outside.starts_nodes(words[0]):
+        raise outside.refused(words)
+    if outside.is_python(words[0]):
         rest = words[1:]
         while rest and rest[0].startswith("-") and rest[0] not in {"-m", "-c"}:
             rest = rest[2:] if rest[0] in _FLAGS_WITH_VALUE else rest[1:]
@@ -124,7 +105,7 @@ class Popen:
     """`subprocess.Popen`, where a program of the project becomes a simulated process."""
 
     def __new__(cls, args: Any, *others: Any, **options: Any) -> Any:
-        words = _words(args)
+        words = outside.words_of(args)
         folder = os.fspath(options.get("cwd") or os.getcwd())
         program = None if options.get("shell") or not words else _program_of(words, folder)
         if program is None:
@@ -244,9 +225,4 @@ def _subprocess() -> ModuleType:
 def install() -> None:
     """Provide `subprocess` to those who see the simulation."""
     provide("subprocess", _subprocess)
-    for name in _LAUNCHERS:
-        refuse(name, partial(_refuse_launcher, name))
-
-
-def _refuse_launcher(name: str) -> None:
-    raise NeedsRealRos(f"the package {name} starts nodes outside this process")
+    outside.install(_program_of)

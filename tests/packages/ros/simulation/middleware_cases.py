@@ -33,6 +33,9 @@ from std_msgs.msg import Bool, Float64, Int32, String, UInt8
 from std_srvs.srv import SetBool
 from test_msgs.action import Fibonacci
 
+from mutabot_ros.simulation.machine.scheduler import SCHEDULER
+from mutabot_ros.simulation.machine.schedules import RandomOrder
+
 
 class Pair:
     """Two nodes that one executor spins."""
@@ -372,6 +375,20 @@ def test_messages_survive_as_bytes(pair: Pair) -> None:
     pair.one.create_publisher(Int32, "raw", 1).publish(serialize_message(Int32(data=5)))
     pair.spin()
     assert heard == [b"\x00\x01\x00\x00\x05\x00\x00\x00"]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_in_each_order_a_trigger_of_a_guard_condition_has_its_callback_run_once(
+    pair: Pair, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(SCHEDULER, "schedule", RandomOrder(seed))
+    monkeypatch.setattr(SCHEDULER, "is_preemptive", True)
+    called: list[str] = []
+    guards = [pair.one.create_guard_condition(partial(called.append, name)) for name in "abc"]
+    for guard in guards:
+        guard.trigger()
+    pair.spin()
+    assert sorted(called) == ["a", "b", "c"]
 
 
 def test_what_cannot_be_simulated_says_so(pair: Pair) -> None:

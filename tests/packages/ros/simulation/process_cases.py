@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 import multiprocessing
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -140,6 +142,30 @@ def test_what_starts_nodes_elsewhere_needs_real_ros() -> None:
         subprocess.Popen(["ros2", "run", "demo", "talker"])
 
 
+def by_asyncio(command: str) -> None:
+    asyncio.run(asyncio.create_subprocess_exec(*command.split()))
+
+
+@pytest.mark.parametrize(
+    "start_outside",
+    [
+        pytest.param(partial(subprocess.Popen, shell=True), id="shell"),
+        pytest.param(lambda command: subprocess.Popen(["bash", "-c", f"cd .; {command}"]), id="bash"),
+        pytest.param(lambda command: subprocess.Popen(["timeout", "5", *command.split()]), id="timeout"),
+        pytest.param(lambda command: os.system(f"{command} &"), id="os.system"),
+        pytest.param(by_asyncio, id="asyncio"),
+    ],
+)
+def test_a_node_below_what_is_not_simulated_needs_real_ros(start_outside: Callable[[str], object]) -> None:
+    with pytest.raises(RuntimeError, match=r"needs real ROS: `.*` starts nodes outside"):
+        start_outside(f"{sys.executable} {COUNTER}")
+
+
+def test_what_only_names_a_program_of_the_project_runs_as_it_is() -> None:
+    for options in ({"args": ["cat", COUNTER]}, {"args": f"cat {COUNTER}", "shell": True}):
+        assert "rclpy" in subprocess.run(**options, capture_output=True, text=True, check=True).stdout
+
+
 def publish(queue: Any, count: int) -> None:
     """What a process of its own does."""
     rclpy.init()
@@ -161,6 +187,16 @@ def test_multiprocessing_starts_processes_too(node: Node) -> None:
     assert queue.get(timeout=1.0) == ("speaker", process.pid)
     process.join()
     assert process.exitcode == 0
+
+
+@pytest.mark.parametrize("name", ["Pool", "Manager", "get_logger", "shared_memory"])
+def test_what_multiprocessing_has_beside_processes_needs_real_ros(name: str) -> None:
+    with pytest.raises(RuntimeError, match=f"needs real ROS: multiprocessing.{name} is not simulated"):
+        getattr(multiprocessing, name)()
+
+
+def test_what_multiprocessing_does_not_have_is_no_matter_of_ros() -> None:
+    assert not hasattr(multiprocessing, "nothing")
 
 
 def test_launch_needs_real_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -151,6 +151,21 @@ def test_else_it_runs_over_real_ros_and_says_why(tmp_path: Path, check: str, val
     assert verdicts(results) != []
 
 
+@pytest.mark.parametrize("where", ["conftest", "test"])
+def test_tests_that_import_launch_run_over_real_ros_with_the_reason(tmp_path: Path, where: str) -> None:
+    installed = tmp_path / "site-packages"
+    installed.mkdir()
+    (installed / "launch.py").write_text("")  # wheels of ROS 2 have none
+    code = f"import sys; sys.path.insert(0, {str(installed)!r}); import launch"
+    if where == "conftest":
+        (tmp_path / "conftest.py").write_text(code)
+        code = "pass"
+    results = campaign(tmp_path, f"{code}; {CHECK}")
+    assert not results.meta["simulation"]
+    assert "the package launch starts nodes outside this process" in str(results.meta["ran_over"])
+    assert verdicts(results) == [Verdict.KILLED]
+
+
 def test_the_configuration_can_say_real_ros(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION.format(value="0.5"), TESTS.format(check=CHECK), vocabulary=VOCABULARY)
     request = request_for(tmp_path, rounds=1, only=("*reverse*",))
