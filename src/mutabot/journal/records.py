@@ -93,7 +93,7 @@ class ControlEnd:
     Attributes:
         test_file: the test file it was run for.
         control: ``identity`` or ``fatal``.
-        ok: whether it ended as it must.
+        ok: whether it passed.
         detail: one line about how it ended.
     """
 

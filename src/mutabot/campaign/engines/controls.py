@@ -145,7 +145,7 @@ def settled(
             )
         outcome = again
     if is_step:
-        campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'as it must'}")
+        campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'passed'}")
     yield ControlEnd(control.subject, control.name, wrong is None, wrong or f"{outcome.hits} hits")
     if wrong is not None:
         raise ControlError(
