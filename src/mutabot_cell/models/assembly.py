@@ -38,6 +38,11 @@ _PAYLOAD_MARKER = 1e-6
 
 def build_cell(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjModel:
     """Compile the whole cell. `robots` by the prefix of their names in it, which may be empty."""
+    return compile_quietly(cell_spec(scene, robots))
+
+
+def cell_spec(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjSpec:
+    """The whole cell, to be compiled; see `build_cell`."""
     spec = mujoco.MjSpec.from_string(cell_xml(scene, robots))
     for index, (prefix, robot) in enumerate(robots.items()):
         part = _equipped(robot, robot.tool)
@@ -52,7 +57,7 @@ def build_cell(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjModel
         add_surfaces(spec, loose, _surfaces(scene, robots))
     if len(scene.parts) >= MANY:
         let_sleep(spec)
-    return compile_quietly(spec)
+    return spec
 
 
 def _collide_with_others(part: mujoco.MjSpec, index: int) -> None:

@@ -13,22 +13,6 @@ from .robot import RobotModel
 ROBOT_BODY = "robot"
 """Behind a robot's prefix, the name of the body that stands at its base."""
 
-_LOOKS = """
-<visual>
-  <headlight ambient="0.35 0.35 0.35" diffuse="0.35 0.35 0.35" specular="0.1 0.1 0.1"/>
-  <global offwidth="1280" offheight="960"/>
-  <quality shadowsize="4096" offsamples="8"/>
-  <map znear="0.02" zfar="30"/>
-</visual>
-<asset>
-  <texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.70 0.76 0.82" width="64"
-           height="384"/>
-  <texture name="floor" type="2d" builtin="checker" rgb1="0.80 0.81 0.82" rgb2="0.75 0.76 0.78" width="128"
-           height="128"/>
-  <material name="floor" texture="floor" texrepeat="8 8" reflectance="0.04"/>
-</asset>
-"""
-
 
 def _numbers(values: tuple[float, ...]) -> str:
     return " ".join(f"{value:.17g}" for value in values)
@@ -47,21 +31,7 @@ def _fixture_xml(fixture: Fixture) -> str:
     return (
         f'<body name="{fixture.name}" pos="{_numbers(fixture.centre)}" quat="{_quaternion(*fixture.angles)}">'
         f'<geom name="{fixture.name}" class="fixture" type="box" size="{_halves(fixture.size)}" '
-        f'rgba="{_numbers(fixture.rgba)}"/>{_legs_xml(fixture)}</body>'
-    )
-
-
-def _legs_xml(fixture: Fixture) -> str:
-    """Four legs to look at; nothing touches them."""
-    width, depth, height = fixture.size
-    below = fixture.centre[2] - height / 2
-    if below <= 0.1 or any(fixture.angles[:2]):
-        return ""
-    return "".join(
-        f'<geom class="looks" type="box" size="0.025 0.025 {below / 2}" rgba="0.42 0.43 0.45 1" '
-        f'pos="{side * (width / 2 - 0.06)} {end * (depth / 2 - 0.06)} {-(height + below) / 2}"/>'
-        for side in (-1, 1)
-        for end in (-1, 1)
+        f'rgba="{_numbers(fixture.rgba)}"/></body>'
     )
 
 
@@ -97,10 +67,9 @@ def cell_xml(scene: Scene, robots: Mapping[str, RobotModel]) -> str:
     fixtures = "".join(_fixture_xml(fixture) for fixture in scene.fixtures)
     marks = "".join(_mark_xml(mark) for mark in scene.marks)
     stands = "".join(_robot_xml(prefix, robot) for prefix, robot in robots.items())
-    return f"""<mujoco model="cell">{HEAD}{_LOOKS}
+    return f"""<mujoco model="cell">{HEAD}
 <worldbody>
-  <light pos="1.5 -1.5 4" dir="-0.3 0.35 -1" diffuse="0.55 0.55 0.55" castshadow="true"/>
-  <geom name="floor" class="fixture" type="plane" size="4 4 0.1" material="floor"/>
+  <geom name="floor" class="fixture" type="plane" size="4 4 0.1"/>
   {fixtures}{stands}{marks}
 </worldbody>
 </mujoco>"""

@@ -6,14 +6,18 @@ On a machine without a screen choose one before Python starts: `MUJOCO_GL=egl` (
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
+from mutabot_cell.parts import Triple
 from mutabot_cell.simulation import Simulation
+
+if TYPE_CHECKING:
+    from .looks.visual import VisualModel
 
 Pixels = np.ndarray[tuple[int, ...], np.dtype[np.uint8]]
 #: pixels along the edge of the shadow map of a quick picture: without a graphics card shadows cost the most
@@ -41,7 +45,7 @@ class Camera:
 
     Args:
         height, width: pixels, at most 960 by 1280.
-        is_quick: whether shadows and edges may be coarse, which takes a third of the time.
+        is_quick: whether shadows and edges may be coarse and the floor dull, which takes a sixth of the time.
     """
 
     def __init__(
@@ -50,19 +54,28 @@ class Camera:
         self._simulation = simulation
         self._height, self._width = height, width
         self._is_quick = is_quick
+        self._visual: VisualModel | None = None
         self._renderer: mujoco.Renderer | None = None
         self._camera = mujoco.MjvCamera()
         self._camera.azimuth, self._camera.elevation = view.azimuth, view.elevation
         self._camera.distance = view.distance
         self._camera.lookat[:] = view.look_at
-        self._looks = mujoco.MjvOption()
-        self._looks.sitegroup[:] = 0
 
-    def picture(self) -> Pixels:
-        """Red, green and blue of each pixel, shape (height, width, 3), in an array of its own."""
-        if self._renderer is None:
-            self._renderer = self._made()
-        self._renderer.update_scene(self._simulation.data, self._camera, self._looks)
+    def picture(self, traces: Sequence[Sequence[Triple]] = ()) -> Pixels:
+        """Red, green and blue of each pixel, shape (height, width, 3), in an array of its own.
+
+        Args:
+            traces: lines to draw, each through points of the world frame, m.
+        """
+        # here, so that no process that takes no pictures loads it
+        from .looks.trace import draw_trace  # noqa: PLC0415
+
+        if self._visual is None or self._renderer is None:
+            self._visual, self._renderer = self._made()
+        self._visual.pose()
+        self._renderer.update_scene(self._visual.data, self._camera, self._visual.options)
+        for trace in traces:
+            draw_trace(self._renderer.scene, trace)
         return np.ascontiguousarray(self._renderer.render())
 
     def close(self) -> None:
@@ -71,19 +84,32 @@ class Camera:
             self._renderer.close()
             self._renderer = None
 
-    def _made(self) -> mujoco.Renderer:
-        model = self._simulation.model
-        with _coarse(model) if self._is_quick else nullcontext():
-            return mujoco.Renderer(model, self._height, self._width)
+    def _made(self) -> tuple[VisualModel, mujoco.Renderer]:
+        from .looks.visual import VisualModel  # noqa: PLC0415  # as above
+
+        visual = VisualModel(self._simulation)
+        if self._is_quick:
+            quality = visual.model.vis.quality
+            quality.shadowsize, quality.offsamples = _QUICK_SHADOWS, 0
+        renderer = mujoco.Renderer(visual.model, self._height, self._width)
+        if self._is_quick:
+            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
+        return visual, renderer
 
 
-@contextmanager
-def _coarse(model: mujoco.MjModel) -> Iterator[None]:
-    """What is made here draws coarsely; the model is as it was afterwards."""
-    quality = model.vis.quality
-    before = quality.shadowsize, quality.offsamples
-    quality.shadowsize, quality.offsamples = _QUICK_SHADOWS, 0
-    try:
-        yield
-    finally:
-        quality.shadowsize, quality.offsamples = before
+class TracingCamera(Camera):
+    """A camera whose pictures show where each robot's tool has been from one of them to the next."""
+
+    def __init__(
+        self, simulation: Simulation, height: int, width: int, view: View, *, is_quick: bool = False
+    ) -> None:
+        super().__init__(simulation, height, width, view, is_quick=is_quick)
+        self._paths: list[list[Triple]] = [[] for _ in simulation.robots]
+
+    def picture(self, traces: Sequence[Sequence[Triple]] = ()) -> Pixels:
+        """See `Camera.picture`."""
+        robots = self._simulation.robots.values()
+        for path, robot in zip(self._paths, robots, strict=True):
+            x, y, z = self._simulation.data.site_xpos[robot.site].tolist()
+            path.append((x, y, z))
+        return super().picture((*traces, *self._paths))

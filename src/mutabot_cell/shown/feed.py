@@ -14,7 +14,7 @@ from mutabot_cell.scene import Scene
 from mutabot_cell.simulation import TICK, Simulation
 from mutabot_cell.stretch import LONGEST
 
-from .camera import Camera, View
+from .camera import TracingCamera, View
 from .contacts import Contacts
 
 #: of a film: from where robot, conveyor and table are seen, pixels, pictures per simulated second
@@ -37,7 +37,7 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
     feed.contacts(Contacts(simulation).read)
     for fixture in scene.fixtures:
         feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)
-    feed.camera(Camera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)
+    feed.camera(TracingCamera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)
     _Teller(simulation, feed)
     return feed
 
