@@ -6,6 +6,8 @@ RUN    := $(VENV)/bin/python
 READY  := $(VENV)/.ready
 # what only tests of reports need
 REPORTS := $(VENV)/.reports
+# what only pictures of the cell need
+MESHES := $(VENV)/.meshes
 # ROS 1 and ROS 2 have packages of equal names: an environment each, which has all of $(VENV) as well
 ROS1   := $(VENV)-ros1
 ROS2   := $(VENV)-ros2
@@ -74,7 +76,7 @@ site: $(SITE)/.ready
 	@echo "open site/index.html"
 
 ## draw the pictures of the cell and of the report in docs/img again, without a screen
-pictures: $(READY) $(REPORTS)
+pictures: $(READY) $(REPORTS) $(MESHES)
 	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/make_pictures.py
 	$(RUN) tools/make_report_pictures.py
 
@@ -173,6 +175,11 @@ $(REPORTS): $(READY) requirements-reports.lock tools/schemas.py
 	$(RUN) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --only-binary :all: \
 	    -r requirements-reports.lock
 	$(RUN) tools/schemas.py
+	@touch $@
+
+$(MESHES): $(READY) requirements-pictures.lock
+	$(RUN) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --only-binary :all: \
+	    -r requirements-pictures.lock
 	@touch $@
 
 # The environment of the project makes it: that one knows where Debian keeps venv.

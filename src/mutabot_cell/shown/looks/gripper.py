@@ -130,4 +130,4 @@ def _quaternion(angle: float, sign: int) -> tuple[float, float, float, float]:
     half = angle / 2
     if sign < 0:
         return (math.cos(half), math.sin(half), 0.0, 0.0)
-    return (0.0, 0.0, -math.sin(half), math.cos(half))
+    return (0.0, 0.0, math.sin(half), math.cos(half))

@@ -39,6 +39,7 @@ def _quality(spec: mujoco.MjSpec) -> None:
     visual.headlight.specular[:] = (0.0, 0.0, 0.0)
     visual.rgba.haze[:] = (0.86, 0.88, 0.90, 1.0)
     visual.map.haze, visual.map.znear, visual.map.zfar = 0.75, 0.01, 40.0
+    visual.map.shadowclip = 1.6
     spec.stat.extent, spec.stat.center = 1.6, (0.1, 0.0, 0.9)
     visual.global_.offwidth, visual.global_.offheight = 1280, 960
 
