@@ -21,8 +21,8 @@ def main(folder: Path) -> None:
     """Write all of them."""
     with Cell(SEED) as cell:
         render(
-            cell, folder / "cell.png", width=WIDTH, height=HEIGHT, azimuth=132.0, elevation=-20.0,
-            distance=2.35, look_at=(0.2, 0.1, 1.02),
+            cell, folder / "cell.png", width=WIDTH, height=HEIGHT, azimuth=112.0, elevation=-24.0,
+            distance=2.15, look_at=(0.15, 0.05, 0.96),
         )  # fmt: skip
     _before_the_box_is_let_go(folder / "place.png")
 
