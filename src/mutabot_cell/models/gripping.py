@@ -91,6 +91,7 @@ def gripper_from_mjcf(
         name=Path(path).stem,
         spec=_prefixed(spec),
         body=first,
+        file=Path(path),
         point=(float(place[0]), float(place[1]), float(place[2])),
         effector=Fingers(
             actuator=PREFIX + actuator,

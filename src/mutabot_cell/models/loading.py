@@ -106,6 +106,7 @@ def robot_from_spec(
         base=base,
         root=root,
         is_fed_forward=True,
+        file=Path(path),
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
+from pathlib import Path
 
 import mujoco
 
@@ -56,6 +57,7 @@ class RobotModel:
         root: name of its first body in a file that holds more than the robot; "" otherwise.
         is_fed_forward: whether the controller gives servos the torques that a motion needs: servos of files
             can be too soft to follow without.
+        file: that it was read from, for pictures: it may hold meshes that the simulation leaves out.
     """
 
     name: str
@@ -73,6 +75,7 @@ class RobotModel:
     reach: SphericalWrist | None = None
     root: str = ""
     is_fed_forward: bool = False
+    file: Path | None = None
 
     @classmethod
     def from_mjcf(

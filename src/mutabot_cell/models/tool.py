@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from os import PathLike
+from pathlib import Path
 
 import mujoco
 
@@ -92,6 +93,7 @@ class Tool:
         turn: orientation of the tool's frame in the flange's frame, a unit quaternion (w, x, y, z).
         palm: of a distance sensor on the tool's axis, seen from the tool point, m; negative behind it.
         effector: what it takes hold with.
+        file: that it was read from, for pictures: it may hold meshes that the simulation leaves out.
     """
 
     name: str
@@ -101,6 +103,7 @@ class Tool:
     effector: Fingers | SuctionCup
     turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     palm: float = 0.0
+    file: Path | None = None
 
     @classmethod
     def from_mjcf(

@@ -20,7 +20,7 @@ _LINKS = {
 }
 
 
-def dress_gen3(spec: mujoco.MjSpec, prefix: str, stand: mujoco.MjsBody) -> None:
+def dress_gen3(spec: mujoco.MjSpec, prefix: str) -> None:
     """Draw the links' meshes where there is a Gen3 and its meshes are installed."""
     bodies = {name: spec.body(prefix + name) for name in _LINKS}
     meshes = folder_of("robosuite", "models/assets/robots/kinova3/meshes")

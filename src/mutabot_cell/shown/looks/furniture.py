@@ -7,7 +7,7 @@ import math
 import mujoco
 import numpy as np
 
-from mutabot_cell.models.model import ROBOT_BODY, stands
+from mutabot_cell.models.model import stands
 from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.scene import Fixture, LightBarrier
 
@@ -70,7 +70,6 @@ def dress_pedestal(spec: mujoco.MjSpec, prefix: str, robot: RobotModel) -> None:
     if not stands(robot):
         return
     geom, world, base = spec.geom(f"{prefix}pedestal"), spec.worldbody, robot.base
-    assert geom is not None, ROBOT_BODY
     hide(geom)
     x, y, height = base.x, base.y, base.z
     show(world, CYLINDER, (0.072, height / 2, 0), (x, y, height / 2), material="anthracite")

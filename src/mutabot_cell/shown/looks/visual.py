@@ -10,13 +10,14 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models.assembly import cell_spec
-from mutabot_cell.models.model import ROBOT_BODY
+from mutabot_cell.models.gripping import PREFIX as TOOL_PREFIX
 from mutabot_cell.models.options import compile_quietly
 from mutabot_cell.simulation import Simulation
 
 from .arm import dress_gen3
 from .cartons import dress_part
 from .conveyor import Seam, dress_belt
+from .files import dress_from_file
 from .furniture import dress_barrier, dress_pedestal, dress_table
 from .gripper import Linkage, dress_2f85
 from .studio import light_up
@@ -74,7 +75,10 @@ class VisualModel:
             dress_part(spec, part)
         for prefix, robot in robots.items():
             dress_pedestal(spec, prefix, robot.model)
-            dress_gen3(spec, prefix, spec.body(prefix + ROBOT_BODY))
+            dress_gen3(spec, prefix)
+            dress_from_file(spec, prefix, robot.model.file)
+            if robot.model.tool is not None:
+                dress_from_file(spec, prefix + TOOL_PREFIX, robot.model.tool.file)
             linkage = dress_2f85(spec, prefix)
             if linkage is not None:
                 self._linkages.append((prefix, linkage))
