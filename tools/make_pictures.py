@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from mutabot_cell import Cell, render
+from mutabot_cell import Cell, render, robots
 
 ROOT = Path(__file__).parents[1]
 #: its box is red
@@ -23,6 +23,11 @@ def main(folder: Path) -> None:
         render(
             cell, folder / "cell.png", width=WIDTH, height=HEIGHT, azimuth=112.0, elevation=-24.0,
             distance=2.15, look_at=(0.15, 0.05, 0.96),
+        )  # fmt: skip
+    with Cell(SEED, robot=robots.ur5e()) as cell:
+        render(
+            cell, folder / "ur5e.png", width=WIDTH, height=HEIGHT, azimuth=125.0, elevation=-18.0,
+            distance=1.75, look_at=(0.22, 0.05, 1.12),
         )  # fmt: skip
     _before_the_box_is_let_go(folder / "place.png")
 
