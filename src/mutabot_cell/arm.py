@@ -588,15 +588,19 @@ class Arm:
         self._pushes[number] = self._external()
         self._loads[number] = self._motors
 
-    def _quiet(self, stretch: Stretch, ticks: int) -> int:
-        pushes = (self._pushes[:ticks] / self._torque_limit).ravel()
-        errors = (self._planned[:ticks] - stretch.places[:ticks, self._robot.joints]).ravel()
+    def _quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
+        pushes = (self._pushes[known:ticks] / self._torque_limit).ravel()
+        errors = (self._planned[known:ticks] - stretch.places[known:ticks, self._robot.joints]).ravel()
         # mostly even the lengths of all together are below the limits of their parts; not so if one is NaN
         if not (pushes.dot(pushes) < 1.0 and errors.dot(errors) < self._following_limit**2):
             fine = (np.abs(pushes) < _SURELY) & (np.abs(errors) < _SURELY * self._following_limit)
-            ticks = min([ticks, *(np.flatnonzero(~fine) // len(self._setpoint)).tolist()])
-        self._heats, heat = [], self._heat
-        for number in range(-(self._simulation.ticks + 1) % _WARMING_TICKS, ticks, _WARMING_TICKS):
+            ticks = min([ticks, *(known + np.flatnonzero(~fine) // len(self._setpoint)).tolist()])
+        # another arm may have been quiet for less long
+        self._heats = [(number, heat) for number, heat in self._heats if number < known]
+        heat = self._heats[-1][1] if self._heats else self._heat
+        for number in range(known, ticks):
+            if (self._simulation.ticks + 1 + number) % _WARMING_TICKS:
+                continue
             heat = self._warmer(heat, self._loads[number])
             if not self._is_cool(heat):
                 return number

@@ -39,14 +39,15 @@ class Glance:
         until: gives within how many ticks it must be called again, whatever happens; at least 1.
         note: called after each tick with its number in the stretch, in the order in which checks were made
             known, to remember what the stretch does not.
-        quiet: of the first so many ticks of the stretch, at how many in a row the check would have found
-            nothing; in doubt too few. It changes nothing.
+        quiet: given two numbers of ticks of the stretch, up to which of the ticks between them the check
+            would have found nothing; in doubt too few. All before the first are known to be quiet. It is
+            asked of ever later ticks, and changes nothing.
         passed: so many ticks have passed without it.
     """
 
     until: Callable[[], int]
     note: Callable[[int], None] | None = None
-    quiet: Callable[[Stretch, int], int] | None = None
+    quiet: Callable[[Stretch, int, int], int] | None = None
     passed: Callable[[Stretch, int], None] | None = None
 
 
@@ -60,7 +61,7 @@ class Foresight:
     def __init__(self) -> None:
         self._plans: dict[Hook, InputPlan] = {}
         self._glances: dict[Hook, Glance] = {}
-        self._quiet: list[Callable[[Stretch, int], int]] = []
+        self._quiet: list[Callable[[Stretch, int, int], int]] = []
         self._passed: list[Callable[[Stretch, int], None]] = []
         self.notes: list[Callable[[int], None]] = []
 
@@ -102,10 +103,14 @@ class Foresight:
                 return 1
         return ticks
 
-    def quiet(self, stretch: Stretch, ticks: int) -> int:
-        """At how many in a row, of the first so many ticks, no check would have found anything."""
+    def quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
+        """At how many in a row, of the first so many ticks, no check would have found anything.
+
+        Args:
+            known: at so many at least.
+        """
         for quiet in self._quiet:
-            ticks = quiet(stretch, ticks)
+            ticks = quiet(stretch, known, ticks)
         return ticks
 
     def keep(self, stretch: Stretch, ticks: int) -> None:

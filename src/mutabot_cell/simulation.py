@@ -64,7 +64,7 @@ class Simulation:
         self.travels: dict[str, Callable[[], float]] = {}
         self.foresight = Foresight()
         self._stretch = Stretch(self.model, self.data, STEPS_PER_TICK)
-        self._ticks = 0
+        self._ticks = self._quiet = 0
         self._frames: deque[tuple[int, Array]] = deque([(0, self.data.qpos.copy())], maxlen=_KEPT_FRAMES)
         self._ids: dict[tuple[str, str], int] = {}
         # views of the physics' own memory
@@ -133,10 +133,11 @@ class Simulation:
         ticks = foresight.write(self.before_tick, self.after_tick, stretch.inputs[:most])
         if ticks < 2:
             return False
+        self._quiet = 0
         if not stretch.run(ticks, foresight.notes):
             stretch.go_back(0)
             return False
-        quiet = foresight.quiet(stretch, self._sane(ticks - 1))
+        quiet = self._quiet_until(ticks - 1)
         if quiet < ticks - 1:
             ticks = quiet + 1
             stretch.go_back(ticks)
@@ -153,7 +154,7 @@ class Simulation:
         Nothing is called if that tick, or one before, may be taken back because a check is needed.
         """
         ticks = number + 1
-        if self.foresight.quiet(self._stretch, self._sane(ticks)) < ticks:
+        if self._quiet_until(ticks) < ticks:
             return
         self._ticks += ticks
         try:
@@ -161,14 +162,21 @@ class Simulation:
         finally:
             self._ticks -= ticks
 
-    def _sane(self, ticks: int) -> int:
+    def _quiet_until(self, ticks: int) -> int:
+        """At how many in a row, of the first so many ticks of the stretch, nothing was wrong; at least so."""
+        known = self._quiet
+        if known < ticks:
+            self._quiet = self.foresight.quiet(self._stretch, known, self._sane(known, ticks))
+        return self._quiet
+
+    def _sane(self, known: int, ticks: int) -> int:
         """After how many of the first so many ticks of the stretch nothing was wrong in the physics."""
-        states = self._stretch.states[:ticks].ravel()
+        states = self._stretch.states[known:ticks].ravel()
         # one number tells of all, in doubt each tick is looked at; it is not below the limit if one is NaN
         if states.dot(states) < _ABSURD_SPEED**2:
             return ticks
-        moments = zip(self._stretch.places[:ticks], self._stretch.speeds[:ticks], strict=True)
-        return next((tick for tick, moment in enumerate(moments) if not _are_sane(*moment)), ticks)
+        moments = zip(self._stretch.places[known:ticks], self._stretch.speeds[known:ticks], strict=True)
+        return next((tick for tick, moment in enumerate(moments, known) if not _are_sane(*moment)), ticks)
 
     def _check_speeds(self) -> None:
         fastest = float(np.abs(self._speeds).max())

@@ -1,6 +1,6 @@
 """Forward and inverse kinematics of the arm: joint paths that keep the tool on a straight line.
 
-Forward kinematics comes from MuJoCo, inverse kinematics from mink.
+Forward kinematics comes from MuJoCo, inverse kinematics from mink and daqp.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from mutabot_cell.geometry import Array
 from mutabot_cell.models.assembly import TOOL_SITE, build_arm
 from mutabot_cell.models.robot import RobotModel
 
+from .joint_step import JointStep
 from .line import Line
 from .reach import WristReach
 from .trajectory import Spline
@@ -174,9 +175,7 @@ class _Solver:
             orientation_cost=_ORIENTATION_COST,
             lm_damping=0.0 if is_redundant else _DAMPING,
         )
-        self._posture = mink.PostureTask(arm, cost=_POSTURE_COST)
-        self._tasks = [self._frame, self._posture] if is_redundant else [self._frame]
-        self._limits: list[mink.Limit] = [mink.ConfigurationLimit(arm, gain=0.95)]
+        self._step = JointStep(arm, self._frame, _POSTURE_COST if is_redundant else 0.0)
 
     def solve(
         self, position: Array, rotation: Array, guess: Array, *, near: Array, limited: bool = True
@@ -186,18 +185,16 @@ class _Solver:
         transform[:3, :3] = rotation
         transform[:3, 3] = position
         self._frame.set_target(mink.SE3.from_matrix(transform))
-        self._posture.set_target(near)
         configuration = self._configuration
         configuration.update(np.clip(guess, self._lower, self._upper) if limited else guess)
-        limits = self._limits if limited else []
         for _ in range(_ITERATIONS):
-            velocity = mink.solve_ik(configuration, self._tasks, 1.0, "daqp", limits=limits)
-            configuration.integrate_inplace(velocity, 1.0)
+            step = self._step.solve(configuration, near, limited=limited)
+            configuration.integrate_inplace(step, 1.0)
             error = self._frame.compute_error(configuration)
             if (
                 math.dist(error[:3], (0, 0, 0)) < POSITION_TOLERANCE
                 and math.dist(error[3:], (0, 0, 0)) < ROTATION_TOLERANCE
-                and float(np.abs(velocity).max()) < 0.02
+                and float(np.abs(step).max()) < 0.02
             ):
                 return configuration.q.copy()
         return None
