@@ -26,10 +26,10 @@ RESTING_WITHIN = 0.0025
 FULLY_OPEN, OPEN_WITHIN = 0.085, 0.001
 STANDING = 0.0015
 """The belt stands when its encoder counts less than this, m/s: a count of 0.1 mm in 0.1 s, and a half."""
-UPSTREAM = Box(name="box 1", position=(0.5, -0.5, BELT_TOP))
-CYCLE_TIME = {"red": 21.2, "blue": 20.9}
+UPSTREAM = Box(name="box 1", position=(0.5, -0.3, BELT_TOP))
+CYCLE_TIME = {"red": 18.2, "blue": 17.7}
 """From the start to home for UPSTREAM, s: what the program needs at most, rounded up; that the belt wanders
-makes 0.3 s of it."""
+makes 0.2 s of it."""
 GAP = 0.13
 """Between boxes that follow each other closely, m: the gripper is 0.1 wide and needs the rest to open."""
 
@@ -48,8 +48,10 @@ def test_a_box_is_picked_from_the_moving_belt_and_set_down_in_the_row_of_its_col
 
 
 @pytest.mark.parametrize("x", [0.40, 0.58])
-def test_a_box_is_picked_wherever_it_lies_across_the_belt(cell_with: CellWith, x: float) -> None:
-    cell = cell_with(replace(UPSTREAM, position=(x, -0.3, BELT_TOP), colour="red"))
+def test_a_box_is_picked_wherever_it_lies_across_a_belt_that_runs_very_unevenly(
+    cell_with: CellWith, x: float
+) -> None:
+    cell = cell_with(replace(UPSTREAM, position=(x, -0.3, BELT_TOP), colour="red"), jitter=0.15)
 
     assert picking.run(cell, ["box 1"]) == Report(["red"], [])
 
@@ -71,23 +73,14 @@ def test_boxes_that_come_far_apart_are_sorted_while_the_belt_runs_on(cell_with: 
 
 
 def test_the_belt_waits_for_boxes_that_follow_closely(cell_with: CellWith) -> None:
-    colours = ["blue", "blue", "red"]
-    cell = cell_with(*row(colours, gap=GAP, first=-0.35))
+    colours = ["blue", "red"]
+    cell = cell_with(*row(colours, gap=GAP, first=-0.3))
 
-    assert picking.run(cell, names(3)) == Report(colours, [])
+    assert picking.run(cell, names(2)) == Report(colours, [])
 
-    for name, colour, before in zip(names(3), colours, (0, 1, 0), strict=True):
-        check_placed(cell, name, colour, before)
-    assert belt_travel_after(cell) < 1.2
-    check_at_rest(cell)
-
-
-def test_a_belt_that_runs_very_unevenly_is_followed(cell_with: CellWith) -> None:
-    cell = cell_with(replace(UPSTREAM, colour="red"), jitter=0.15)
-
-    assert picking.run(cell, ["box 1"]) == Report(["red"], [])
-
-    check_placed(cell, "box 1", "red", 0)
+    for name, colour in zip(names(2), colours, strict=True):
+        check_placed(cell, name, colour, 0)
+    assert belt_travel_after(cell) < 0.45
     check_at_rest(cell)
 
 
@@ -135,7 +128,7 @@ def test_a_box_that_the_belt_does_not_bring_is_reported(cell_with: CellWith) -> 
 
 
 def test_something_lower_than_a_box_is_left_on_the_belt(cell_with: CellWith) -> None:
-    low = replace(UPSTREAM, position=(0.5, -0.3, BELT_TOP), size=(0.05, 0.05, 0.025))
+    low = replace(UPSTREAM, size=(0.05, 0.05, 0.025))
     cell = cell_with(low, troubled=("box 1",))
 
     assert picking.run(cell, ["box 1"]) == Report([], ["box 1"])
@@ -145,8 +138,8 @@ def test_something_lower_than_a_box_is_left_on_the_belt(cell_with: CellWith) -> 
 
 
 def test_a_box_that_slips_out_of_the_fingers_is_reported_and_the_next_one_picked(cell_with: CellWith) -> None:
-    slippery = replace(UPSTREAM, position=(0.5, -0.3, BELT_TOP), colour="red", mass=0.4, friction=0.01)
-    after = Box(name="box 2", position=(0.5, -0.9, BELT_TOP), colour="blue")
+    slippery = replace(UPSTREAM, colour="red", mass=0.4, friction=0.01)
+    after = Box(name="box 2", position=(0.5, -0.7, BELT_TOP), colour="blue")
     cell = cell_with(slippery, after, troubled=("box 1",))
 
     assert picking.run(cell, names(2)) == Report(["blue"], ["box 1"])
