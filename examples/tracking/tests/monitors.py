@@ -37,45 +37,51 @@ PAST = 0.4
 
 def watch_gripper(cell: Cell) -> None:
     """For every test case: no finger touches what boxes lie on, and the arm waits for the fingers."""
-    motion = Motion(cell, cell.truth.tool_position)
-    cell.always(lambda: clearance(cell) > FINGER_CLEARANCE, "the fingers keep clear of belt and table")
+    place = once_per_tick(cell, cell.truth.tool_position)
+    motion = Motion(cell, place)
+
+    def clearance() -> float:
+        tool = place()
+        return tool.z + BASE_HEIGHT - FINGERS - _top(tool.x)
+
+    cell.always(lambda: clearance() > FINGER_CLEARANCE, "the fingers keep clear of belt and table")
     cell.always(
-        lambda: (
-            motion.speed() < STANDING or clearance(cell) > NEAR or not LOOSE < cell.truth.opening() < OPEN
-        ),
+        lambda: motion.speed() < STANDING or clearance() > NEAR or not LOOSE < cell.truth.opening() < OPEN,
         "the arm waits for the fingers",
     )
 
 
 def watch_box(cell: Cell, name: str) -> None:
     """For boxes that are picked and set down: gently, and in time."""
-    motion = Motion(cell, lambda: cell.truth.box_position(name))
-    cell.always(lambda: height(cell, name) > -SINKING, f"{name} is not pressed into belt or table")
-    cell.always(lambda: cell.truth.opening() < LOOSE or height(cell, name) < LOW, f"{name} is never dropped")
+    place = once_per_tick(cell, lambda: cell.truth.box_position(name))
+    motion = Motion(cell, place)
+
+    def height() -> float:
+        return place().z - _top(place().x)
+
+    def is_past() -> bool:
+        return place().y > PAST and place().x > BELT_EDGE and height() < LOW
+
+    cell.always(lambda: height() > -SINKING, f"{name} is not pressed into belt or table")
+    cell.always(lambda: cell.truth.opening() < LOOSE or height() < LOW, f"{name} is never dropped")
     cell.always(
-        lambda: motion.sideways() < PUSHING_SPEED or height(cell, name) > CARRYING_HEIGHT,
-        f"{name} is carried high",
+        lambda: motion.sideways() < PUSHING_SPEED or height() > CARRYING_HEIGHT, f"{name} is carried high"
     )
     cell.always(lambda: cell.truth.box_tilt(name) < LARGEST_TILT, f"{name} stays upright")
-    cell.always(lambda: not is_past(cell, name), f"{name} does not get past the robot")
+    cell.always(lambda: not is_past(), f"{name} does not get past the robot")
 
 
-def is_past(cell: Cell, name: str) -> bool:
-    """Whether the belt has carried the box out of reach."""
-    box = cell.truth.box_position(name)
-    return box.y > PAST and box.x > BELT_EDGE and height(cell, name) < LOW
+def once_per_tick(cell: Cell, read: Callable[[], Position]) -> Callable[[], Position]:
+    """The same reading, taken once however many conditions ask for it."""
+    time, place = cell.time, read()
 
+    def reading() -> Position:
+        nonlocal time, place
+        if cell.time != time:
+            time, place = cell.time, read()
+        return place
 
-def height(cell: Cell, name: str) -> float:
-    """Of a box above belt or table; between them, above the floor."""
-    box = cell.truth.box_position(name)
-    return box.z - _top(box.x)
-
-
-def clearance(cell: Cell) -> float:
-    """Of the fingers above belt, table or floor, when they point down."""
-    tool = cell.truth.tool_position()
-    return tool.z + BASE_HEIGHT - FINGERS - _top(tool.x)
+    return reading
 
 
 def _top(x: float) -> float:
