@@ -13,7 +13,7 @@ BELT_SPEED = 0.2
 """m/s."""
 STANDING = 0.005
 """The belt stands when its encoder tells less than this, m/s."""
-PATIENCE = 4.0
+PATIENCE = 2.5
 """So long the belt runs for a box, s: it brings one every 0.2 m."""
 BRAKING = 1.0
 """Longer than the belt takes to stop, s."""

@@ -39,7 +39,7 @@ LEAK, SMALL_LEAK, TORN_LIP = 1e-6, 5e-7, 1e-5
 """Openings, m²: vacuum comes to less than the switch needs; to 38 kPa; to nothing that holds."""
 CYCLE_TIME = 8.0
 """From box to box, s."""
-TWO_CYCLES = 25.8
+TWO_CYCLES = 24.3
 """From home with two boxes on the belt, and the patience at the end, s; rounded up."""
 TWO_TRIES = 8.6
 """As above, for a box at the stop on which no vacuum comes."""
@@ -49,7 +49,7 @@ after 0.1 s, and the arm brakes for 0.4 s, from at most 0.65 m/s."""
 AT_STOP = replace(BOX, name="box 1", position=(0.5, 0.0, BELT_TOP))
 
 
-@pytest.mark.parametrize("placed", [0, 5, 9, 14, 22])
+@pytest.mark.parametrize("placed", [0, 5, 14, 22])
 def test_a_box_is_set_down_in_the_next_place_of_the_pattern(cell_with: CellWith, placed: int) -> None:
     cell = cell_with(placed=placed)
 
@@ -69,6 +69,7 @@ def test_the_last_box_makes_the_pallet_full_and_the_next_one_stays_on_the_belt(c
     check_at_rest(cell)
 
 
+@pytest.mark.whole
 def test_a_whole_pallet_is_filled_and_stands(cell_with: CellWith) -> None:
     cell = cell_with(on_belt(27))
 
@@ -126,12 +127,12 @@ def test_without_boxes_the_belt_runs_for_a_while_and_stops(cell_with: CellWith) 
 
     assert palletising.run(cell) == Report(Outcome.NO_BOX, 0)
 
-    assert 0.5 < belt_travel_after(cell) < 1.0
+    assert 0.4 < belt_travel_after(cell) < 0.6
     check_at_rest(cell)
 
 
 def test_a_box_further_away_on_the_belt_is_waited_for(cell_with: CellWith) -> None:
-    cell = cell_with([replace(BOX, name="box 1", position=(0.5, -0.6, BELT_TOP))])
+    cell = cell_with([replace(BOX, name="box 1", position=(0.5, -0.4, BELT_TOP))])
 
     assert palletising.run(cell) == Report(Outcome.NO_BOX, 1)
 
