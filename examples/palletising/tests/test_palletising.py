@@ -49,7 +49,7 @@ after 0.1 s, and the arm brakes for 0.4 s, from at most 0.65 m/s."""
 AT_STOP = replace(BOX, name="box 1", position=(0.5, 0.0, BELT_TOP))
 
 
-@pytest.mark.parametrize("placed", [0, 5, 14, 22])
+@pytest.mark.parametrize("placed", [0, 5, 14])
 def test_a_box_is_set_down_in_the_next_place_of_the_pattern(cell_with: CellWith, placed: int) -> None:
     cell = cell_with(placed=placed)
 
@@ -92,13 +92,13 @@ def test_a_full_pallet_gets_no_box(cell_with: CellWith) -> None:
 
 
 def test_two_boxes_take_two_cycles_in_which_the_belt_runs_while_the_arm_carries(cell_with: CellWith) -> None:
-    cell = cell_with(on_belt(2), placed=7)
+    cell = cell_with(on_belt(2), placed=2)
 
-    assert palletising.run(cell, 7) == Report(Outcome.NO_BOX, 9)
+    assert palletising.run(cell, 2) == Report(Outcome.NO_BOX, 4)
 
     assert cell.time < TWO_CYCLES
-    check_placed(cell, "box 1", 7)
-    check_placed(cell, "box 2", 8)
+    check_placed(cell, "box 1", 2)
+    check_placed(cell, "box 2", 3)
     check_at_rest(cell)
 
 
