@@ -1,15 +1,15 @@
 """Where 27 boxes stand on a pallet: three layers of nine, each a mirror image of the one below it.
 
-      x ─►         first and third layer            second layer
-    ┌────────┬─────┬─────┬─────┐           ┌─────┬─────┬─────┬────────┐
-    │ along  │  a  │  a  │  a  │           │  a  │  a  │  a  │ along  │
-    ├────────┤  c  │  c  │  c  │           │  c  │  c  │  c  ├────────┤
-    │ along  │  r  │  r  │  r  │           │  r  │  r  │  r  │ along  │
-    ├────────┤  o  │  o  │  o  │           │  o  │  o  │  o  ├────────┤
-    │ along  │  s  │  s  │  s  │           │  s  │  s  │  s  │ along  │
-    └────────┴──s──┴──s──┴──s──┘           └──s──┴──s──┴──s──┴────────┘
+     first and third layer            second layer
+    ┌────────┬─────┬─────┬─────┐     ┌─────┬─────┬─────┬────────┐
+    │   1    │     │     │     │     │     │     │     │   1    │
+    ├────────┤  4  │  6  │  8  │     │  8  │  6  │  4  ├────────┤    y
+    │   2    ├─────┼─────┼─────┤     ├─────┼─────┼─────┤   2    │    ▲
+    ├────────┤     │     │     │     │     │     │     ├────────┤    │
+    │   3    │  5  │  7  │  9  │     │  9  │  7  │  5  │   3    │    └──► x
+    └────────┴─────┴─────┴─────┘     └─────┴─────┴─────┴────────┘
 
-Boxes that lie across stand in pairs, one behind the other. Seams of one layer are bridged by the next.
+Boxes of one layer bridge the seams of the layer below.
 Lengths in m, from the middle of the pallet's deck.
 """
 
