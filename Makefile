@@ -103,6 +103,7 @@ bench: $(READY)
 	$(RUN) benchmarks/sample_coverage.py
 	$(RUN) benchmarks/pick_and_place_seeds.py
 	$(RUN) benchmarks/tracking_seeds.py
+	$(RUN) benchmarks/palletising_seeds.py
 	$(RUN) benchmarks/html_report.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the

@@ -7,7 +7,8 @@ planning), and of a bare loop of `mj_step` over the same inputs of the servos th
 many times longer than bare mission and motions take. All of processor time, which other work on the machine
 disturbs less than wall time; the median over the runs is the figure. Start-up is shown apart: from a fresh
 interpreter to a ready, homed cell (best and median of several processes). Then the real-time factors of cells
-with 1, 8 and 27 boxes in layers of nine, beside that of bare steps of the physics, in turns in one process.
+with 1, 8 and 27 boxes in layers of nine, beside that of bare steps of the physics, in turns in one process;
+and of the program of `examples/palletising`, which fills a pallet.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import sys
 import time
 from collections.abc import Callable
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -81,6 +83,27 @@ def with_boxes(count: int, rounds: int = 5) -> None:
         found["moving"].append(ratio(cell, swing))
     told = ", ".join(f"{name} {statistics.median(ratios):.0f}" for name, ratios in found.items())
     print(f"{count} boxes: times real time: {told}")
+
+
+def palletising() -> None:
+    """Print the ratio of a whole pallet of 27 boxes, and of bare steps of that cell afterwards."""
+    import mujoco  # noqa: PLC0415
+
+    from mutabot_cell import Cell, gen3, suction_cup  # noqa: PLC0415
+
+    folder = EXAMPLE.parent / "palletising"
+    sys.path[:0] = [str(folder), str(folder / "tests")]
+    program, layout = import_module("palletising"), import_module("layout")
+    robot, scene = gen3().with_tool(suction_cup(0.030)), layout.scene(*layout.on_belt(27))
+    cell = Cell(0, robot=robot, scene=scene)
+    whole = ratio(cell, partial(program.run, cell))
+
+    def bare() -> None:
+        for _ in range(500):
+            mujoco.mj_step(cell.simulation.model, cell.simulation.data)
+
+    told = f"whole pallet {whole:.0f} ({cell.time:.0f} s), bare steps {1.0 / taken(bare):.0f}"
+    print(f"palletising: times real time: {told}")
 
 
 def taken(work: Callable[[], object]) -> float:
@@ -166,6 +189,7 @@ def main(runs: int) -> None:
     print(f"median: {_told(medians)} (aims: mission at least 60, motions at most 1.25 times bare)")
     for count in (1, 8, 27):
         with_boxes(count)
+    palletising()
 
 
 def _told(row: tuple[float, ...]) -> str:
