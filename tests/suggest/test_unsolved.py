@@ -112,15 +112,34 @@ def test_a_relation_is_no_more_exact_than_a_value() -> None:
     assert candidates(PROJECT, found)[0] == []
 
 
-def test_two_items_of_a_list_and_two_quantities_are_no_relation() -> None:
-    read = dict.fromkeys(("places[0][2]", "places[2][2]", 'said["gaps"][2]', "goal[2]"), 0.4)
+def test_a_relation_of_items_asks_for_lists_that_are_equal_throughout() -> None:
+    lists = {
+        "places[0]": [9.0, 8.0, 0.4],
+        "places[2]": [0.1, 0.2, 0.4],
+        "goal": [0.1, 0.2, 0.4],
+        "arm.quaternion": [0.8, 0.48, 0.4],
+        'said["gaps"]': [0.5, 0.45, 0.4],
+    }
+    read = {f"{name}[{item}]": value for name, items in lists.items() for item, value in enumerate(items)}
     found = of([read] * 3, read | {"places[2][2]": 0.9}, *read)
-    said = of([{'said["angles"][2]': 3.0, **read}] * 3, {'said["angles"][2]': 9.0, **read}, *read)
-    near = "assert places[2][2] == pytest.approx({}, abs=0.2)"
-    statements = {check.statement for check in candidates(PROJECT, found)[0]}
-    assert near.format("goal[2]") in statements
-    assert near.format("places[0][2]") not in statements
-    assert not any("gaps" in check.statement for check in candidates(PROJECT, said)[0])
+    said = of([read] * 3, read | {'said["gaps"][2]': 0.9}, *read)
+    near = "assert {} == pytest.approx({}, abs=0.2)"
+    assert {check.statement for check in candidates(PROJECT, found)[0]} == {
+        near.format("places[2][2]", "goal[2]"),
+        near.format("places[2][2]", 0.4),
+    }
+    assert {check.statement for check in candidates(PROJECT, said)[0]} == {
+        near.format('said["gaps"][2]', 0.4)
+    }
+
+
+def test_two_lists_of_zeros_and_two_arguments_are_no_relation() -> None:
+    read = dict.fromkeys(
+        ("force[0]", "force[1]", "bend[0]", "bend[1]", 'arm.get("a/1")', 'cell.get("b/1")'), 0.0
+    )
+    for text in ("force[1]", 'arm.get("a/1")'):
+        found = of([read] * 3, read | {text: 9.0}, *read)
+        assert [check.value for check in candidates(PROJECT, found)[0]] == [0.0]
 
 
 def test_the_suites_tolerance_for_a_list_holds_for_all_items() -> None:

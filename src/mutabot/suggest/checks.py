@@ -231,7 +231,7 @@ class _ReadAtEnd:
     def checks(self, reading: ReadExpression) -> Iterator[ProposedCheck]:
         """The checks of a reading: that it equals what the test was given, or a value."""
         text = reading.text
-        partners = [one for one in self.given if _are_related(one, reading)]
+        partners = [one for one in self.given if _are_related(one, reading, self.runs[0])]
         for other in [*partners[:_PARTNERS], None]:
             texts = [text] if other is None else [text, other.text]
             values = [read[one] for read in self.runs for one in texts]
@@ -327,12 +327,23 @@ def _why_not(check: ProposedCheck, compared: set[str], own: float) -> str | None
     return None
 
 
-def _are_related(one: ReadExpression, other: ReadExpression) -> bool:
-    """Whether two readings are the same part of two things: not two items of a list, or angles and gaps."""
+def _are_related(one: ReadExpression, other: ReadExpression, read: Read) -> bool:
+    """Whether two readings are the same part of two things: of one name, or of lists that are all equal."""
+    if _LAST.findall(one.text) != _LAST.findall(other.text):
+        return False
     first, second = _NAME.findall(one.text), _NAME.findall(other.text)
-    are_apart = first[0] != second[0] or (first != second and first[-1] == second[-1])
-    parts = [_LAST.findall(text) for text in (one.text, other.text)]
-    return are_apart and parts[0] == parts[1]
+    if first[-1] == second[-1]:
+        return first != second
+    mine, others = (_whole(read, each.text) for each in (one, other))
+    wide = max(one.tolerance, other.tolerance)
+    near = (is_number(a) and is_number(b) and abs(a - b) <= wide for a, b in zip(mine, others, strict=False))
+    return len(set(mine)) > 1 and len(mine) == len(others) and all(near)  # lists of zeros say nothing
+
+
+def _whole(read: Read, text: str) -> list[Any]:
+    """The list of which a reading is an item."""
+    name = text.rpartition("[")[0]
+    return [value for each, value in read.items() if name and each.rpartition("[")[0] == name]
 
 
 def _last(text: str) -> str:
