@@ -136,13 +136,13 @@ class ProposedCheck:
 
     @property
     def worth(self) -> tuple[int, ...]:
-        """What a person would rather write: no clock, the suite's reader, a relation, a place, few digits."""
+        """What a person would rather write: the suite's reader, a relation, a place, few digits."""
         name = _last(self.reading.text)
         rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
         digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
-        kind = not _CLOCK.search(name), -self.reading.way, is_relation, -rank
-        return *kind, self.is_clear, -digits, self.alike, -len(self.statement)
+        kind = -self.reading.way, is_relation, -rank, self.is_clear
+        return *kind, -digits, self.alike, -len(self.statement)
 
     @property
     def statement(self) -> str:
@@ -188,7 +188,7 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
         readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
         seen = _ReadAtEnd(place, runs, mutants, given, stated, usual)
         for check in (check for reading in readings for check in seen.checks(reading)):
-            why = _why_not(check, compared, seen.allowed(check.reading.text))
+            why = _why_not(check, seen.allowed(check.reading.text))
             if why is None:
                 pairs = (zip(check.reading.text, one, strict=False) for one in beside)
                 common = (len([*takewhile(lambda pair: pair[0] == pair[1], each)]) for each in pairs)
@@ -312,14 +312,11 @@ def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
     return frozenset(trial for trial, size in sizes.items() if size > tolerance)
 
 
-def _why_not(check: ProposedCheck, compared: set[str], own: float) -> str | None:
-    """Why a person would not merge it; None if one may.
-
-    ``compared``, ``own``: the names that the tests compare, and the tolerance that they state for it.
-    """
-    text, name = check.reading.text, _last(check.reading.text)
-    if _CLOCK.search(name) and name not in compared:
-        return f"only its time differs ({text}), and the tests set no deadline"
+def _why_not(check: ProposedCheck, own: float) -> str | None:
+    """Why a person would not merge it, if the tests state the tolerance ``own`` for it; None if one may."""
+    text = check.reading.text
+    if _CLOCK.search(_last(text)):
+        return f"only its time differs ({text}): add a deadline if the task has one"
     if check.tolerance is not None and check.tolerance < own:
         return f"{text} differs by less than the tests allow: {own!r}"
     if check.is_exact:
@@ -357,7 +354,6 @@ def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
     tolerances: dict[str, float] = {}
     for node in ast.walk(module) if module is not None else ():
         if isinstance(node, ast.Compare):
-            compared.update(_NAME.findall(ast.unparse(node)))
             compared.update(ast.unparse(one) for one in ast.walk(node) if isinstance(one, ast.expr))
         match node:
             case ast.Compare(left=looked, comparators=[ast.Call(keywords=keywords)]):
