@@ -10,7 +10,7 @@ import pytest
 from mutabot.model import Mutant, Role, Site, Span
 from mutabot.suggest.checks import candidates
 from mutabot.suggest.project import PlaceInTest
-from mutabot.suggest.readings import PROBE, Measured, ReadExpression
+from mutabot.suggest.readings import ORACLE, PROBE, Measured, ReadExpression
 from mutabot.suggest.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
@@ -167,6 +167,15 @@ def test_the_expression_that_the_suite_reads_comes_first() -> None:
     checks, _ = candidates(_Project("assert arm.z() > 0"), found)  # type: ignore[arg-type]
     ranked = sorted(checks, key=lambda check: check.worth, reverse=True)
     assert [check.reading.text for check in ranked] == ["arm.z()", "arm.x"]
+
+
+@pytest.mark.parametrize("quote", "'\"")
+def test_what_the_suite_compares_is_known_whatever_its_quotes(quote: str) -> None:
+    reading = 'said["here"]'
+    found = of([{reading: 0.3}] * 3, {reading: 0.9}, reading)
+    stated = _Project(f"assert said[{quote}here{quote}] == pytest.approx(0.5, abs=0.03)")
+    ((check,), _) = candidates(stated, found)  # type: ignore[arg-type]
+    assert (check.reading.way, check.tolerance) == (ORACLE, 0.03)
 
 
 def test_a_check_stands_in_the_test_that_looks_at_the_same_thing() -> None:

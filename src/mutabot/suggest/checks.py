@@ -10,12 +10,12 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
+from itertools import accumulate
 from typing import Any
 
 from mutabot.frozen import frozen
 
-from .project import Addition, PlaceInTest, ProjectFiles, equal, function_of, within
+from .project import Addition, PlaceInTest, ProjectFiles, equal, function_of, text_of, within
 from .readings import ORACLE, Measured, Read, ReadExpression, is_number, known
 
 CONFIDENCE = 0.95
@@ -150,7 +150,7 @@ class ProposedCheck:
         style, text = self.place.style, self.reading.text
         other = self.value.text if isinstance(self.value, ReadExpression) else None
         if self.tolerance is None:
-            return equal(style, text, other or literal(self.value))
+            return equal(style, text, other or text_of(ast.Constant(self.value)))
         return within(style, text, other or repr(float(self.value)), repr(self.tolerance))
 
     def addition(self) -> Addition:
@@ -160,12 +160,6 @@ class ProposedCheck:
         approx = ["import pytest"] if "pytest.approx" in self.statement else []
         used = tuple(name for name in self.place.names if name in names)
         return Addition(self.place, (self.statement,), used, (*needs, *approx))
-
-
-def literal(value: Any) -> str:
-    """A value as a text of a program."""
-    text = repr(value)
-    return f'"{value}"' if isinstance(value, str) and '"' not in text and "\\" not in text else text
 
 
 def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[ProposedCheck], dict[str, str]]:
@@ -190,9 +184,9 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
         for check in (check for reading in readings for check in seen.checks(reading)):
             why = _why_not(check, seen.allowed(check.reading.text))
             if why is None:
-                pairs = (zip(check.reading.text, one, strict=False) for one in beside)
-                common = (len([*takewhile(lambda pair: pair[0] == pair[1], each)]) for each in pairs)
-                found.append(replace(check, alike=max(common, default=0)))
+                starts = accumulate(check.reading.text)
+                alike = sum(any(one.startswith(start) for one in beside) for start in starts)
+                found.append(replace(check, alike=alike))
             else:
                 refused.update((mutant, why) for mutant, _ in check.trials)
     return found, refused
@@ -331,16 +325,11 @@ def _are_related(one: ReadExpression, other: ReadExpression, read: Read) -> bool
     first, second = _NAME.findall(one.text), _NAME.findall(other.text)
     if first[-1] == second[-1]:
         return first != second
-    mine, others = (_whole(read, each.text) for each in (one, other))
+    names = [each.text.rpartition("[")[0] for each in (one, other)]
+    mine, others = ([read[text] for text in read if text.startswith(f"{name}[")] for name in names)
     wide = max(one.tolerance, other.tolerance)
     near = (is_number(a) and is_number(b) and abs(a - b) <= wide for a, b in zip(mine, others, strict=False))
     return len(set(mine)) > 1 and len(mine) == len(others) and all(near)  # lists of zeros say nothing
-
-
-def _whole(read: Read, text: str) -> list[Any]:
-    """The list of which a reading is an item."""
-    name = text.rpartition("[")[0]
-    return [value for each, value in read.items() if name and each.rpartition("[")[0] == name]
 
 
 def _last(text: str) -> str:
@@ -354,7 +343,7 @@ def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
     tolerances: dict[str, float] = {}
     for node in ast.walk(module) if module is not None else ():
         if isinstance(node, ast.Compare):
-            compared.update(ast.unparse(one) for one in ast.walk(node) if isinstance(one, ast.expr))
+            compared.update(text_of(one) for one in ast.walk(node) if isinstance(one, ast.expr))
         match node:
             case ast.Compare(left=looked, comparators=[ast.Call(keywords=keywords)]):
                 allowed = [one.value for one in keywords if one.arg == "abs"]
@@ -369,7 +358,7 @@ def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
                 allowed = [one.value for one in keywords if one.arg == "delta"]
             case _:
                 continue
-        text = ast.unparse(looked)
+        text = text_of(looked)
         sizes = [one.value for one in allowed if isinstance(one, ast.Constant)]
         for size in (float(size) for size in sizes if is_number(size)):
             for name in (f"={text}", _last(text)):
