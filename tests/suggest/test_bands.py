@@ -80,6 +80,12 @@ def test_all_that_any_check_kills_is_killed_and_no_check_is_needless() -> None:
             assert frozenset().union(*(other.trials for other in chosen if other is not one)) != whole
 
 
+def test_of_checks_that_others_replace_the_one_that_a_person_would_rather_write_stays() -> None:
+    trials = [{1, 2}, {2, 3}, {1, 3, 4}, {4, 5}]
+    checks: list[Any] = [_Check(frozenset(one), (-rank,)) for rank, one in enumerate(trials)]
+    assert chosen_of(checks, {}) == [checks[0], checks[1], checks[3]]
+
+
 @dataclass(frozen=True, eq=False)
 class _Check:
     """What a choice asks of a check."""

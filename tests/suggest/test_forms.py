@@ -64,6 +64,16 @@ def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: ProjectFiles) -> 
     assert all(line.endswith("\r\n") for line in after[:-1])
 
 
+def test_readings_of_what_the_tests_compare_have_the_quotes_of_all_others(project: ProjectFiles) -> None:
+    place = place_of(project, NODES["pytest"])
+    assert place is not None
+    file = project.root / place.file
+    compared = """assert arm.seen["x"] > 0 and arm.seen['y'] > 0 and arm.seen["it's"] > 0"""
+    file.write_text(f"{file.read_text()}\n\ndef test_more(arm):\n    {compared}\n")
+    texts = {one.text for one in readings_at(ProjectFiles(project.request), place)}
+    assert {'arm.seen["x"]', 'arm.seen["y"]', """arm.seen["it's"]"""} <= texts
+
+
 def test_what_the_tests_compare_is_read_where_its_names_are_at_hand(project: ProjectFiles) -> None:
     place = place_of(project, NODES["pytest"])
     assert place is not None

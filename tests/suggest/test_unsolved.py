@@ -10,7 +10,7 @@ import pytest
 from mutabot.model import Mutant, Role, Site, Span
 from mutabot.suggest.checks import candidates
 from mutabot.suggest.project import PlaceInTest
-from mutabot.suggest.readings import PROBE, Measured, ReadExpression
+from mutabot.suggest.readings import ORACLE, PROBE, Measured, ReadExpression
 from mutabot.suggest.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
@@ -70,13 +70,13 @@ def test_what_a_test_was_given_is_what_it_is_held_against() -> None:
     assert statements == {"assert box.x == pytest.approx(target.x, abs=0.1)"}
 
 
-def test_a_clock_is_no_check_unless_the_tests_set_a_deadline() -> None:
+@pytest.mark.parametrize("test", ["", "assert robot.time < 30"])
+def test_a_time_of_a_run_is_no_check_not_even_beside_a_deadline(test: str) -> None:
     found = of([{"robot.time": 10.0}] * 3, {"robot.time": 20.0}, "robot.time")
-    checks, refused = candidates(PROJECT, found)
+    project: Any = _Project(test)
+    checks, refused = candidates(project, found)
     assert checks == []
-    assert refused == {MUTANT.id: "only its time differs (robot.time), and the tests set no deadline"}
-    deadline = _Project("assert robot.time < 30")
-    assert len(candidates(deadline, found)[0]) == 1  # type: ignore[arg-type]
+    assert refused == {MUTANT.id: "only its time differs (robot.time): add a deadline if the task has one"}
 
 
 def test_an_exact_value_is_no_check() -> None:
@@ -112,15 +112,34 @@ def test_a_relation_is_no_more_exact_than_a_value() -> None:
     assert candidates(PROJECT, found)[0] == []
 
 
-def test_two_items_of_a_list_and_two_quantities_are_no_relation() -> None:
-    read = dict.fromkeys(("places[0][2]", "places[2][2]", 'said["gaps"][2]', "goal[2]"), 0.4)
+def test_a_relation_of_items_asks_for_lists_that_are_equal_throughout() -> None:
+    lists = {
+        "places[0]": [9.0, 8.0, 0.4],
+        "places[2]": [0.1, 0.2, 0.4],
+        "goal": [0.1, 0.2, 0.4],
+        "arm.quaternion": [0.8, 0.48, 0.4],
+        'said["gaps"]': [0.5, 0.45, 0.4],
+    }
+    read = {f"{name}[{item}]": value for name, items in lists.items() for item, value in enumerate(items)}
     found = of([read] * 3, read | {"places[2][2]": 0.9}, *read)
-    said = of([{'said["angles"][2]': 3.0, **read}] * 3, {'said["angles"][2]': 9.0, **read}, *read)
-    near = "assert places[2][2] == pytest.approx({}, abs=0.2)"
-    statements = {check.statement for check in candidates(PROJECT, found)[0]}
-    assert near.format("goal[2]") in statements
-    assert near.format("places[0][2]") not in statements
-    assert not any("gaps" in check.statement for check in candidates(PROJECT, said)[0])
+    said = of([read] * 3, read | {'said["gaps"][2]': 0.9}, *read)
+    near = "assert {} == pytest.approx({}, abs=0.2)"
+    assert {check.statement for check in candidates(PROJECT, found)[0]} == {
+        near.format("places[2][2]", "goal[2]"),
+        near.format("places[2][2]", 0.4),
+    }
+    assert {check.statement for check in candidates(PROJECT, said)[0]} == {
+        near.format('said["gaps"][2]', 0.4)
+    }
+
+
+def test_two_lists_of_zeros_and_two_arguments_are_no_relation() -> None:
+    read = dict.fromkeys(
+        ("force[0]", "force[1]", "bend[0]", "bend[1]", 'arm.get("a/1")', 'cell.get("b/1")'), 0.0
+    )
+    for text in ("force[1]", 'arm.get("a/1")'):
+        found = of([read] * 3, read | {text: 9.0}, *read)
+        assert [check.value for check in candidates(PROJECT, found)[0]] == [0.0]
 
 
 def test_the_suites_tolerance_for_a_list_holds_for_all_items() -> None:
@@ -142,12 +161,21 @@ def test_a_count_is_equal_and_not_near() -> None:
     assert check.statement == "assert parts == 3"
 
 
-def test_the_expression_that_the_suite_reads_comes_first_and_a_clock_last() -> None:
-    found = of([dict.fromkeys(("arm.x", "arm.z()", "arm.time"), 1.0)] * 3, {}, "arm.x", "arm.z()", "arm.time")
-    found.mutants[PLACE][MUTANT.id] = {(0, PLACE.node): dict.fromkeys(("arm.x", "arm.z()", "arm.time"), 9.0)}
-    checks, _ = candidates(_Project("assert arm.z() > 0 and arm.time < 3"), found)  # type: ignore[arg-type]
+def test_the_expression_that_the_suite_reads_comes_first() -> None:
+    texts = ("arm.x", "arm.z()")
+    found = of([dict.fromkeys(texts, 1.0)] * 3, dict.fromkeys(texts, 9.0), *texts)
+    checks, _ = candidates(_Project("assert arm.z() > 0"), found)  # type: ignore[arg-type]
     ranked = sorted(checks, key=lambda check: check.worth, reverse=True)
-    assert [check.reading.text for check in ranked] == ["arm.z()", "arm.x", "arm.time"]
+    assert [check.reading.text for check in ranked] == ["arm.z()", "arm.x"]
+
+
+@pytest.mark.parametrize("quote", "'\"")
+def test_what_the_suite_compares_is_known_whatever_its_quotes(quote: str) -> None:
+    reading = 'said["here"]'
+    found = of([{reading: 0.3}] * 3, {reading: 0.9}, reading)
+    stated = _Project(f"assert said[{quote}here{quote}] == pytest.approx(0.5, abs=0.03)")
+    ((check,), _) = candidates(stated, found)  # type: ignore[arg-type]
+    assert (check.reading.way, check.tolerance) == (ORACLE, 0.03)
 
 
 def test_a_check_stands_in_the_test_that_looks_at_the_same_thing() -> None:

@@ -10,12 +10,12 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
+from itertools import accumulate
 from typing import Any
 
 from mutabot.frozen import frozen
 
-from .project import Addition, PlaceInTest, ProjectFiles, equal, function_of, within
+from .project import Addition, PlaceInTest, ProjectFiles, equal, function_of, text_of, within
 from .readings import ORACLE, Measured, Read, ReadExpression, is_number, known
 
 CONFIDENCE = 0.95
@@ -136,13 +136,13 @@ class ProposedCheck:
 
     @property
     def worth(self) -> tuple[int, ...]:
-        """What a person would rather write: no clock, the suite's reader, a relation, a place, few digits."""
+        """What a person would rather write: the suite's reader, a relation, a place, few digits."""
         name = _last(self.reading.text)
         rank = next((rank for rank, names in enumerate(_RANKS) if names.search(name)), len(_RANKS))
         digits = digits_of(self.value) if is_number(self.value) else 1
         is_relation = isinstance(self.value, ReadExpression)
-        kind = not _CLOCK.search(name), -self.reading.way, is_relation, -rank
-        return *kind, self.is_clear, -digits, self.alike, -len(self.statement)
+        kind = -self.reading.way, is_relation, -rank, self.is_clear
+        return *kind, -digits, self.alike, -len(self.statement)
 
     @property
     def statement(self) -> str:
@@ -150,7 +150,7 @@ class ProposedCheck:
         style, text = self.place.style, self.reading.text
         other = self.value.text if isinstance(self.value, ReadExpression) else None
         if self.tolerance is None:
-            return equal(style, text, other or literal(self.value))
+            return equal(style, text, other or text_of(ast.Constant(self.value)))
         return within(style, text, other or repr(float(self.value)), repr(self.tolerance))
 
     def addition(self) -> Addition:
@@ -160,12 +160,6 @@ class ProposedCheck:
         approx = ["import pytest"] if "pytest.approx" in self.statement else []
         used = tuple(name for name in self.place.names if name in names)
         return Addition(self.place, (self.statement,), used, (*needs, *approx))
-
-
-def literal(value: Any) -> str:
-    """A value as a text of a program."""
-    text = repr(value)
-    return f'"{value}"' if isinstance(value, str) and '"' not in text and "\\" not in text else text
 
 
 def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[ProposedCheck], dict[str, str]]:
@@ -188,11 +182,11 @@ def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[Proposed
         readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
         seen = _ReadAtEnd(place, runs, mutants, given, stated, usual)
         for check in (check for reading in readings for check in seen.checks(reading)):
-            why = _why_not(check, compared, seen.allowed(check.reading.text))
+            why = _why_not(check, seen.allowed(check.reading.text))
             if why is None:
-                pairs = (zip(check.reading.text, one, strict=False) for one in beside)
-                common = (len([*takewhile(lambda pair: pair[0] == pair[1], each)]) for each in pairs)
-                found.append(replace(check, alike=max(common, default=0)))
+                starts = accumulate(check.reading.text)
+                alike = sum(any(one.startswith(start) for one in beside) for start in starts)
+                found.append(replace(check, alike=alike))
             else:
                 refused.update((mutant, why) for mutant, _ in check.trials)
     return found, refused
@@ -231,7 +225,7 @@ class _ReadAtEnd:
     def checks(self, reading: ReadExpression) -> Iterator[ProposedCheck]:
         """The checks of a reading: that it equals what the test was given, or a value."""
         text = reading.text
-        partners = [one for one in self.given if _are_related(one, reading)]
+        partners = [one for one in self.given if _are_related(one, reading, self.runs[0])]
         for other in [*partners[:_PARTNERS], None]:
             texts = [text] if other is None else [text, other.text]
             values = [read[one] for read in self.runs for one in texts]
@@ -312,14 +306,11 @@ def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
     return frozenset(trial for trial, size in sizes.items() if size > tolerance)
 
 
-def _why_not(check: ProposedCheck, compared: set[str], own: float) -> str | None:
-    """Why a person would not merge it; None if one may.
-
-    ``compared``, ``own``: the names that the tests compare, and the tolerance that they state for it.
-    """
-    text, name = check.reading.text, _last(check.reading.text)
-    if _CLOCK.search(name) and name not in compared:
-        return f"only its time differs ({text}), and the tests set no deadline"
+def _why_not(check: ProposedCheck, own: float) -> str | None:
+    """Why a person would not merge it, if the tests state the tolerance ``own`` for it; None if one may."""
+    text = check.reading.text
+    if _CLOCK.search(_last(text)):
+        return f"only its time differs ({text}): add a deadline if the task has one"
     if check.tolerance is not None and check.tolerance < own:
         return f"{text} differs by less than the tests allow: {own!r}"
     if check.is_exact:
@@ -327,12 +318,18 @@ def _why_not(check: ProposedCheck, compared: set[str], own: float) -> str | None
     return None
 
 
-def _are_related(one: ReadExpression, other: ReadExpression) -> bool:
-    """Whether two readings are the same part of two things: not two items of a list, or angles and gaps."""
+def _are_related(one: ReadExpression, other: ReadExpression, read: Read) -> bool:
+    """Whether two readings are the same part of two things: of one name, or of lists that are all equal."""
+    if _LAST.findall(one.text) != _LAST.findall(other.text):
+        return False
     first, second = _NAME.findall(one.text), _NAME.findall(other.text)
-    are_apart = first[0] != second[0] or (first != second and first[-1] == second[-1])
-    parts = [_LAST.findall(text) for text in (one.text, other.text)]
-    return are_apart and parts[0] == parts[1]
+    if first[-1] == second[-1]:
+        return first != second
+    names = [each.text.rpartition("[")[0] for each in (one, other)]
+    mine, others = ([read[text] for text in read if text.startswith(f"{name}[")] for name in names)
+    wide = max(one.tolerance, other.tolerance)
+    near = (is_number(a) and is_number(b) and abs(a - b) <= wide for a, b in zip(mine, others, strict=False))
+    return len(set(mine)) > 1 and len(mine) == len(others) and all(near)  # lists of zeros say nothing
 
 
 def _last(text: str) -> str:
@@ -346,8 +343,7 @@ def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
     tolerances: dict[str, float] = {}
     for node in ast.walk(module) if module is not None else ():
         if isinstance(node, ast.Compare):
-            compared.update(_NAME.findall(ast.unparse(node)))
-            compared.update(ast.unparse(one) for one in ast.walk(node) if isinstance(one, ast.expr))
+            compared.update(text_of(one) for one in ast.walk(node) if isinstance(one, ast.expr))
         match node:
             case ast.Compare(left=looked, comparators=[ast.Call(keywords=keywords)]):
                 allowed = [one.value for one in keywords if one.arg == "abs"]
@@ -362,7 +358,7 @@ def _stated(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
                 allowed = [one.value for one in keywords if one.arg == "delta"]
             case _:
                 continue
-        text = ast.unparse(looked)
+        text = text_of(looked)
         sizes = [one.value for one in allowed if isinstance(one, ast.Constant)]
         for size in (float(size) for size in sizes if is_number(size)):
             for name in (f"={text}", _last(text)):

@@ -175,6 +175,12 @@ class Addition:
     imports: tuple[str, ...] = ()
 
 
+def text_of(node: ast.expr) -> str:
+    """The text of an expression, with the quotes that formatters write and that readings have."""
+    text = ast.unparse(node)
+    return text if '"' in text or "\\" in text else text.replace("'", '"')
+
+
 def place_of(project: ProjectFiles, test: str) -> PlaceInTest | None:
     """The place of a test by its node id; None if nothing can be added to it."""
     node = test.partition("[")[0]

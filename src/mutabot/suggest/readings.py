@@ -24,7 +24,7 @@ from mutabot.model.events import TestEnd
 from mutabot.model.operation import owner_of
 from mutabot.model.quantity import step_of
 
-from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in, top_names
+from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in, text_of, top_names
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
@@ -112,7 +112,7 @@ def _by_tests(place: PlaceInTest, module: ast.Module) -> Iterator[str]:
             names = {part.id for part in parts if isinstance(part, ast.Name)}
             is_plain = one not in called and not any(isinstance(part, ast.Call | ast.Slice) for part in parts)
             if isinstance(one, ast.Attribute | ast.Subscript) and names <= at_hand and is_plain:
-                yield ast.unparse(one)
+                yield text_of(one)
 
 
 def _only_reads(operation: Operation) -> bool:

@@ -195,7 +195,7 @@ def chosen_of(checks: Sequence[ProposedCheck], kills: Mapping[ProposedCheck, Tri
         if trials[one] & left:
             chosen.append(one)
             left -= trials[one]
-    for one in list(chosen):
+    for one in chosen[::-1]:  # the best is the last to go
         others = [other for other in chosen if other is not one]
         if trials[one] <= frozenset().union(*(trials[other] for other in others)):
             chosen = others
