@@ -45,7 +45,7 @@ class Camera:
 
     Args:
         height, width: pixels, at most 960 by 1280.
-        is_quick: whether shadows and edges may be coarse and the floor dull, which takes a sixth of the time.
+        is_quick: whether shadows and edges may be coarse and the floor dull: an eighth of the time.
     """
 
     def __init__(
