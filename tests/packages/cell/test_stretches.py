@@ -18,6 +18,7 @@ from mutabot_cell import (
     Box,
     Cell,
     CellError,
+    Fixture,
     LightBarrier,
     PathLost,
     Pose,
@@ -391,6 +392,29 @@ def test_a_recording_of_a_test_is_the_same(monkeypatch: pytest.MonkeyPatch) -> N
         recordings.append(running.recording)
     assert len(recordings[0].times) > 200
     assert recordings[0] == recordings[1]
+
+
+def test_a_collision_of_one_of_two_robots_in_a_recorded_test_is_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is recorded within a stretch must not be asked of what comes after the collision."""
+
+    def story(cell: Cell) -> None:
+        left = cell.robots["left"].arm.start_move_by(y=0.3)
+        cell.robots["right"].arm.move_joints(DOWN)
+        pose = cell.robots["right"].arm.commanded_pose()
+        cell.robots["right"].arm.move_by(z=-0.05 - pose.z)
+        left.wait()
+
+    def make() -> Cell:
+        running = tape.Tape()
+        monkeypatch.setattr(tape, "running", lambda: running)
+        beside = gen3().at(Pose(0.0, 1.6, 0.9, 0.0, 0.0, 0.0))
+        plate = Fixture("plate", size=(0.4, 0.4, 0.02), centre=(0.5, 1.6, 0.89))
+        scene = Scene(fixtures=(plate,))
+        return Cell(1, robots={"left": gen3(), "right": beside}, scene=scene)
+
+    assert isinstance(check_same(story, make).error, ProtectiveStop)
 
 
 def test_a_driver_of_which_nothing_is_known_decides_at_each_tick(cell: Cell) -> None:
