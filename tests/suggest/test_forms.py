@@ -78,7 +78,7 @@ def test_what_the_tests_compare_is_read_where_its_names_are_at_hand(project: Pro
     place = place_of(project, NODES["pytest"])
     assert place is not None
     file = project.root / place.file
-    added = "\n\ndef test_more(arm, cup):\n    assert arm.z > 0 and cup.z > 0 and arm.state()['x'] > 0\n"
-    file.write_text(file.read_text() + added)
+    compared = "arm.z > 0 and cup.z > 0 and arm.state()['x'] > len(arm.log)"
+    file.write_text(f"{file.read_text()}\n\ndef test_more(arm, cup):\n    assert {compared}\n")
     texts = {one.text for one in readings_at(ProjectFiles(project.request), place) if one.way == ORACLE}
-    assert texts == {"arm.x", "arm.z"}
+    assert texts == {"arm.x", "arm.z", "arm.log", "len(arm.log)"}

@@ -161,6 +161,13 @@ def test_a_count_is_equal_and_not_near() -> None:
     assert check.statement == "assert parts == 3"
 
 
+def test_a_length_is_equal_even_where_the_items_may_be_near() -> None:
+    found = of([{"len(places)": 4}] * 3, {"len(places)": 5}, "len(places)")
+    stated = _Project("assert places[0] == pytest.approx([1, 2, 3], abs=2)")
+    ((check,), _) = candidates(stated, found)  # type: ignore[arg-type]
+    assert check.statement == "assert len(places) == 4"
+
+
 def test_the_expression_that_the_suite_reads_comes_first() -> None:
     texts = ("arm.x", "arm.z()")
     found = of([dict.fromkeys(texts, 1.0)] * 3, dict.fromkeys(texts, 9.0), *texts)

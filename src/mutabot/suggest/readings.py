@@ -103,15 +103,16 @@ def _by_oracle(
 
 
 def _by_tests(place: PlaceInTest, module: ast.Module) -> Iterator[str]:
-    """What the tests of a file compare and nothing is called for, where all of its names are at hand."""
+    """What the tests of a file compare and only ``len`` is called for, where all of its names are at hand."""
     at_hand = {*place.names, *top_names(module)}
     for compared in (node for node in ast.walk(module) if isinstance(node, ast.Compare)):
         called = [node.func for node in ast.walk(compared) if isinstance(node, ast.Call)]
         for one in ast.walk(compared):
             parts = [*ast.walk(one)]
-            names = {part.id for part in parts if isinstance(part, ast.Name)}
-            is_plain = one not in called and not any(isinstance(part, ast.Call | ast.Slice) for part in parts)
-            if isinstance(one, ast.Attribute | ast.Subscript) and names <= at_hand and is_plain:
+            names = {part.id for part in parts if isinstance(part, ast.Name)} - {"len"}
+            calls = {ast.unparse(part.func) for part in parts if isinstance(part, ast.Call)}
+            is_plain = one not in called and calls <= {"len"} and ast.Slice not in map(type, parts)
+            if isinstance(one, ast.Attribute | ast.Subscript | ast.Call) and names <= at_hand and is_plain:
                 yield text_of(one)
 
 
