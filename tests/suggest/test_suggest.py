@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ SUGGEST = ["suggest", "--seeds", "5"]
 
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "suggest.md"
+PROJECTS = Path(__file__).parents[1] / "suites" / "projects"
 
 
 def survivors(found: dict[str, Any]) -> set[str]:
@@ -63,6 +65,20 @@ def test_what_is_suggested_kills_when_it_is_applied(
     assert (len(in_diff["suggestions"]) < len(found["suggestions"])) == (len(files) > 1)
     # checks that kill one mutant may kill more than was promised
     assert survivors(found_by(["run"], capsys)) <= before - killed(in_diff)
+
+
+@pytest.mark.whole
+def test_the_page_lists_what_is_suggested_for_the_project_with_all_kinds_of_quantities(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project = shutil.copytree(PROJECTS / "fault_catalogue", tmp_path / "cell")
+    monkeypatch.chdir(project)
+    found_by(["run"], capsys)
+    suggested = {one["statement"] for one in found_by(SUGGEST, capsys)["suggestions"]}
+    rows = re.findall(
+        r"^\| fault_catalogue \| `(.+?)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert {one.removeprefix("assert ").replace("pytest.", "") for one in suggested} == {*rows}
 
 
 def test_there_must_be_something_to_suggest_checks_for(
