@@ -28,7 +28,6 @@ class Creep(Operator):
             replied={"result": 0.5},
             performed=({},),
             received={"result": 0.505},
-            note="the first reading is one step off",
         ),
         Example(Subject(_MEASURE, quantity=_GAP), replied={"result": None}, away="nothing was measured"),
     )
