@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -25,21 +24,17 @@ from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
 from .force_sensor import ForceSensor
 from .foresight import Glance, InputPlan
 from .geometry import Array, Pose, pose_of, rotation_from_euler
+from .guard import Guard
 from .move import Move
 from .robot import Robot
 from .simulation import STEPS_PER_TICK, TICK, Simulation
-from .stretch import LONGEST, Stretch
+from .stretch import LONGEST
 
-WARMING_TIME = 30.0
-"""In this time a joint warms up by two thirds of what its torque makes of it in the end, s (our choice)."""
 MOST_FELT_SPEED = 0.05
 """Limit of motions that the force sensor decides, m/s (our choice): something as stiff as a table resists
 with 40 N before an arm of this speed has come to rest."""
 
-_WARMING_TICKS = 10
 _RELAXING_TICKS = 20
-_SURELY = 1.0 - 1e-9
-"""What is below a limit by this factor is below it however it is rounded."""
 _SETTLED = 0.001
 _SETTLING_TICKS = 50
 
@@ -53,16 +48,16 @@ class Arm:
 
     Attributes:
         kinematics: the controller's model of the arm; it also turns encoder readings into a tool pose.
-        explained: what else than contacts acts on the tool, as a torque on each joint, shape (joints,), Nm.
+        guard: of the protective stop.
     """
 
     def __init__(self, simulation: Simulation, robot: Robot, force_sensor: ForceSensor) -> None:
         self._simulation = simulation
         self._robot = robot
-        self._model, limits = robot.model, robot.model.limits
+        self._model = robot.model
         self.kinematics = Kinematics(self._model)
         self._setpoint: Array = np.array(self._model.home)
-        self.explained: list[Callable[[], Array]] = []
+        self.guard = Guard(simulation, robot)
         self._stream: Array | None = None
         self._streamed = 0
         self._force_sensor = force_sensor
@@ -71,29 +66,17 @@ class Arm:
         self._tracking: Tracking | None = None
         self._steps: JointSteps | None = None
         self._lost: PathLost | None = None
-        self._pressed_ticks = 0
-        self._first_contact = ("", "", 0.0)
         self._stop: ProtectiveStop | None = None
         self._lag = robot.lag()
         fed = self._model.is_fed_forward
         self._feed_forward = FeedForward(self._model, robot.stiffness()) if fed else None
         self._flange = _flange_in_tool(self._model)
-        self._torque_limit = np.array(limits.external_torque)
-        self._lowest_torque_limit, self._following_limit = min(limits.external_torque), limits.following_error
-        self._payload = 0.0
-        self._heat = np.zeros(len(self._setpoint))
-        self._continuous = np.array(limits.torque)
-        # views of the physics' own memory
-        self._constraints: Array = simulation.data.qfrc_constraint[robot.dofs]
-        self._motors = simulation.data.qfrc_actuator[robot.dofs]
-        # of each tick of a stretch: where the joints should be at its end, what pushed them, what they gave
-        self._planned, self._pushes, self._loads = np.zeros((3, LONGEST, len(self._setpoint)))
-        self._heats: list[tuple[int, Array]] = []
         self.set_payload(0.0)
         simulation.before_tick.append(self._drive)
-        simulation.after_tick.append(self._guard)
+        simulation.after_tick.append(self._watch)
         simulation.foresight.drives(self._drive, InputPlan(self._write, self._keep))
-        simulation.foresight.checks(self._guard, Glance(self._until, self._note, self._quiet, self._warm_in))
+        guard = self.guard
+        simulation.foresight.checks(self._watch, Glance(self._until, guard.note, guard.quiet, guard.passed))
 
     def commanded_joints(self) -> tuple[float, ...]:
         """Setpoints of the joints, degrees, not wrapped."""
@@ -398,11 +381,11 @@ class Arm:
         rated = self._model.payload
         if not 0.0 <= mass <= rated:
             raise BadArgument(f"Expected 0 <= payload <= {rated} kg but got mass={mass!r}")
-        self._payload = float(mass)
-        self._simulation.model.body_gravcomp[self._robot.payload] = compensation_of(self._payload)
+        self.guard.payload = float(mass)
+        self._simulation.model.body_gravcomp[self._robot.payload] = compensation_of(mass)
         self._simulation.model.body_ipos[self._robot.payload] = centre
         if self._feed_forward is not None:
-            self._feed_forward.set_payload(self._payload, centre)
+            self._feed_forward.set_payload(mass, centre)
 
     def acknowledge_stop(self) -> None:
         """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
@@ -412,7 +395,7 @@ class Arm:
             self._setpoint = self._robot.encoders()
             self._simulation.tick()
         self._stop = None
-        self._pressed_ticks = 0
+        self.guard.pressed_ticks = 0
 
     def _check_ready(self) -> None:
         if self._stop is not None:
@@ -516,7 +499,7 @@ class Arm:
         error, wanted = self._robot.encoder_error, inputs[:, :, self._robot.servos]
         if self._stream is None:
             wanted[:] = self._setpoint - error
-            self._planned[:] = self._setpoint - error
+            self.guard.planned[:] = self._setpoint - error
             return len(inputs)
         start = self._streamed
         ticks = min(len(inputs), (len(self._stream) - start) // STEPS_PER_TICK)
@@ -524,7 +507,7 @@ class Arm:
         stream = self._stream[start:end].reshape(ticks, STEPS_PER_TICK, -1)
         np.subtract(stream, error, out=wanted[:ticks])
         ends = self._motion_joints[start + STEPS_PER_TICK - 1 : end : STEPS_PER_TICK]
-        np.subtract(ends, error, out=self._planned[:ticks])
+        np.subtract(ends, error, out=self.guard.planned[:ticks])
         return ticks
 
     def _keep(self, ticks: int) -> None:
@@ -539,173 +522,27 @@ class Arm:
         error: Array = self._setpoint - self._robot.encoders()
         return error
 
-    def _guard(self) -> None:
-        """Protective stop: the check that the arm's controller makes at every tick."""
-        if self._simulation.ticks % _WARMING_TICKS == 0:
-            self._warm()
+    def _watch(self) -> None:
+        """After every tick: stop if the guard says so."""
+        stop = self.guard.overload(self._following_error)
         if self._stop is not None:
             return
-        if self._lost is not None and self._stream is None:
+        if stop is None and self._lost is not None and self._stream is None:
             lost, self._lost = self._lost, None
             raise lost
-        external, error = self._external(), self._following_error()
-        # this runs at every tick, and nearly always the lengths are below the lowest limits of their parts
-        if (
-            external.dot(external) <= self._lowest_torque_limit**2
-            and error.dot(error) <= self._following_limit**2
-        ):
-            self._pressed_ticks = 0
-            return
-        pressed = any(map(operator.gt, map(abs, external.tolist()), self._model.limits.external_torque))
-        self._pressed_ticks = self._pressed_ticks + 1 if pressed else 0
-        if pressed and self._pressed_ticks == 1:
-            self._first_contact = strongest_contact(self._simulation, self._robot)
-        lagging = max(map(abs, error.tolist())) > self._following_limit
-        if self._pressed_ticks < 2 and not lagging:
-            return
-        joint = int(np.argmax(np.abs(external) / self._torque_limit if pressed else np.abs(error)))
-        contacts = [strongest_contact(self._simulation, self._robot)]
-        if pressed:
-            contacts.append(self._first_contact)
-        first, second, force = max(contacts, key=lambda contact: contact[2])
-        raise self._stopped(
-            ProtectiveStop(
-                time=self._simulation.time,
-                first=first,
-                second=second,
-                force=force,
-                joint=joint + 1,
-                torque=float(external[joint]),
-                following_error=float(error[joint]),
-            )
-        )
+        stop = stop or self.guard.collision(self._following_error())
+        if stop is not None:
+            raise self._stopped(stop)
 
     def _until(self) -> int:
-        decides = self._pressed_ticks or self._stop is not None or self._lost is not None
+        decides = self.guard.pressed_ticks or self._stop is not None or self._lost is not None
         return 1 if decides else LONGEST
-
-    def _note(self, number: int) -> None:
-        self._pushes[number] = self._external()
-        self._loads[number] = self._motors
-
-    def _quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
-        pushes = (self._pushes[known:ticks] / self._torque_limit).ravel()
-        errors = (self._planned[known:ticks] - stretch.places[known:ticks, self._robot.joints]).ravel()
-        # mostly even the lengths of all together are below the limits of their parts; not so if one is NaN
-        if not (pushes.dot(pushes) < 1.0 and errors.dot(errors) < self._following_limit**2):
-            fine = (np.abs(pushes) < _SURELY) & (np.abs(errors) < _SURELY * self._following_limit)
-            ticks = min([ticks, *(known + np.flatnonzero(~fine) // len(self._setpoint)).tolist()])
-        # another arm may have been quiet for less long
-        self._heats = [(number, heat) for number, heat in self._heats if number < known]
-        heat = self._heats[-1][1] if self._heats else self._heat
-        for number in range(known, ticks):
-            if (self._simulation.ticks + 1 + number) % _WARMING_TICKS:
-                continue
-            heat = self._warmer(heat, self._loads[number])
-            if not self._is_cool(heat):
-                return number
-            self._heats.append((number, heat))
-        return ticks
-
-    def _warm_in(self, stretch: Stretch, ticks: int) -> None:
-        """`_warm`, for ticks of a stretch."""
-        self._heat = next((heat for number, heat in reversed(self._heats) if number < ticks), self._heat)
-
-    def _warmer(self, heat: Array, torques: Array) -> Array:
-        """How warm the motors are when these torques have lasted for `_WARMING_TICKS`."""
-        share = _WARMING_TICKS * TICK / WARMING_TIME
-        warmer: Array = heat + share * ((torques / self._continuous) ** 2 - heat)
-        return warmer
-
-    @staticmethod
-    def _is_cool(heat: Array) -> bool:
-        return bool(heat.dot(heat) <= 1.0 or heat.max() <= 1.0)
 
     def _stopped(self, stop: ProtectiveStop) -> ProtectiveStop:
         self._stop = stop
         self._stream = self._online = self._tracking = self._move = self._lost = None
         self._setpoint = self._robot.encoders()
         return stop
-
-    def _external(self) -> Array:
-        """Torque on each joint that motors, friction, the arm and its declared payload do not explain, Nm."""
-        torque = self._constraints
-        for explain in self.explained:
-            torque = torque + explain()
-        if self._simulation.data.nf:
-            torque = torque - self._friction()
-        if self._payload:
-            torque = torque - self._payload_torque()
-        return torque
-
-    def _friction(self) -> Array:
-        """Torque on each joint from dry friction in it, which MuJoCo counts among the constraints, Nm."""
-        data = self._simulation.data
-        torque = np.zeros(len(self._setpoint))
-        for row in range(data.ne, data.ne + data.nf):  # rows of friction follow those of equalities
-            joint = int(data.efc_id[row]) - self._robot.dofs.start
-            of_joint = data.efc_type[row] == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
-            if of_joint and 0 <= joint < len(torque):
-                torque[joint] = data.efc_force[row]
-        return torque
-
-    def _payload_torque(self) -> Array:
-        """Torque on each joint from the payload's weight and inertia, Nm."""
-        cell_model, data = self._simulation.model, self._simulation.data
-        mujoco.mj_rnePostConstraint(cell_model, data)
-        # acceleration minus gravity of the payload's centre of mass, as an accelerometer there would read it
-        felt = np.zeros(6)
-        mujoco.mj_objectAcceleration(cell_model, data, mujoco.mjtObj.mjOBJ_BODY, self._robot.payload, felt, 0)
-        moves = np.zeros((3, cell_model.nv))
-        mujoco.mj_jacBodyCom(cell_model, data, moves, None, self._robot.payload)
-        torque: Array = np.dot(-self._payload * felt[3:], moves[:, self._robot.dofs])
-        return torque
-
-    def _warm(self) -> None:
-        """Let the motors warm up with the square of their torque; stop when one is too warm."""
-        self._heat = self._warmer(self._heat, self._motors)
-        if self._stop is not None or self._is_cool(self._heat):
-            return
-        joint = int(np.argmax(self._heat))
-        raise self._stopped(
-            ProtectiveStop(
-                time=self._simulation.time,
-                first="",
-                second="",
-                force=0.0,
-                joint=joint + 1,
-                torque=float(self._motors[joint]),
-                following_error=float(self._following_error()[joint]),
-                overload=float(self._continuous[joint]),
-            )
-        )
-
-
-def strongest_contact(simulation: Simulation, robot: Robot) -> tuple[str, str, float]:
-    """The robot's part, what it touches, and the normal force (N) of the robot's strongest contact.
-
-    A box between the fingers counts as the robot's part; ("", "", 0.0) without a contact.
-    """
-    cell_model, data = simulation.model, simulation.data
-    body = int(cell_model.body_rootid[robot.body])
-    found: tuple[str, str, float] = ("", "", 0.0)
-    wrench = np.zeros(6)
-    for index in range(data.ncon):
-        geoms = [int(geom) for geom in data.contact[index].geom]
-        roots = [int(cell_model.body_rootid[cell_model.geom_bodyid[geom]]) for geom in geoms]
-        if body not in roots:
-            continue
-        if roots[1] == body and roots[0] != body:
-            geoms.reverse()
-        mujoco.mj_contactForce(cell_model, data, index, wrench)
-        if abs(wrench[0]) > found[2]:
-            found = (_name(cell_model, geoms[0]), _name(cell_model, geoms[1]), abs(float(wrench[0])))
-    return found
-
-
-def _name(model: mujoco.MjModel, geom: int) -> str:
-    """Of a shape; files often name bodies only."""
-    return str(model.geom(geom).name or model.body(int(model.geom_bodyid[geom])).name)
 
 
 def _check_numbers(name: str, values: Sequence[float], count: int) -> None:

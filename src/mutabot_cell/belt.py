@@ -27,7 +27,8 @@ class ConveyorBelt:
 
     Attributes:
         name: of the fixture whose surface moves.
-        direction: unit vector of positive speed, shape (3,), world frame.
+        direction: unit vector of positive speed, shape (3,), world frame, as it was when the cell was made:
+            the controller is not told of a conveyor that is moved afterwards.
     """
 
     def __init__(self, simulation: Simulation, name: str, belt: Belt, noise: SeededNoise) -> None:

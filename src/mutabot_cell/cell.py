@@ -63,13 +63,13 @@ class Truth:
         """Angle between the box's up and the world's up, degrees."""
         return true_box_tilt(self._simulation, self._parts[name])
 
-    def belt_position(self, name: str = "conveyor") -> float:
-        """How far the belt has run since the cell was made, m."""
-        return self._belts[name].true_position()
+    def belt_position(self, name: str | None = None) -> float:
+        """How far a belt has run since the cell was made, m; the first one unless another is named."""
+        return _belt_of(self._belts, name).true_position()
 
-    def belt_speed(self, name: str = "conveyor") -> float:
-        """Speed of the belt's surface, m/s."""
-        return self._belts[name].true_speed()
+    def belt_speed(self, name: str | None = None) -> float:
+        """Speed of a belt's surface, m/s; of the first one unless another is named."""
+        return _belt_of(self._belts, name).true_speed()
 
     def opening(self, robot: str | None = None) -> float:
         """Distance between the pads, m; 0 without fingers."""
@@ -247,12 +247,7 @@ class Cell:
         Raises:
             BadArgument: there is no such belt.
         """
-        if name is None and self._belts:
-            return next(iter(self._belts.values()))
-        if name not in self._belts:
-            known = ", ".join(self._belts) or "none"
-            raise BadArgument(f"Expected the name of a belt ({known}) but got name={name!r}")
-        return self._belts[name]
+        return _belt_of(self._belts, name)
 
     def wait(self, seconds: float) -> None:
         """Let simulated time pass.
@@ -291,6 +286,15 @@ class Cell:
     ) -> None:
         if error is None:
             self.verify()
+
+
+def _belt_of(belts: Mapping[str, ConveyorBelt], name: str | None) -> ConveyorBelt:
+    """A belt by its name, the first one without; raises BadArgument if there is none."""
+    belt = next(iter(belts.values()), None) if name is None else belts.get(name)
+    if belt is None:
+        known = ", ".join(belts) or "none"
+        raise BadArgument(f"Expected the name of a belt ({known}) but got name={name!r}")
+    return belt
 
 
 def prefix_of(name: str) -> str:

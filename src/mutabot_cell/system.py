@@ -47,7 +47,7 @@ class RobotSystem:
             self._gripper = Gripper(simulation, robot, effector, noise, grip_force, finger_speed)
         elif isinstance(effector, SuctionCup):
             self._suction = Suction(simulation, robot, effector, noise)
-            self.arm.explained.append(self._suction.arm_torque)
+            self.arm.guard.explained.append(self._suction.arm_torque)
         sensors = SixJointSensors if has_six else Sensors
         self.sensors = sensors(simulation, robot, self.arm.kinematics, noise, scene, numbers)
         self._name = robot.model.name

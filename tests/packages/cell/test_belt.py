@@ -174,3 +174,5 @@ def test_a_speed_that_the_drive_does_not_have_is_refused(speed: object) -> None:
 def test_a_belt_that_is_not_there_is_refused_by_name() -> None:
     with pytest.raises(BadArgument, match=r"\(conveyor\) but got name='other'"):
         Cell(1).belt("other")
+    with pytest.raises(BadArgument, match=r"\(conveyor\) but got name='other'"):
+        Cell(1).truth.belt_speed("other")

@@ -79,7 +79,7 @@ def moment(cell: Cell) -> tuple[object, ...]:
         cell.truth.world(),
         [barriers.is_interrupted(name) for name in barriers.names],
         [
-            (arm.commanded_joints(), arm._pressed_ticks, arm._heat.tobytes())
+            (arm.commanded_joints(), *arm.guard.state())
             for arm in (system.arm for system in cell.robots.values())
         ],
         [tool.holding() for system in cell.robots.values() if (tool := _holder(system)) is not None],
