@@ -4,8 +4,9 @@
     ├── SimulatorMissing (ImportError)     mujoco or a planner library is not installed
     ├── BadArgument (ValueError)           a value of the wrong type, or not finite, at the border
     ├── BadModel (ValueError)              a file of a robot or tool lacks something, or has a wrong unit
-    ├── MotionRefused                      target out of reach or limits; nothing has moved
-    ├── PathLost                           the tool could not follow what it tracked; it has braked to rest
+    ├── LimitError                         a motion would exceed a limit
+    │   ├── MotionRefused                  target out of reach or limits; nothing has moved
+    │   └── PathLost                       the tool could not follow what it tracked; it has braked to rest
     ├── ProtectiveStop                     the arm hit something hard; the motion has ended
     ├── SensorError                        nothing to read (no box in the cell)
     ├── ConditionBroken (AssertionError)   an `always` condition was false at some tick
@@ -40,16 +41,15 @@ class BadModel(CellError, ValueError):
     """A model file of a robot, a tool or a scene cannot be used; the message says what to add to it."""
 
 
-class MotionRefused(CellError):
-    """The controller refused a motion before anything moved.
+class LimitError(CellError):
+    """A motion would exceed a limit.
 
     Attributes:
-        limit: what would be exceeded: "reach", "joint 1" to "joint 7", "singularity"; or "protective stop"
-            when an earlier one has not been acknowledged.
+        limit: what would be exceeded.
         value: the value that the motion would need, in `unit`; None where there is none.
         allowed: the nearest allowed value, in `unit`; None where there is none.
         excess: by how much the limit would be exceeded (>= 0), in `unit`.
-        unit: "m" or "deg".
+        unit: "m", "deg", "m/s" or "deg/s".
         fraction: part of the path that could be travelled, 0..1.
     """
 
@@ -73,33 +73,19 @@ class MotionRefused(CellError):
         self.fraction = fraction
 
 
-class PathLost(CellError):
-    """What the tool followed led it out of the arm's limits; the arm brakes to rest by itself.
+class MotionRefused(LimitError):
+    """The controller refused a motion before anything moved.
 
-    Attributes:
-        limit: what would be exceeded: "reach", "joint 1 speed", "joint 1 angle" and so on.
-        value: the value that following would need, in `unit`; None where there is none.
-        allowed: the nearest allowed value, in `unit`; None where there is none.
-        excess: by how much the limit would be exceeded (>= 0), in `unit`.
-        unit: "m", "deg" or "deg/s".
+    Its `limit` is "reach", "joint 1" to "joint 7", "singularity" and so on; or "protective stop" when an
+    earlier one has not been acknowledged.
     """
 
-    def __init__(
-        self,
-        message: str,
-        *,
-        limit: str,
-        value: float | None = None,
-        allowed: float | None = None,
-        excess: float = 0.0,
-        unit: str = "",
-    ) -> None:
-        super().__init__(message)
-        self.limit = limit
-        self.value = value
-        self.allowed = allowed
-        self.excess = excess
-        self.unit = unit
+
+class PathLost(LimitError):
+    """What the tool followed led it out of the arm's limits; the arm brakes to rest by itself.
+
+    Its `limit` is "reach", "joint 1 speed", "joint 1 angle" and so on.
+    """
 
 
 class ProtectiveStop(CellError):

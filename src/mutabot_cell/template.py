@@ -9,6 +9,7 @@ from pathlib import Path
 from mutabot.errors import UsageError
 
 from . import template_texts as texts
+from .errors import BadModel
 
 KNOWN = ("gen3", "ur5e", "panda", "xarm7")
 
@@ -20,7 +21,7 @@ def project(robot: str) -> Mapping[str, str]:
         robot: one of `KNOWN`; or FILE:SITE, an MJCF file and the site of its flange, or a URDF and its link.
 
     Raises:
-        UsageError: it is none of these.
+        UsageError: it is none of these, or an MJCF file without that site.
     """
     if robot in KNOWN:
         return {
@@ -32,12 +33,16 @@ def project(robot: str) -> Mapping[str, str]:
         }
     path, _, site = robot.rpartition(":")
     file = Path(path)
-    if file.suffix not in (".xml", ".urdf") or not file.is_file() or not site:
+    if file.suffix not in (".xml", ".urdf") or not site:
         raise UsageError(
             f"--cell {robot}: say one of {', '.join(KNOWN)}, or FILE:SITE: an MJCF file (.xml) and the "
             "site of its flange, or a URDF (.urdf) and its last link"
         )
     is_urdf = file.suffix == ".urdf"
+    if is_urdf and not file.is_file():
+        raise UsageError(f"--cell {robot}: there is no file {path!r}")
+    if not is_urdf:
+        _check_mjcf(robot, path, site)
     return {
         "robot.py": texts.ROBOT_OF_FILE.format(
             kind="urdf" if is_urdf else "mjcf",
@@ -50,3 +55,12 @@ def project(robot: str) -> Mapping[str, str]:
         "tests/test_program.py": texts.TEST_LINE,
         "mutabot.toml": texts.CONFIGURATION,
     }
+
+
+def _check_mjcf(robot: str, path: str, site: str) -> None:
+    from .models.loading import flange_of, read  # noqa: PLC0415  # it loads MuJoCo
+
+    try:
+        flange_of(read(path), path, site)
+    except BadModel as error:
+        raise UsageError(f"--cell {robot}: {error}") from error

@@ -52,6 +52,19 @@ def read(path: str | PathLike[str]) -> mujoco.MjSpec:
         raise BadModel(f"MuJoCo cannot read {path}: {error}") from error
 
 
+def flange_of(spec: mujoco.MjSpec, path: str | PathLike[str], tool_site: str) -> mujoco.MjsSite:
+    """The site of this name, made in the body of this name if need be. Raises BadModel if there is none."""
+    flange = spec.site(tool_site)
+    if flange is None and spec.body(tool_site) is not None:
+        flange = spec.body(tool_site).add_site(name=tool_site)
+    if flange is None:
+        raise BadModel(
+            f"{path} has no site or body {tool_site!r}; it has the sites {names_of(spec.sites)}. Add "
+            f'<site name="{tool_site}"/> to the last link, its z axis pointing away from the arm'
+        )
+    return flange
+
+
 def robot_from_spec(
     spec: mujoco.MjSpec,
     path: str | PathLike[str],
@@ -62,14 +75,7 @@ def robot_from_spec(
     root: str = "",
 ) -> RobotModel:
     """A robot from a spec that holds nothing else. Changes the spec."""
-    flange = spec.site(tool_site)
-    if flange is None and spec.body(tool_site) is not None:
-        flange = spec.body(tool_site).add_site(name=tool_site)
-    if flange is None:
-        raise BadModel(
-            f"{path} has no site or body {tool_site!r}; it has the sites {names_of(spec.sites)}. Add "
-            f'<site name="{tool_site}"/> to the last link, its z axis pointing away from the arm'
-        )
+    flange = flange_of(spec, path, tool_site)
     chain = chain_to(flange.parent, spec)
     joints = check_chain(chain, path)
     keys = {key.name: list(key.qpos) for key in spec.keys}

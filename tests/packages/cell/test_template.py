@@ -66,10 +66,29 @@ def test_a_project_for_a_file_passes_its_own_tests(
     run_tests(tmp_path)
 
 
-@pytest.mark.parametrize("robot", ["ur6", "none.xml:flange", "none.xml", ""])
+@pytest.mark.parametrize("robot", ["ur6", "none.xml", ""])
 def test_a_robot_that_is_not_known_is_refused_with_those_that_are(robot: str) -> None:
     with pytest.raises(UsageError, match="say one of gen3, ur5e, panda, xarm7, or FILE:SITE"):
         project(robot)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("none.xml", None, "there is no file"),
+        ("none.urdf", None, "there is no file"),
+        ("empty.xml", "", "MuJoCo cannot read"),
+        ("arm.xml", "<mujoco><worldbody><body name='arm'/></worldbody></mujoco>", "no site or body 'flange'"),
+    ],
+)
+def test_a_file_that_is_no_robot_is_refused_before_anything_is_written(
+    tmp_path: Path, name: str, text: str | None, told: str
+) -> None:
+    if text is not None:
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(UsageError, match=told):
+        start(tmp_path / "new", (), "cell", f"{tmp_path / name}:flange")
+    assert not (tmp_path / "new").exists()
 
 
 def test_a_file_that_is_there_is_left_alone(tmp_path: Path) -> None:
