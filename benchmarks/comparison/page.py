@@ -40,22 +40,20 @@ HEAD = """\
 <!-- Written by benchmarks/comparison/page.py from docs/data/*.json. Do not edit. -->
 
 The study "Mutation Testing for Industrial Robotic Systems" says, without figures, that conventional
-mutation operators suit robot programs badly. `make comparison` measured it on the examples of this
-repository; `docs/data` has all numbers. [Comparing families](compare.md) explains the terms.
+mutation operators suit robot programs badly. `make comparison` measured it on the examples; `docs/data` has
+all numbers. [Comparing families](compare.md) explains the terms.
 
-A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly
-above zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not
-measured*: the family has no mutants there, or a sample does not tell the number of places.
-Differences are in percentage points, with 95 % intervals.
+A share speaks *for* a claim if its difference from the robot family's, in percentage points with a 95 %
+interval, lies wholly above zero, *against* it if wholly below, else *undecided*; of places the larger number
+decides. *Not measured*: no mutants there, or a sample does not tell the number of places.
 """
 TAIL = """\
 ## Limits of this comparison
 
-- The programs are small examples. How often a conventional operator hits a calculation depends on how much a
-  program calculates.
+- The programs are small, and calculate little.
 - *Refused* and *indistinguishable* are as good as each example's refusals and probes.
 - Mutants that would change nothing in the baseline were left out beforehand, in all families.
-- *Informative* counts mutants that no test reaches: they tell of one missing test many times.
+- *Informative* counts mutants that no test reaches: one missing test, many times.
 - A mutant that tells suites apart need not be like a fault that engineers make.
 """
 
@@ -121,14 +119,13 @@ def picture(data: Data, name: str) -> str:
 
 def _claims(comparisons: Mapping[str, Data]) -> Iterator[str]:
     yield from ("## In short", "")
-    yield from (f"- *{claim.name}*: {claim.statement}" for claim in CLAIMS)
-    yield ""
     yield _row("claim", "family", *comparisons)
     yield f"|{'---|' * (2 + len(comparisons))}"
     for claim in CLAIMS:
         for family in CONVENTIONAL:
             found = (finding(claim, data, family) for data in comparisons.values())
-            yield _row(claim.name, family, *(_shown(one) for one in found))
+            said = claim.statement if family == CONVENTIONAL[0] else ""
+            yield _row(said, family, *(_shown(one) for one in found))
     yield ""
 
 
