@@ -78,9 +78,8 @@ Not in these numbers: it runs first on the controller's machine. Two runs in eac
 - Program: {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), each with its
   own tests: {own} mutants of family `robot`, a suite of {suite} s.
 - {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; equal runs of a test
-  {quickest} to {slowest} times their mean on a machine with other work.
-- Controller: {replay_ms} ms per outcome of replay, {fork_ms} ms of fork, with recordings, and 3 ms per unit.
-  Worker: 28 ms per unit, 4 s to start, 0.2 s for the project.
+  {quickest} to {slowest} times their mean on a busy machine.
+- Controller, beside the outcomes: 3 ms per unit. Worker: 28 ms per unit, 4 s to start, 0.2 s for the project.
 - Assumed: a worker dies once in 24 hours, is missed after 5 s; all are equally fast.
 
 `python benchmarks/cluster_simulation.py` simulates and stores `benchmarks/scaling.json`, which says how the

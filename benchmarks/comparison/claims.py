@@ -151,7 +151,7 @@ def _uninformative(data: Data, robot: Family, other: Family) -> Finding:
 
 def _beside(share: Mapping[str, Any], ours: Mapping[str, Any]) -> str:
     """Two shares and their difference in words."""
-    told = (f"{one['count']}/{one['of']} ({percent(one['share'])})" for one in (share, ours))
+    told = (f"{one['count']}/{one['of']}" for one in (share, ours))
     return f"{', robot '.join(told)}: {difference_text(share, ours)}"
 
 

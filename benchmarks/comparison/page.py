@@ -160,16 +160,16 @@ def _cells(family: Mapping[str, Any], together: Mapping[str, Any]) -> Iterator[s
 
 def _circumstances(data: Data) -> str:
     meta = data["meta"]
-    parts = [f"{meta['rounds']} rounds", f"seed {meta['seed']}", f"engine {meta['engine']}"]
-    parts += [f"{meta['jobs']} processes at a time"] if meta.get("jobs") else []
+    parts = [f"{meta['rounds']} rounds", f"seed {meta['seed']}", meta["engine"]]
+    parts += [f"{meta['jobs']} processes"] if meta.get("jobs") else []
     if meta.get("seconds"):
-        parts.append(f"{meta['seconds']:.0f} s in all")
+        parts.append(f"{meta['seconds']:.0f} s")
     parts += [f"mutabot {meta['mutabot']}", f"Python {meta['python']}"]
     if data["sample"] is not None:
         size = data["sample"]["size"]
         parts.append(f"a sample ({size}) of {data['sample']['selected']} mutants")
     if meta.get("started"):
-        parts.append(f"measured on {datetime.fromtimestamp(meta['started'], UTC):%Y-%m-%d}")
+        parts.append(f"{datetime.fromtimestamp(meta['started'], UTC):%Y-%m-%d}")
     return f"{', '.join(parts)}."
 
 
