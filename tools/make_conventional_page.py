@@ -46,8 +46,8 @@ counts as having acted when it is reached.
 
 ## The operators
 """
-#: so many mutants of an example after the first stand on the page
-_SHOWN = 2
+#: so many mutants of an example stand on the page
+_SHOWN = 3
 
 
 def page() -> str:
@@ -67,7 +67,7 @@ def _section(each: ConventionalOperator) -> Iterator[str]:
             continue
         before, *mutants = _without_target([example.before, *example.after])
         after = [_code(text) for text in mutants]
-        if place and len(after) > _SHOWN + 1:
+        if len(after) > _SHOWN + 1:
             after[_SHOWN:] = ["…"]
         yield f"- {_code(before)} → {', '.join(after)}{f' ({note})' if note else ''}"
 

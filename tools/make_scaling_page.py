@@ -49,9 +49,9 @@ replay, {fork} with fork.
 
 ![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
 
-Time is lost to *the original's own runs* (each part of a fork parent runs its tests again), *shipping*
-(folder, job and answer of a unit), *the controller* (a worker whose answer waits is idle), *stragglers* (idle
-time at the end that equal units and no deaths would avoid) and *the last unit* (the rest of it).
+Time is lost to *the original's own runs* (each part of a fork parent runs its tests again), *shipping*, *the
+controller* (a worker whose answer waits is idle), *stragglers* (idle time at the end that equal units and no
+deaths would avoid) and *the last unit*.
 
 {curve}
 

@@ -88,9 +88,7 @@ TRAVELS = {
 }
 #: steps that are on other ways as well: to be called after the step before is all that is asked of them
 ON_MANY_WAYS = {
-    "model.event_file.unsealed", "runtime.event_file.EventFile.send",
-    "report.terminal.progress.Lines.advance",
-    "config.document.Document.read",
+    "model.event_file.unsealed", "runtime.event_file.EventFile.send", "config.document.Document.read",
 }  # fmt: skip
 
 
