@@ -42,8 +42,6 @@ counts as having acted when it is reached.
 - Plain assignments for ASR: the name may have no value yet.
 - Text arguments that do not stand in the call, or are formatted, for the operators on characters.
 
-`python benchmarks/instrumentation.py` measures what it costs.
-
 ## The operators
 """
 #: so many mutants of an example stand on the page

@@ -59,12 +59,10 @@ GROUPS = {
 TAIL = """\
 ## Your own operators
 
-An operator is a class in a file of `src/mutabot/operators/kinds` or in a [package](packages.md); the contract
-is `src/mutabot/operators/operator.py`. Most are a `ValueOperator` (`operators/value.py`:
-`change(value, context)` changes one value, `magnitudes(quantity)` gives the sizes, one mutant each) or a
-`CommandOperator` (`operators/command.py`: acts on the whole call). `needs` is a set of `Need`s, such as
-`frozenset({Need.IDLE})`; where one is not met, mutants are skipped with the reason. With `does_nothing = True`
-a call that reaches the robot is an error, never a verdict. `family = "…"` makes a family of its own.
+A class in a file of `src/mutabot/operators/kinds` or in a [package](packages.md), which has a short one; the
+contract is `src/mutabot/operators/operator.py`. Most are a `ValueOperator` (`operators/value.py`) or a
+`CommandOperator` (`operators/command.py`: acts on the whole call). Where one of its `needs` is not met, mutants
+are skipped with the reason. `family = "…"` makes a family of its own.
 """
 
 

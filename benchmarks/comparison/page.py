@@ -119,13 +119,14 @@ def picture(data: Data, name: str) -> str:
 
 def _claims(comparisons: Mapping[str, Data]) -> Iterator[str]:
     yield from ("## In short", "")
+    yield from (f"- *{claim.name}*: {claim.statement}" for claim in CLAIMS)
+    yield ""
     yield _row("claim", "family", *comparisons)
     yield f"|{'---|' * (2 + len(comparisons))}"
     for claim in CLAIMS:
         for family in CONVENTIONAL:
             found = (finding(claim, data, family) for data in comparisons.values())
-            said = claim.statement if family == CONVENTIONAL[0] else ""
-            yield _row(said, family, *(_shown(one) for one in found))
+            yield _row(claim.name, family, *(_shown(one) for one in found))
     yield ""
 
 
