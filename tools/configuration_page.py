@@ -19,7 +19,7 @@ HEAD = """\
 
 <!-- Written by tools/make_docs.py from src/mutabot/config/configuration.py and others. Do not edit. -->
 
-They stand in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml` without that heading;
+The settings stand in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml` without that heading;
 `mutabot init` proposes them. Paths are relative to the project's folder and must stay in it. For one command:
 `mutabot run -o rounds=5 -o when=once`.
 

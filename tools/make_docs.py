@@ -26,9 +26,9 @@ HEAD = """\
 
 An *operator* makes one kind of small fault, on the operations and quantities that the
 [vocabulary](vocabulary.md) describes. A call is left alone if the fault would change nothing or would leave
-the allowed range or values. `mutabot operators` prints where each operator acts, and which bugs it stands for.
-*Idle* ones [answer the program](vocabulary.md#answers-to-doing-nothing) in the place of the robot. Faults of
-messages on their way: [middleware](middleware.md).
+the allowed range or values. `mutabot operators` prints where each operator acts, and which bugs it stands
+for. *Idle* ones [answer the program](vocabulary.md#answers-to-doing-nothing) in the place of the robot.
+Faults of messages on their way: [middleware](middleware.md).
 
 ## Published operators
 
@@ -59,10 +59,10 @@ GROUPS = {
 TAIL = """\
 ## Your own operators
 
-A class in a file of `src/mutabot/operators/kinds` or in a [package](packages.md), which has a short one; the
-contract is `src/mutabot/operators/operator.py`. Most are a `ValueOperator` (`operators/value.py`) or a
-`CommandOperator` (`operators/command.py`: acts on the whole call). Where one of its `needs` is not met, mutants
-are skipped with the reason. `family = "…"` makes a family of its own.
+Write a class in a file of `src/mutabot/operators/kinds` or in a [package](packages.md), whose page has a
+short one; the contract is `src/mutabot/operators/operator.py`. Most are a `ValueOperator`
+(`operators/value.py`) or a `CommandOperator` (`operators/command.py`: acts on the whole call). Where one of
+its `needs` is not met, mutants are skipped with the reason. `family = "…"` makes a family of its own.
 """
 
 

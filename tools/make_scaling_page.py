@@ -71,7 +71,7 @@ longest first.
 ## The baseline
 
 Not in these numbers: it runs first on the controller's machine. Two runs in each of ten rounds take
-{baselines}.
+{baselines} processes side by side.
 
 ## What was measured, and what is assumed
 
@@ -244,7 +244,7 @@ def _size_table(found: Mapping[str, Any]) -> str:
 
 
 def _baselines(found: Mapping[str, Any]) -> str:
-    return ", ".join(f"{one['hours']:,.1f} h with {one['places']} side by side" for one in found["baseline"])
+    return ", ".join(f"{one['hours']:,.1f} h with {one['places']}" for one in found["baseline"])
 
 
 def _range(numbers: Sequence[float]) -> str:

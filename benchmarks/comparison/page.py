@@ -52,7 +52,7 @@ TAIL = """\
 
 - The programs are small, and calculate little.
 - *Refused* and *indistinguishable* are as good as each example's refusals and probes.
-- Mutants that would change nothing in the baseline were left out beforehand, in all families.
+- Mutants that would change nothing in the baseline were left out.
 - *Informative* counts mutants that no test reaches: one missing test, many times.
 - A mutant that tells suites apart need not be like a fault that engineers make.
 """

@@ -210,8 +210,8 @@ class Settings(Table):
         families = ["robot", "conventional"]
     """
     baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
-    """How often the original is run per round, to [find flaky tests](verdicts.md#a-second-look); by default as
-    often as the engine needs.
+    """How often the original is run per round, to [find flaky tests](verdicts.md#a-second-look); by default
+    as often as the engine needs.
 
         baseline_repetitions = 10
     """
