@@ -40,8 +40,8 @@ HEAD = """\
 <!-- Written by benchmarks/comparison/page.py from docs/data/*.json. Do not edit. -->
 
 The study "Mutation Testing for Industrial Robotic Systems" says, without figures, that conventional
-mutation operators suit robot programs badly. `make comparison` measured it on the examples; `docs/data` has
-all numbers. [Comparing families](compare.md) explains the terms.
+mutation operators suit robot programs badly. `make comparison` measured it on the examples.
+[Comparing families](compare.md) explains the terms.
 
 A share speaks *for* a claim if its difference from the robot family's, in percentage points with a 95 %
 interval, lies wholly above zero, *against* it if wholly below, else *undecided*; of places the larger number
