@@ -159,7 +159,7 @@ def test_the_belt_waits_for_boxes_that_follow_closely(cell_with: CellWith) -> No
 
     for name, colour in zip(names(2), colours, strict=True):
         check_placed(cell, name, colour, 0)
-    assert belt_travel_after(cell) < 0.45
+    assert 0.17 < belt_travel_after(cell) < 0.45  # the second box has 0.18 to come to where it is picked
     check_at_rest(cell)
 
 
