@@ -41,9 +41,8 @@ from rich.console import Console
 from rich.table import Table
 
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.engines.engine import ForkParents, Unhandled, replay
-from mutabot.campaign.engines.tasks import MutantRun
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected

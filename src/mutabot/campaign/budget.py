@@ -11,10 +11,9 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.engines.confirmation import confirm
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.engines.tasks import MutantRun
 from mutabot.campaign.faults.demanded import demanded_of, split_ladders
 from mutabot.campaign.plan import shuffled
 from mutabot.campaign.reuse.keys import OutcomeWriter

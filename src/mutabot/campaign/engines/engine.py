@@ -22,7 +22,7 @@ from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
 from mutabot.campaign.baseline.baseline import observation, place_of
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.request import FORK, REPLAY
 from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.campaign.verdict import (
@@ -44,7 +44,6 @@ from mutabot.model.job import Forking
 from mutabot.model.mutant import Place
 
 from .controls import Control, controls_of, run_controls, settled
-from .tasks import MutantRun, job_of, startup_limit, task, wall_limits
 
 #: seconds for a test of the suite without any mutant
 _DEADLINE = 600.0
@@ -238,7 +237,7 @@ def _run(
     def tasks() -> Iterator[Task]:
         for mutant, round in runs:
             if campaign.baseline.tests_reaching(round, mutant):
-                made = task(campaign, mutant, round, campaign.baseline.suite(round))
+                made = campaign.task(mutant, round, campaign.baseline.suite(round))
                 yield replace(made, alone=alone or made.alone)
             else:
                 uncovered.append((mutant, round))
@@ -396,7 +395,7 @@ class _ForkParent:
     def task(self, key: int, text: Instrumentation | None) -> Task:
         """The task that runs the fork parent."""
         campaign, baseline, mutants = self._campaign, self._baseline, self.mutants
-        walls = wall_limits(campaign, self._round, self._tests)
+        walls = campaign.wall_limits(self._round, self._tests)
         choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
         at_start: dict[str, tuple[str, ...]] = {}  # where tests have processes below them
         for mutant in mutants:
@@ -407,13 +406,13 @@ class _ForkParent:
             mutants=mutants,
             walls=walls,
             wall=max(walls.values(), default=0.0),
-            startup=startup_limit(campaign),
+            startup=campaign.startup_limit,
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=campaign.request.every_test,
             serial=baseline.is_exclusive(self._round),
             at_start=at_start,
         )
-        job = job_of(campaign, self._round, self._tests, mutants, forking=forking, instrumentation=text)
+        job = campaign.job(self._round, self._tests, mutants, forking=forking, instrumentation=text)
         for fork in self._open.values():
             fork.run.left_out = job.left_out(fork.run.mutant.id)
         # it waits for forks that go to the end
