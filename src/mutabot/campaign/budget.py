@@ -7,8 +7,8 @@ of the time that is left. What is under way when the time is up is cut off, and 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 
 from mutabot.campaign.campaign import Campaign, MutantRun
@@ -23,7 +23,7 @@ from mutabot.config.options import in_words
 from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.model.codec import from_data, to_data
+from mutabot.model.codec import from_data
 
 Pair = tuple[str, int]
 #: how a campaign ended whose budget was not enough
@@ -48,33 +48,27 @@ def run_planned(
     request = campaign.request
     alone, ladders = split_ladders(mutants)
     until = None if request.budget is None else started + request.budget
-    try:
-        with limited(until, request.clock) if until is not None else nullcontext():
-            if until is None:
-                run_trials(campaign, _in_rounds(alone, request.rounds, found.done), writer)
-            else:
-                _run_batches(campaign, alone, writer, found, until)
-            confirm(campaign, alone, writer, found.done)
-            always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
-            run_ladders(campaign.whole, ladders, writer, found.done, always)
-    except OutOfTimeError:
-        known = from_data(Budgeted, writer.journal.meta()[BUDGET])
-        writer.journal.set_meta(BUDGET, to_data(replace(known, is_whole=False)))
-        campaign.progress.note(
-            f"the budget is spent: {known.run + known.cut_off} of {known.planned} outcomes were found; "
-            "`mutabot run` goes on with what is left"
-        )
-        return False
+    is_whole, rounds = False, range(request.rounds)
+    with suppress(OutOfTimeError), limited(until, request.clock) if until is not None else nullcontext():
+        if until is None:
+            runs = [(one, round) for round in rounds for one in alone if (one.id, round) not in found.done]
+            run_trials(campaign, runs, writer)
+        else:
+            _run_batches(campaign, alone, writer, found, until)
+        confirm(campaign, alone, writer, found.done)
+        always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
+        run_ladders(campaign.whole, ladders, writer, found.done, always)
+        is_whole = True
     if until is not None:
         known = from_data(Budgeted, writer.journal.meta()[BUDGET])
-        whole = replace(known, run=known.planned, cut_off=0, is_whole=True)
-        writer.journal.set_meta(BUDGET, to_data(whole))
-    return True
-
-
-def _in_rounds(mutants: Iterable[Mutant], rounds: int, done: Collection[Pair]) -> list[MutantRun]:
-    mutants = list(mutants)
-    return [(one, round) for round in range(rounds) for one in mutants if (one.id, round) not in done]
+        whole = replace(known, run=known.planned, cut_off=0) if is_whole else known
+        writer.journal.set_meta(BUDGET, replace(whole, is_whole=is_whole))
+        if not is_whole:
+            campaign.progress.note(
+                f"the budget is spent: {known.run + known.cut_off} of {known.planned} outcomes were found; "
+                "`mutabot run` goes on with what is left"
+            )
+    return is_whole
 
 
 def _run_batches(
@@ -101,7 +95,7 @@ def _run_batches(
             size = max(request.jobs, int(size / max(now - began, 1e-3) * (until - now) * _SHARE))
     finally:
         cut_off = len(outcomes) - budgeted.run
-        writer.journal.set_meta(BUDGET, to_data(replace(budgeted, cut_off=cut_off)))
+        writer.journal.set_meta(BUDGET, replace(budgeted, cut_off=cut_off))
 
 
 def in_order(

@@ -39,7 +39,6 @@ from mutabot.journal.records import (
     Verification,
 )
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.model.codec import to_data
 from mutabot.model.outcome import in_words, same_end
 
 from .engine import replay
@@ -149,7 +148,7 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
     ``spent``: seconds that the campaign has taken until now.
     """
     request, journal = campaign.request, writer.journal
-    journal.set_meta(FLAKY, to_data(flaky_of(campaign.baseline)))
+    journal.set_meta(FLAKY, flaky_of(campaign.baseline))
     by_id = {mutant.id: mutant for mutant in mutants}
     outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
     reruns = _Reruns(campaign, writer, Doubts(campaign.baseline, by_id, outcomes))
@@ -158,7 +157,7 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
         reruns.verify(count)
     if request.repeats:
         reruns.repeat(max(SHARE * spent, SECONDS), max(MOST_SHARE * spent, MOST_SECONDS))
-    journal.set_meta(REPEATS, to_data(reruns.summary()))
+    journal.set_meta(REPEATS, reruns.summary())
 
 
 @dataclass(slots=True)
@@ -204,7 +203,7 @@ class _Reruns:
             if real is None or not differing:
                 break
         result = Verification(count, checked, tuple(wrong))
-        self.writer.journal.set_meta(VERIFICATION, to_data(result))
+        self.writer.journal.set_meta(VERIFICATION, result)
         where = "" if real is None else " over the real middleware"
         self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree{where}")
 

@@ -82,7 +82,7 @@ def write_shard(
     if shard is not None:
         depends = {**dependencies.everything, **_asked(dependencies.request)} if dependencies else None
         said = records.ShardOf(shard.number, shard.of, tuple(one.number for one in part.mutants), depends)
-        journal.set_meta(records.SHARD, to_data(said))
+        journal.set_meta(records.SHARD, said)
 
 
 def _asked(request: Request) -> dict[str, str]:

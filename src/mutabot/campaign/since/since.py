@@ -30,7 +30,6 @@ from mutabot.journal.files import find_journal, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import SINCE, Since
 from mutabot.model import Mutant
-from mutabot.model.codec import to_data
 from mutabot.repository import GitError, git, unignored
 
 _OPTION = "--since"
@@ -270,7 +269,7 @@ def only_altered(
         not_judged=dict(reasons.most_common()),
     )
     _tell(since, revision.short, progress)
-    journal.set_meta(SINCE, to_data(since))
+    journal.set_meta(SINCE, since)
     known = {mutant for mutant, _ in found.done | altered.keys()}
     kept = [mutant for mutant in plan.mutants if mutant.id in known]
     journal.keep_planned(known)
