@@ -7,7 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from mutabot.campaign.baseline.baseline import Baseline, Sources, observation, places_of
+from mutabot.campaign.baseline.baseline import Baseline, Sources, observation
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparison import Observation, compare, farthest
 from mutabot.errors import MutabotError, in_short
@@ -98,7 +98,7 @@ def run_of(result: Result, sources: Sources) -> Run:
     """What a worker saw of its mutant."""
     job = result.task.job
     assert job.mutant is not None
-    places = places_of(result, sources)
+    places = sources.places(result.sites)
     left_out = job.left_out(job.mutant.id)
     not_there = (f"{file}: {why}" for file, why in result.not_instrumented.items())
     return Run(

@@ -212,16 +212,18 @@ class Sources:
     """
 
     root: Path
-    _names: dict[str, Mapping[Extent, SiteName]] = field(default_factory=dict)
     _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
 
-    def site(self, seen: SiteSeen) -> Site:
-        """The site at which something was seen."""
+    def places(self, sites: Iterable[SiteSeen]) -> dict[int, Place]:
+        """The places that a process reported, by their index in its traces."""
+        return {seen.index: self._place(seen) for seen in sites}
+
+    def _place(self, seen: SiteSeen) -> Place:
         span = seen.span
-        if span.file not in self._names:
-            self._names[span.file] = self._in(span.file, front_end_of(span.file).names) or {}
-        text, occurrence = self._names[span.file].get(_extent(span), SiteName(f"line {span.line}", 1))
-        return Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
+        names: Mapping[Extent, SiteName] = self._in(span.file, front_end_of(span.file).names) or {}
+        text, occurrence = names.get(_extent(span), SiteName(f"line {span.line}", 1))
+        site = Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
+        return Place(site, seen.operation, seen.pattern)
 
     def is_written_through(self, span: Span) -> bool:
         """Whether the file writes to what an expression of it gives, as far as its text says."""
@@ -368,16 +370,19 @@ class Baseline(Original):
         for one in planned.values():
             self.early |= one.early
             for (round, place), tests in one.reached.items():
-                self._reach(round, place, None if place in one.early else frozenset(tests))
+                self.reach(round, place, None if place in one.early else frozenset(tests))
 
-    def _reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
+    def reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
         """These tests reach a place in a round; None: what stands there is there for all tests."""
-        quickest = sorted(self.tests[round], key=lambda test: cost(self.ends[round, test]))
-        here = [test for test in quickest if tests is None or test in tests]
-        aside = [test for where, test in self.unstable if where == round]
-        self.reaching[round, place] = here
-        if aside := [test for test in aside if tests is None or test in tests]:
+        here = [test for test in self.tests[round] if tests is None or test in tests]
+        aside = [test for where, test in self.unstable if where == round and (tests is None or test in tests)]
+        self.reaching[round, place] = sorted(here, key=lambda test: cost(self.ends[round, test]))
+        if aside:
             self.flaky_reaching[round, place] = aside
+
+    def seconds(self, round: int, tests: Iterable[str]) -> float:
+        """What tests took, by the clock on the wall."""
+        return sum(self.ends[round, test].wall for test in tests)
 
     def doubt(self, test: str) -> None:
         """A test failed once where equal runs pass: its kills may be chance."""
@@ -453,22 +458,6 @@ def cost(end: TestEnd) -> tuple[float, int]:
     return (end.simulated or 0.0, end.operations)
 
 
-def places_of(result: Result, sources: Sources) -> dict[int, Place]:
-    """The places a worker reported, by their index in its traces."""
-    return {seen.index: place_of(seen, sources) for seen in result.sites}
-
-
-def place_of(seen: SiteSeen, sources: Sources) -> Place:
-    """The place at which something was seen."""
-    return Place(sources.site(seen), seen.operation, seen.pattern)
-
-
-def observations_of(result: Result, sources: Sources) -> dict[str, Observation]:
-    """What is compared of each test of a run."""
-    places = places_of(result, sources)
-    return {end.test: observation(end, places) for end in result.ends}
-
-
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     """What is compared of a test."""
     events = []
@@ -486,14 +475,10 @@ def refused_of(result: Result) -> dict[str, tuple[RefusedAt, ...]]:
     sites = {seen.index: seen for seen in result.sites}
     found: dict[str, tuple[RefusedAt, ...]] = {}
     for end in result.ends:
-        numbers: dict[int, set[int]] = {}
-        for index, number in end.refused_calls:
-            numbers.setdefault(index, set()).add(number)
-        if numbers:
-            found[end.test] = tuple(
-                RefusedAt(
-                    sites[index].span, sites[index].operation, sites[index].pattern, tuple(sorted(those))
-                )
-                for index, those in numbers.items()
-            )
+        numbers: dict[int, list[int]] = {}
+        for index, number in sorted({*end.refused_calls}):
+            numbers.setdefault(index, []).append(number)
+        of_sites = ((sites[index], tuple(those)) for index, those in numbers.items())
+        calls = tuple(RefusedAt(seen.span, seen.operation, seen.pattern, those) for seen, those in of_sites)
+        found |= {end.test: calls} if calls else {}
     return found

@@ -17,9 +17,7 @@ from mutabot.campaign.baseline.baseline import (
     Hit,
     RecordedAnswers,
     Sources,
-    cost,
-    observations_of,
-    places_of,
+    observation,
     refused_of,
 )
 from mutabot.campaign.comparison import probe_intervals_of
@@ -281,7 +279,7 @@ def _add_round(
 ) -> dict[tuple[int, str], TestEnd]:
     """Take in the runs of a round; returns the tests that fail in all of them."""
     runs = [{end.test: end for end in result.ends} for result in repetitions]
-    observed = [observations_of(result, sources) for result in repetitions]
+    places = [sources.places(result.sites) for result in repetitions]
     failed: dict[tuple[int, str], TestEnd] = {}
     good: list[str] = []
     for test, end in runs[0].items():
@@ -300,17 +298,17 @@ def _add_round(
             baseline.ends[round, test] = replace(
                 end, wall=max([end.wall, *(o.wall for o in others if o)]), recording=None
             )
-            baseline.observations[round, test] = observed[0][test]
-            for again, found in zip(others, observed[1:], strict=True):
+            baseline.observations[round, test] = observation(end, places[0])
+            for again, there in zip(others, places[1:], strict=True):
                 if again is not None:
-                    baseline.compare_runs(round, again, found[test], request.vocabulary)
+                    baseline.compare_runs(round, again, observation(again, there), request.vocabulary)
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
     # without the tests that are set aside nothing fails
     is_set_aside = len(good) < len(runs[0]) and repetitions[0].exit_code == _FAILED
     baseline.exits[round] = 0 if is_set_aside else repetitions[0].exit_code
-    _add_hits(baseline, sources, round, repetitions[0], good)
+    _add_hits(baseline, sources, round, repetitions[0], places[0])
     baseline.refused |= {(round, test): calls for test, calls in refused_of(repetitions[0]).items()}
     return failed
 
@@ -322,14 +320,16 @@ def _no_tests(baseline: Baseline) -> str:
     return f"no test ran: {baseline.skipped} skipped"
 
 
-def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, good: list[str]) -> None:
-    places = places_of(result, sources)
+def _add_hits(
+    baseline: Baseline, sources: Sources, round: int, result: Result, places: Mapping[int, Place]
+) -> None:
+    good = baseline.tests[round]
     live = {places[index] for end in result.ends for index in end.live}
     baseline.written_through |= {place for place in live if sources.is_written_through(place.site.span)}
     for seen in result.sites:
         place = places[seen.index]
         baseline.unread[place] = sources.is_unused(seen) and baseline.unread.get(place, True)
-    reaching: dict[Place, list[str]] = {}
+    reaching: dict[Place, set[str]] = {}
     for end in result.ends:
         if end.test not in good:
             if (round, end.test) in baseline.unstable:  # where it would have judged mutants
@@ -340,14 +340,12 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
             place = places[index]
             baseline.hits.setdefault(place, []).append(Hit(written, read, (round, end.test)))
             baseline.answers.setdefault(place, RecordedAnswers()).add(round, end.test, answer)
-            tests = reaching.setdefault(place, [])
-            if end.test not in tests:
-                tests.append(end.test)
+            reaching.setdefault(place, set()).add(end.test)
     for call in result.called_at_import:
         place = places[call.site]
         baseline.hits.setdefault(place, []).append(Hit(call.written, call.read, (round, "")))
         baseline.answers.setdefault(place, RecordedAnswers()).add(round, "", call.answer)
         baseline.early.add(place)
-        reaching[place] = list(good)
+        reaching[place] = set(good)
     for place, tests in reaching.items():
-        baseline.reaching[round, place] = sorted(tests, key=lambda test: cost(baseline.ends[round, test]))
+        baseline.reach(round, place, tests)

@@ -108,9 +108,9 @@ def _affordable(
     for number, one in enumerate(left):
         is_fresh, suite = one.engine == REPLAY, baseline.suite(one.round)
         tests = suite if is_fresh else baseline.tests_judging(one.round, mutants[one.mutant])
-        seconds -= _seconds(campaign, one.round, tests) + (baseline.startup if is_fresh else 0.0)
+        seconds -= baseline.seconds(one.round, tests) + (baseline.startup if is_fresh else 0.0)
         if not is_fresh and one.round not in rounds:  # the original runs beside them
-            seconds -= _seconds(campaign, one.round, suite)
+            seconds -= baseline.seconds(one.round, suite)
         rounds.add(one.round)
         if seconds < 0 and number:
             return
@@ -119,12 +119,7 @@ def _affordable(
 
 def _fixed(campaign: Campaign) -> float:
     """Seconds that a campaign takes for the original alone, in all its runs."""
-    request = campaign.request
-    runs = request.repetitions + request.forks
+    request, baseline = campaign.request, campaign.baseline
     rounds = range(request.rounds)
-    return runs * sum(_seconds(campaign, round, campaign.baseline.suite(round)) for round in rounds)
-
-
-def _seconds(campaign: Campaign, round: int, tests: Iterable[str]) -> float:
-    """What tests took in the baseline."""
-    return sum(campaign.baseline.ends[round, test].wall for test in tests)
+    once = sum(baseline.seconds(round, baseline.suite(round)) for round in rounds)
+    return once * (request.repetitions + request.forks)
