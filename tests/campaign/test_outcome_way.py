@@ -33,8 +33,7 @@ TESTS = """
 MOST = 6
 #: what was recorded of the world has a way beside it: kept recordings, what is in them, and how they differ
 RECORDED = {
-    "campaign/evidence.py", "journal/recordings.py", "evidence/recording.py", "evidence/tracks.py",
-    "evidence/story.py",
+    "campaign/evidence.py", "journal/recordings.py", "evidence/recording.py", "evidence/story.py",
 }  # fmt: skip
 ROOT = Path(mutabot.__file__).parent
 

@@ -9,7 +9,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import Unhandled, try_controls
 from mutabot.campaign.plan import Plan, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
-from mutabot.campaign.reuse.opened import OpenedFiles
+from mutabot.campaign.reuse.snapshot import OpenedFiles
 from mutabot.campaign.run import at_it, begin, selected
 from mutabot.config.configuration import Configuration
 from mutabot.errors import in_short

@@ -11,8 +11,7 @@ from hashlib import blake2b
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
-from mutabot.evidence.story import diverged
-from mutabot.evidence.tracks import RecordedPaths, noise_between
+from mutabot.evidence.story import RecordedPaths, diverged, noise_between
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import UNFIT
 from mutabot.model import Diverged, Mutant

@@ -21,9 +21,7 @@ from mutabot.campaign import simulation
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
-from mutabot.campaign.budget import OUT_OF_TIME, run_planned
 from mutabot.campaign.campaign import Campaign, on_this_machine
-from mutabot.campaign.engines.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.engine import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
@@ -32,12 +30,19 @@ from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
-from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.reuse.reuse import Reused, note_outdated, reuse
-from mutabot.campaign.reuse.snapshot import Snapshot, State
+from mutabot.campaign.reuse.reuse import (
+    Reused,
+    Revision,
+    altered_since,
+    note_outdated,
+    only_altered,
+    open_others,
+    reuse,
+)
+from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, State
+from mutabot.campaign.schedule import OUT_OF_TIME, decide, earlier_decision, run_planned
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
-from mutabot.campaign.since.since import Revision, altered_since, only_altered, open_others
 from mutabot.errors import JournalError, NothingToDoError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide

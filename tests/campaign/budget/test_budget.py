@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from mutabot.campaign import budget
-from mutabot.campaign.budget import in_order
 from mutabot.campaign.run import run_campaign
+from mutabot.campaign.schedule import in_order
 from mutabot.execution.interruption import OutOfTimeError, interruptible, interruptions_kept, limited
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Role, Site, Span, Verdict

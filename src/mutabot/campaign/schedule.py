@@ -1,4 +1,8 @@
-"""Confirm with the whole suite what mutants did that were run without some of its tests.
+"""Run the mutants of a plan: which come first, with all tests or some, and until when.
+
+Under a budget, what is expected to tell most comes first, in batches: forks share the run of the original, so
+a batch gives no outcome of a survivor until that run ends. A batch is as much as is expected to end in half
+of the time that is left. What is under way when the time is up is cut off, and nothing is said of it.
 
 The whole suite judges a mutant. Where the tests that do not reach survivors, after the first that does, would
 take longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than
@@ -10,18 +14,133 @@ notices one, all are run.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from itertools import accumulate
 
-from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.faults.demanded import split_ladders
+from mutabot.campaign.campaign import Campaign, MutantRun
+from mutabot.campaign.engines.engine import run_trials
+from mutabot.campaign.faults.demanded import demanded_of, split_ladders
+from mutabot.campaign.plan import shuffled
 from mutabot.campaign.request import REPLAY
 from mutabot.campaign.reuse.keys import OutcomeWriter
+from mutabot.campaign.reuse.reuse import Reused
+from mutabot.campaign.search import run_ladders
+from mutabot.config.options import in_words
+from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.journal import Journal
-from mutabot.journal.records import CONFIRMATION, is_wrong, run_short
-from mutabot.model import Mutant, Outcome
+from mutabot.journal.records import BUDGET, CONFIRMATION, Budgeted, is_wrong, run_short
+from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.codec import from_data
 
-from .engine import run_trials
+Pair = tuple[str, int]
+#: how a campaign ended whose budget was not enough
+OUT_OF_TIME = "out of time"
+#: runs of the first batch for each of ``-j``
+_FIRST = 10
+#: the share of the time left that a batch may take
+_SHARE = 0.5
+
+
+def run_planned(
+    campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, found: Reused, started: float
+) -> bool:
+    """Run what is not known yet, ladders last. Returns whether that is all.
+
+    Of ladders only what it takes to find their thresholds is run.
+
+    Args:
+        found: what is known before.
+        started: when the campaign began, by ``Request.clock``.
+    """
+    request = campaign.request
+    alone, ladders = split_ladders(mutants)
+    until = None if request.budget is None else started + request.budget
+    is_whole, rounds = False, range(request.rounds)
+    with suppress(OutOfTimeError), limited(until, request.clock) if until is not None else nullcontext():
+        if until is None:
+            runs = [(one, round) for round in rounds for one in alone if (one.id, round) not in found.done]
+            run_trials(campaign, runs, writer)
+        else:
+            _run_batches(campaign, alone, writer, found, until)
+        confirm(campaign, alone, writer, found.done)
+        always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
+        run_ladders(campaign.whole, ladders, writer, found.done, always)
+        is_whole = True
+    if until is not None:
+        known = from_data(Budgeted, writer.journal.meta()[BUDGET])
+        whole = replace(known, run=known.planned, cut_off=0) if is_whole else known
+        writer.journal.set_meta(BUDGET, replace(whole, is_whole=is_whole))
+        if not is_whole:
+            campaign.progress.note(
+                f"the budget is spent: {known.run + known.cut_off} of {known.planned} outcomes were found; "
+                "`mutabot run` goes on with what is left"
+            )
+    return is_whole
+
+
+def _run_batches(
+    campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, found: Reused, until: float
+) -> None:
+    """Run these in batches, and keep note of how far it came."""
+    request = campaign.request
+    runs = in_order(mutants, request.rounds, found.done, request.seed, found.before)
+    seconds = request.budget or 0.0
+    left = max(until - request.clock(), 0.0)
+    campaign.progress.note(f"budget: {in_words(seconds)}, of which {left:.0f} s are left")
+    outcomes: list[Outcome] = []
+    budgeted = Budgeted(seconds, planned=len(runs))
+    done, size = 0, _FIRST * request.jobs
+    try:
+        while done < len(runs):
+            began = request.clock()
+            if began >= until:
+                raise OutOfTimeError
+            run_trials(campaign, runs[done : done + size], writer, outcomes.append)
+            done += len(runs[done : done + size])
+            budgeted = replace(budgeted, run=done - len(campaign.again))
+            now = request.clock()
+            size = max(request.jobs, int(size / max(now - began, 1e-3) * (until - now) * _SHARE))
+    finally:
+        cut_off = len(outcomes) - budgeted.run
+        writer.journal.set_meta(BUDGET, replace(budgeted, cut_off=cut_off))
+
+
+def in_order(
+    mutants: Sequence[Mutant],
+    rounds: int,
+    done: Iterable[Pair],
+    seed: int,
+    before: Mapping[Pair, Verdict],
+) -> list[MutantRun]:
+    """All that is not done, what is expected to tell most first, one round after the other.
+
+    Among those that are expected to tell alike much, the order depends on the seed and the mutants' ids
+    alone. ``before``: what outcomes were that do not hold any more.
+    """
+    firsts: dict[tuple[str, object], str] = {}
+    for mutant in shuffled(mutants, f"{seed}:site"):
+        firsts.setdefault((mutant.family, mutant.site), mutant.id)
+    first_ids, done = set(firsts.values()), set(done)
+
+    def rank(run: MutantRun) -> int:
+        mutant, round = run
+        verdict = before.get((mutant.id, round))
+        if verdict is None:
+            return 0 if mutant.id in first_ids else 1
+        if verdict.is_valid and not verdict.is_killed:
+            return 2
+        return 3 if mutant.id in first_ids else 4
+
+    return [
+        run
+        for round in range(rounds)
+        for run in sorted(((one, round) for one in shuffled(mutants, f"{seed}:budget:{round}")), key=rank)
+        if (run[0].id, round) not in done
+    ]
+
+
+# Tests that are left out at first
 
 #: seconds of tests below which nothing is left out
 LEAST = 30.0
