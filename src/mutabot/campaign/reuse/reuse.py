@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.reuse.keys import Dependencies, Parts, Tree, Was, tool_table
+from mutabot.campaign.reuse.keys import Dependencies, Tree, Was, tool_table
 from mutabot.campaign.reuse.snapshot import (
     WRITTEN,
     State,
@@ -49,15 +50,10 @@ class Earlier:
     def __init__(self, now: Dependencies, journal: JournalReader) -> None:
         self.kept = journal.found()
         self._now, self._journal = now, journal
-        self._parts: dict[str, Parts | None] = {}
-        self._trees: dict[str, Tree] = {}
-        self._was: dict[str, Was] = {}
-
-    def was(self, key: str) -> Was:
-        """What an outcome with this key depended on."""
-        if key not in self._was:
-            self._was[key] = self._now.was(key, self._parts_of, self._tree)
-        return self._was[key]
+        parts = cache(journal.parts)
+        tree = cache(lambda digest: Tree(parts(digest) or {}, lambda name, text: journal.text(text)))
+        #: what an outcome with this key depended on
+        self.was = cache(lambda key: now.was(key, parts, tree))
 
     def why(self, pair: Pair, mutant: Mutant, *, is_known: bool = True) -> str | None:
         """Why an outcome may come out otherwise now, in words; None if it cannot. There is one."""
@@ -82,20 +78,9 @@ class Earlier:
             return False
         return self.was(self.kept[row.mutant, row.round].key).tree.said != self._now.tree.said
 
-    def _parts_of(self, digest: str) -> Parts | None:
-        if digest not in self._parts:
-            self._parts[digest] = self._journal.parts(digest)
-        return self._parts[digest]
 
-    def _tree(self, digest: str) -> Tree:
-        if digest not in self._trees:
-            parts = self._parts_of(digest) or {}
-            self._trees[digest] = Tree(parts, lambda name, text: self._journal.text(text))
-        return self._trees[digest]
-
-
-#: why an outcome is not taken over although it holds
-GONE = "a line that they name is gone"
+#: why an outcome is not taken over although it holds, or although nothing that it depends on has changed
+GONE, _UNSOUND = "a line that they name is gone", "they ended in an error or unstable"
 
 
 @dataclass(slots=True)
@@ -210,7 +195,7 @@ def text_of(found: Reused) -> str:
     parts += reasons_in_words(found.why.values())
     unsound = len(found.unsound - found.why.keys())
     if unsound:
-        parts.append(f"{unsound} run again: they ended in an error or unstable")
+        parts.append(f"{unsound} run again: {_UNSOUND}")
     if found.first:
         is_all = not (reused or found.why or unsound)
         parts.append(f"{found.first} {'run for the first time' if is_all else 'not run before'}")
@@ -269,12 +254,6 @@ class Revision:
         abbreviated = self.commit[:7]
         return self.ref if self.ref.startswith(abbreviated) else f"{self.ref} ({abbreviated})"
 
-    @property
-    def prefix(self) -> str:
-        """Where the project lies in the repository: empty, or a folder with a slash."""
-        folder = self.project.relative_to(self.top).as_posix()
-        return "" if folder == "." else f"{folder}/"
-
     def is_changed(self, path: Path) -> bool:
         """Whether a file is not as it was; one outside of the repository is taken for unchanged."""
         return self._name(path) in self.changed
@@ -283,21 +262,15 @@ class Revision:
         """What a file held then; None if it was not there. What lies outside of the repository is as now."""
         name = self._name(path)
         if name not in self.changed:
-            try:
-                return path.read_bytes()
-            except OSError:
-                return None
-        if not self.changed[name]:
-            return None
-        return _git(self.top, "cat-file", "blob", f"{self.commit}:{name}")
+            return read(path)
+        return _git(self.top, "cat-file", "blob", f"{self.commit}:{name}") if self.changed[name] else None
 
     def gone(self) -> list[str]:
         """Files of the project, relative to it, that were there and are not any more."""
-        here = [
-            name for name, was_there in self.changed.items() if was_there and name.startswith(self.prefix)
-        ]
-        names = (name.removeprefix(self.prefix) for name in here)
-        return [name for name in names if not (self.project / name).is_file()]
+        folder = self.project.relative_to(self.top).as_posix()
+        prefix = "" if folder == "." else f"{folder}/"
+        there = (name for name, was_there in self.changed.items() if was_there and name.startswith(prefix))
+        return [name for one in there if not (self.project / (name := one.removeprefix(prefix))).is_file()]
 
     def _name(self, path: Path) -> str:
         folder = path.parent.resolve()  # a link in the project is a file of its own
@@ -348,9 +321,13 @@ def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependen
     root = campaign.request.root
 
     def digests_then(known: Mapping[str, str]) -> dict[str, str]:
-        same = {name: digest for name, digest in known.items() if not _is_other(revision, root, name, digest)}
-        changed = {name: revision.read(root / name) for name in known.keys() - same.keys()}
-        return same | {name: digest_of(text) for name, text in changed.items() if text is not None}
+        other = {
+            name: revision.read(root / name)
+            for name, digest in known.items()
+            if digest != WRITTEN and revision.is_changed(root / name)
+        }
+        same = {name: digest for name, digest in known.items() if name not in other}
+        return same | {name: digest_of(text) for name, text in other.items() if text is not None}
 
     gone = {name: "" for name in revision.gone() if counts_by_name(name) and not is_note(name)}
     own = own_files(campaign.request)
@@ -360,10 +337,6 @@ def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependen
     absent = {test for _, test in campaign.baseline.ends if not now.is_of(test, tree)}
     state = State(files, digests_then(now.notes), texts)
     return Dependencies(campaign.request, campaign.baseline, state, revision.read, absent)
-
-
-def _is_other(revision: Revision, root: Path, name: str, digest: str) -> bool:
-    return revision.is_changed(root / name) and digest != WRITTEN
 
 
 def _other_configuration(revision: Revision, request: Request) -> str | None:
@@ -453,7 +426,8 @@ def only_altered(
     """
     pairs = [(mutant.id, round) for round in range(rounds) for mutant in plan.mutants]
     left = [pair for pair in pairs if pair not in found.done and pair not in altered]
-    reasons = Counter(_why_not_taken(found, pair) for pair in left)
+    why = found.why | dict.fromkeys(found.unsound, _UNSOUND)
+    reasons = Counter(why.get(pair, "no journal holds an outcome of them") for pair in left)
     since = Since(
         ref=revision.ref,
         commit=revision.commit,
@@ -464,16 +438,9 @@ def only_altered(
     _tell(since, revision.short, progress)
     journal.set_meta(SINCE, since)
     known = {mutant for mutant, _ in found.done | altered.keys()}
-    kept = [mutant for mutant in plan.mutants if mutant.id in known]
     journal.keep_planned(known)
     found.done.update(left)
-    return Plan(kept, plan.left_out, plan.drawing)
-
-
-def _why_not_taken(found: Reused, pair: Pair) -> str:
-    if pair in found.unsound:
-        return "they ended in an error or unstable"
-    return found.why.get(pair, "no journal holds an outcome of them")
+    return replace(plan, mutants=[mutant for mutant in plan.mutants if mutant.id in known])
 
 
 def _tell(since: Since, short: str, progress: Progress) -> None:

@@ -70,16 +70,10 @@ def own_files(request: Request) -> set[str]:
     configuration = request.configuration
     named = (configuration.selection or "", *configuration.vocabulary)
     own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
-    lists = [Path(word[1:]) for word in (*request.only, *request.skip) if word.startswith("@")]
-    own |= {_relative(file, request.root) for file in lists}
+    others = [word[1:] for word in (*request.only, *request.skip) if word.startswith("@")]
     if request.other_journal is not None:
-        name = _relative(request.other_journal, request.root)
-        own |= {name, f"{name}-wal", f"{name}-shm", f"{name}.lock"}
-    return own
-
-
-def _relative(path: Path, root: Path) -> str:
-    return Path(os.path.relpath(path.resolve(), root)).as_posix()
+        others += [f"{request.other_journal}{end}" for end in ("", "-wal", "-shm", ".lock")]
+    return own | {Path(os.path.relpath(Path(name).resolve(), request.root)).as_posix() for name in others}
 
 
 def _is_report(path: Path) -> bool:
@@ -122,6 +116,11 @@ class Snapshot:
 
     files: Mapping[str, _File]
 
+    @property
+    def digests(self) -> dict[str, str]:
+        """What all files hold."""
+        return {name: file.digest for name, file in self.files.items()}
+
     @classmethod
     def take(cls, root: Path, before: Snapshot | None = None) -> Snapshot:
         """Read all files; those that the system says are untouched since ``before`` need not be read."""
@@ -144,25 +143,18 @@ class Snapshot:
 
     def edited_since(self, before: Mapping[str, str]) -> list[str]:
         """Files that had another digest, or are gone."""
-        return [name for name, was in before.items() if was not in (WRITTEN, self._digest(name))]
+        now = self.digests
+        return [name for name, was in before.items() if was not in (WRITTEN, now.get(name))]
 
     def edited_programs(self, before: Snapshot) -> list[str]:
         """Python files of ``before`` that have another content now, or are gone."""
-        programs = {name: file.digest for name, file in before.files.items() if name.endswith(".py")}
+        programs = {name: digest for name, digest in before.digests.items() if name.endswith(".py")}
         return self.edited_since(programs)
 
     def touched_since(self, before: Snapshot) -> set[str]:
         """Files that were written since ``before``, be it with the same content."""
-        known = before.files
-        return {
-            name
-            for name, file in self.files.items()
-            if name not in known or known[name].status != file.status
-        }
-
-    def _digest(self, name: str) -> str | None:
-        file = self.files.get(name)
-        return file.digest if file is not None else None
+        known = {name: file.status for name, file in before.files.items()}
+        return {name for name, file in self.files.items() if file.status != known.get(name)}
 
 
 def counts_by_name(name: str) -> bool:
@@ -239,7 +231,7 @@ class State:
             before, after: the files before and after the baseline.
             opened: the files that were opened meanwhile; None if that is not known.
         """
-        digests = {name: file.digest for name, file in after.files.items()}
+        digests = after.digests
         files = counted(request, digests, after.touched_since(before), opened)
         notes = {name: digest for name, digest in digests.items() if name not in files}
         found = {name: read(request.root / name) for name in files if name.endswith(".py")}

@@ -98,13 +98,10 @@ def _cost_of(mutants: list[Mutant], baseline: Baseline) -> float:
 
 
 def _cost(mutant: Mutant, baseline: Baseline) -> float:
-    total = 0.0
-    for round in range(len(baseline.tests)):
-        total += _START
-        for test in baseline.tests_judging(round, mutant):
-            simulated, operations = cost(baseline.ends[round, test])
-            total += simulated + _OPERATION * operations
-    return total
+    rounds = range(len(baseline.tests))
+    tests = [(round, test) for round in rounds for test in baseline.tests_judging(round, mutant)]
+    costs = [cost(baseline.ends[key]) for key in tests]
+    return _START * len(rounds) + sum(simulated + _OPERATION * count for simulated, count in costs)
 
 
 # One journal of all
@@ -133,18 +130,6 @@ class ShardJournal:
     meta: Mapping[str, Any]
     shard: records.ShardOf
     mutants: tuple[Mutant, ...]
-
-    @classmethod
-    def of(cls, path: Path, journal: JournalReader) -> ShardJournal:
-        """What is in the journal. Raises MergeError if that is no shard."""
-        meta = journal.meta()
-        if records.SHARD not in meta:
-            raise MergeError(
-                f"{path} holds a whole campaign, not a shard: shards come from `mutabot run --shard 1/8`"
-            )
-        return cls(
-            path, journal, meta, from_data(records.ShardOf, meta[records.SHARD]), tuple(journal.mutants())
-        )
 
     @property
     def words(self) -> str:
@@ -231,7 +216,14 @@ def _opened(stack: ExitStack, path: Path) -> ShardJournal:
     refuse_tracked(path)
     if is_written(path):
         raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
-    return ShardJournal.of(path, stack.enter_context(JournalReader.open(path)))
+    journal = stack.enter_context(JournalReader.open(path))
+    meta = journal.meta()
+    if records.SHARD not in meta:
+        raise MergeError(
+            f"{path} holds a whole campaign, not a shard: shards come from `mutabot run --shard 1/8`"
+        )
+    shard = from_data(records.ShardOf, meta[records.SHARD])
+    return ShardJournal(path, journal, meta, shard, tuple(journal.mutants()))
 
 
 def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
