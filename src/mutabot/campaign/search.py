@@ -13,13 +13,13 @@ round. The first round comes first; the others, which begin with what it found, 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from random import Random
 
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.faults.demanded import FaultLadder
+from mutabot.campaign.faults.demanded import Ladders
 from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.model import Outcome
 from mutabot.model.graded import MagnitudeResult, bracket_of, seen
@@ -113,10 +113,10 @@ def _middle(row: Mapping[Step, MagnitudeResult], low: Step, high: Step) -> set[S
 
 def run_ladders(
     campaign: Campaign,
-    ladders: Sequence[FaultLadder],
+    ladders: Ladders,
     writer: OutcomeWriter,
-    done: Collection[tuple[str, int]] = (),
-    always: Mapping[str, Collection[float]] | None = None,
+    done: Collection[tuple[str, int]],
+    always: Mapping[str, Collection[float]],
 ) -> None:
     """Find the thresholds; every outcome is in the journal within a second.
 
@@ -131,19 +131,19 @@ def run_ladders(
         (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
     }
     request, searches = campaign.request, dict[str, LadderSearch]()
-    for ladder in ladders:
-        demanded = (always or {}).get(ladder.id, ())
-        steps = frozenset(step for step, one in enumerate(ladder.mutants) if one.magnitude in demanded)
-        searches[ladder.id] = LadderSearch(len(ladder.mutants), request.rounds, request.seed, steps)
+    for name, mutants in ladders.items():
+        demanded = always.get(name, ())
+        steps = frozenset(step for step, one in enumerate(mutants) if one.magnitude in demanded)
+        searches[name] = LadderSearch(len(mutants), request.rounds, request.seed, steps)
     found: list[Outcome] = []
 
     def run(known: range) -> None:
         """Run until nothing more is asked in these rounds; a violation asks in all of them."""
         while trials := [
-            (searches[one.id], step, one.mutants[step], round)
+            (searches[name], step, mutants[step], round)
             for round in known
-            for one in ladders
-            for step in sorted(searches[one.id].due(round))
+            for name, mutants in ladders.items()
+            for step in sorted(searches[name].due(round))
         ]:
             found.clear()
             new = [(mutant, round) for *_, mutant, round in trials if (mutant.id, round) not in kept]
@@ -157,7 +157,7 @@ def run_ladders(
     rounds = range(request.rounds)
     run(rounds[:1])
     run(rounds)
-    whole = len(rounds) * sum(len(ladder.mutants) for ladder in ladders)
+    whole = len(rounds) * sum(map(len, ladders.values()))
     runs = sum(len(row) for search in searches.values() for row in search.found.values())
     campaign.progress.note(
         f"thresholds: {len(ladders)} ladders in {len(rounds)} rounds took {runs} runs; all their magnitudes "

@@ -81,10 +81,6 @@ class PlantedFaults:
                     made.left_out_beforehand.append(one)
         return made
 
-    def provider_at(self, place: Place) -> str:
-        """The provider whose way into the program mutants at a place take."""
-        return self.providers.get(place, CALLS)
-
     def choices(self, mutant: Mutant) -> tuple[Choice, ...]:
         """The alternatives in the program text that a mutant is."""
         if mutant.family == CONTROL:
@@ -327,11 +323,6 @@ class Baseline(Original):
     early: set[Place] = field(default_factory=set)
     varying_calls: set[tuple[int, str]] = field(default_factory=set)
     shares_files: bool = False
-
-    @property
-    def places(self) -> list[Place]:
-        """All places that any test reaches in any round."""
-        return list(self.hits)
 
     def suite(self, round: int) -> tuple[str, ...]:
         """The tests that a mutant is run with, in their order: all that can be relied on."""

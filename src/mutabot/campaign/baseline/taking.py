@@ -31,6 +31,7 @@ from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.events import Remark, TestEnd
 from mutabot.model.mutant import Place
+from mutabot.model.outcome import first_line
 from mutabot.operators import load_all
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance
@@ -61,7 +62,7 @@ def repeat_command(request: Request, round: int, test: str) -> str:
 def why_set_aside(request: Request, round: int, end: TestEnd) -> str:
     """Why a test that fails on the original in this round is set aside in it."""
     seed = derive(request.seed, round, end.test)
-    text = f"{FAILS} with seed {seed}: {_first_line(end)}"
+    text = f"{FAILS} with seed {seed}: {first_line(end.message)}"
     return f"{text}; repeat it by {repeat_command(request, round, end.test)}"
 
 
@@ -73,16 +74,11 @@ def refuse_failing(request: Request, failing: Failing) -> None:
     if not found:
         return
     where = "in round 1" if request.rounds == 1 else f"in all {request.rounds} rounds"
-    shown = "\n".join(f"  {end.test}: {_first_line(end)}" for end in found[:10])
+    shown = "\n".join(f"  {end.test}: {first_line(end.message)}" for end in found[:10])
     more = f"\n  … and {len(found) - 10} more" if len(found) > 10 else ""
     noun = "test fails" if len(found) == 1 else "tests fail"
     again = f"\nrepeat by {repeat_command(request, 0, found[0].test)}"
     raise BaselineError(f"{len(found)} {noun} on the unmutated program {where}:\n{shown}{more}{again}")
-
-
-def _first_line(end: TestEnd) -> str:
-    lines = (end.message or "").strip().splitlines()
-    return lines[0] if lines else "no message"
 
 
 _KNOWN_LATER = (
@@ -136,10 +132,6 @@ class _Suite:
         for result in self.results.values():
             self.known.update(result.known_later)
         return bool(self.known)
-
-    def of(self, round: int) -> list[Result]:
-        """The runs of a round, in their order."""
-        return [self.results[key] for key in sorted(self.results) if key[0] == round]
 
 
 def take_baseline(
@@ -213,7 +205,8 @@ def _read(
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):
-        failing |= _add_round(baseline, request, sources, round, suite.of(round))
+        of_round = [suite.results[key] for key in sorted(suite.results) if key[0] == round]
+        failing |= _add_round(baseline, request, sources, round, of_round)
         first = suite.results[round, 0]
         baseline.text[round] = TextSeen(
             imported=frozenset(first.seen.imported if first.seen else ()),

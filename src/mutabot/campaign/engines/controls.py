@@ -20,7 +20,7 @@ from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import REPLAY
 from mutabot.campaign.verdict import judge, run_of
 from mutabot.errors import ControlError
-from mutabot.families import CONTROL
+from mutabot.families import CALLS, CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
@@ -94,7 +94,7 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
         if not passing or place not in planned or (forked and any(end.processes for end in ends)):
             continue
         is_early = place in baseline.early
-        way = (baseline.faults.provider_at(place), forked and is_early)
+        way = (baseline.faults.providers.get(place, CALLS), forked and is_early)
         cost = (round, is_early, min(end.wall for end in passing))
         if way not in chosen or cost < chosen[way][0]:
             chosen[way] = (cost, place, passing[0].test)

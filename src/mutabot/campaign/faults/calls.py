@@ -15,7 +15,6 @@ from mutabot.campaign.baseline.baseline import Baseline, Hit, NoAnswerError, Rec
 from mutabot.errors import OperatorError
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, ROBOT
 from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project
-from mutabot.frozen import frozen
 from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
 from mutabot.model.mutant import Place, When
 from mutabot.model.quantity import is_number, is_reading_of
@@ -245,22 +244,18 @@ def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
     return mutant
 
 
-@frozen
-class _Seen:
-    """A recorded value of the subject, and what it would become; None where nobody knows beforehand."""
-
-    before: Any = None
-    after: Any = None
+#: a recorded value of the subject, and what it would become; None where nobody knows beforehand
+_Seen = tuple[Any, Any]
 
 
 def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
     """What the mutant would do to the recorded calls, and why it is left out, if it is."""
     least, most = rule.least_calls(subject), max(Counter(hit.where for hit in hits).values(), default=0)
     if most < least:
-        return _Seen(), f"takes {least} calls in a test, and no test makes more than {most}"
+        return (None, None), f"takes {least} calls in a test, and no test makes more than {most}"
     if rule.is_chance(subject):
-        return _Seen(_value(subject, hits[0])), None
-    last = _Seen()
+        return (_value(subject, hits[0]), None), None
+    last: _Seen = (None, None)
     middleware = rule.middleware(subject, Random(1))
     away = ""
     where = None
@@ -272,15 +267,14 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
         try:
             passage = _rehearsal(rule, subject, hit, middleware)
         except LookupError:  # it asks where the robot is, which only the run can tell
-            return _Seen(before), None
+            return (before, None), None
         if passage.acted:
-            return _Seen(before, _changed(subject, passage)), None
+            return (before, _changed(subject, passage)), None
         away = away or passage.away
-        if last.before is None:
-            last = _Seen(before, before)
+        last = (before, before) if last[0] is None else last
     if away and (subject.quantity is None or subject.quantity.kind is Kind.SETTING):
         return last, f"would change nothing in {_calls(len(hits))}: {away}"
-    return last, _reason(subject, last.before, len(hits))
+    return last, _reason(subject, last[0], len(hits))
 
 
 def _why_unmet(
@@ -376,7 +370,7 @@ def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *,
     if subject.pattern is not None:
         name = subject.pattern.name
         what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
-    return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
+    return f"{what}: {rule.describe(subject, *seen)}"
 
 
 def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
