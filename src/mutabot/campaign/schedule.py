@@ -31,7 +31,6 @@ from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import BUDGET, CONFIRMATION, Budgeted, is_wrong, run_short
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.model.codec import from_data
 
 Pair = tuple[str, int]
 #: how a campaign ended whose budget was not enough
@@ -68,7 +67,7 @@ def run_planned(
         run_ladders(campaign.whole, ladders, writer, found.done, always)
         is_whole = True
     if until is not None:
-        known = from_data(Budgeted, writer.journal.meta()[BUDGET])
+        known: Budgeted = writer.journal.meta()[BUDGET]
         whole = replace(known, run=known.planned, cut_off=0) if is_whole else known
         writer.journal.set_meta(BUDGET, replace(whole, is_whole=is_whole))
         if not is_whole:

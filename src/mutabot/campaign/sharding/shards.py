@@ -29,7 +29,7 @@ from mutabot.journal.files import HOME, JOURNAL, is_written, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.recordings import Recordings
 from mutabot.model import Mutant
-from mutabot.model.codec import from_data, to_data
+from mutabot.model.codec import to_data
 
 #: how much more than its part a shard takes before a piece goes elsewhere
 _SLACK = 1.05
@@ -222,8 +222,7 @@ def _opened(stack: ExitStack, path: Path) -> ShardJournal:
         raise MergeError(
             f"{path} holds a whole campaign, not a shard: shards come from `mutabot run --shard 1/8`"
         )
-    shard = from_data(records.ShardOf, meta[records.SHARD])
-    return ShardJournal(path, journal, meta, shard, tuple(journal.mutants()))
+    return ShardJournal(path, journal, meta, meta[records.SHARD], tuple(journal.mutants()))
 
 
 def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
@@ -273,17 +272,13 @@ def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
         if values:
             found[key] = together(values)
     for key in (records.ALTERED, records.FLAKY, records.VERIFICATION, records.REPEATS):
-        said = [from_data(records.FACTS[key], meta[key]) for meta in metas if key in meta]
-        if said:
-            found[key] = (
-                to_data(_flaky(said)) if key == records.FLAKY else _summed([to_data(one) for one in said])
-            )
+        said = [meta[key] for meta in metas if key in meta]
+        if said and key == records.FLAKY:
+            tests = dict.fromkeys(test for one in said for test in one.tests)
+            found[key] = records.Flaky(tuple(tests), max(one.known for one in said))
+        elif said:
+            found[key] = _summed([to_data(one) for one in said])
     return found
-
-
-def _flaky(said: Sequence[records.Flaky]) -> records.Flaky:
-    tests = dict.fromkeys(test for one in said for test in one.tests)
-    return records.Flaky(tuple(tests), max(one.known for one in said))
 
 
 def _summed(said: Sequence[Any]) -> Any:
