@@ -95,7 +95,11 @@ class Campaign:
             reaching=self.reaching(mutants, round),
             budgets={test: self.baseline.budget(round, test, factor) for test in tests},
             moments=self.baseline.probe_intervals.get(round, {}),
-            refused=self.baseline.refused_in(round, tests),
+            refused={
+                test: calls
+                for (of, test), calls in self.baseline.refused.items()
+                if of == round and test in tests
+            },
             known=self.baseline.known,
             **details,
         )

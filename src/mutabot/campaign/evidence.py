@@ -78,10 +78,8 @@ class CampaignEvidence:
 
         Recordings that cannot be read or written any more, whoever has spoiled them, cost no outcome.
         """
-        if self.is_lost:
-            return ()
         try:
-            return self._take(mutant, round, ends, survived=survived)
+            return () if self.is_lost else self._take(mutant, round, ends, survived=survived)
         except (JournalError, *UNFIT) as error:
             self.is_lost = True
             self.problems[f"nothing is recorded any more from mutant {mutant} on: {error}"] = None

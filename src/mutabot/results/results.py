@@ -230,11 +230,6 @@ class Results:
         return Confirmed.of(self.outcomes, self.meta.get("seed") or 0)
 
     @property
-    def is_incomplete(self) -> bool:
-        """Whether all was run, but not every outcome is in the journal."""
-        return records.INCOMPLETE in self.state
-
-    @property
     def known(self) -> str:
         """``12 of 20 outcomes are known``."""
         return f"{self.done} of {self.planned} outcomes are known"

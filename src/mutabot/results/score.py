@@ -98,7 +98,9 @@ class RoundScores:
         for outcome in outcomes:
             by_round[outcome.round].append(outcome)
             by_mutant.setdefault(outcome.mutant, [None] * rounds)[outcome.round] = outcome
-        killed = [[_share(one, _is_killed) for one in row] for row in by_mutant.values()]
+        killed = [
+            [_share(one, lambda one: one.verdict.is_killed) for one in row] for row in by_mutant.values()
+        ]
         found = [[_share(one, _is_found) for one in row] for row in by_mutant.values()]
         return cls(
             tuple(Score.of(one) for one in by_round),
@@ -179,10 +181,6 @@ def _group(
 def _mean(scores: Sequence[float | None]) -> float | None:
     known = [score for score in scores if score is not None]
     return fmean(known) if known else None
-
-
-def _is_killed(outcome: Outcome) -> bool:
-    return outcome.verdict.is_killed
 
 
 def _is_found(outcome: Outcome) -> bool:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import Observation, TraceCall, as_steady
 from mutabot.errors import MutabotError
 from mutabot.execution.task import Result
@@ -22,7 +21,6 @@ from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
 from mutabot.languages.front_end import SiteName, front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
-from mutabot.languages.python import unused_calls
 from mutabot.model import (
     FATAL,
     IDENTITY,
@@ -123,7 +121,6 @@ class PlantedFaults:
 
 #: characters that all answers of one mutant may take; they go to every process that runs it
 LIMIT = 1_000_000
-_MISSING = object()
 
 
 class NoAnswerError(MutabotError):
@@ -172,19 +169,13 @@ def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnsw
         return Idle((told,)).data()
     if not answers.first:
         raise NoAnswerError(f"no recorded call returned, so nobody knows what it answers; {_HINT}")
-    numbers: dict[str, int] = {}
-    of_test = {}
-    kept: list[Any] = []
-    for key, note in answers.first.items():
-        data = _kept(note)
-        number = numbers.setdefault(json.dumps(data), len(numbers))
-        if number == len(kept):
-            kept.append(data)
-        of_test[key] = number
+    texts = {key: json.dumps(_kept(note)) for key, note in answers.first.items()}
+    numbers = {text: number for number, text in enumerate(dict.fromkeys(texts.values()))}
     if sum(map(len, numbers)) > LIMIT:
         raise NoAnswerError(f"what it answers in all tests is more than {LIMIT} characters; {_HINT}")
-    is_single = len(kept) == 1 and not answers.varying
-    return Idle(tuple(kept), {} if is_single else of_test, tuple(answers.varying)).data()
+    is_single = len(numbers) == 1 and not answers.varying
+    of_test = {} if is_single else {key: numbers[text] for key, text in texts.items()}
+    return Idle(tuple(map(json.loads, numbers)), of_test, tuple(answers.varying)).data()
 
 
 _HINT = "say in the vocabulary what to answer while the robot does nothing: idle = …"
@@ -193,10 +184,9 @@ _HINT = "say in the vocabulary what to answer while the robot does nothing: idle
 def _kept(note: Any) -> Any:
     if is_plain(note):
         return note
-    data = note.get("kept", _MISSING)
-    if data is _MISSING:
+    if "kept" not in note:
         raise NoAnswerError(f"what it answers cannot be kept ({note['opaque']}); {_HINT}")
-    return data
+    return note["kept"]
 
 
 @dataclass(slots=True)
@@ -221,15 +211,7 @@ class Sources:
         site = Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
         return Place(site, seen.operation, seen.pattern)
 
-    def is_written_through(self, span: Span) -> bool:
-        """Whether the file writes to what an expression of it gives, as far as its text says."""
-        return self._is_among(span, written_through)
-
-    def is_unused(self, seen: SiteSeen) -> bool:
-        """Whether nobody uses what the call returns: it is a statement by itself."""
-        return seen.direct and self._is_among(seen.span, unused_calls)
-
-    def _is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
+    def is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
         """Whether an expression is one of those that are found in the text of its file, if that is Python."""
         is_python = front_end_of(span.file) is PYTHON
         return is_python and _extent(span) in (self._in(span.file, find) or ())
@@ -426,10 +408,6 @@ class Baseline(Original):
             for test in known.get((other, place), ())
         }
         return [test for where, test in self.unstable if where == round and test in reaching]
-
-    def refused_in(self, round: int, tests: Iterable[str]) -> dict[str, tuple[RefusedAt, ...]]:
-        """The calls of these tests that the robot refuses in the original."""
-        return {test: self.refused[round, test] for test in tests if (round, test) in self.refused}
 
     def budget(self, round: int, test: str, factor: float) -> Budget:
         """What a mutant may use in this test.

@@ -20,6 +20,7 @@ from mutabot.campaign.baseline.baseline import (
     observation,
     refused_of,
 )
+from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.vocabulary import problem_error
@@ -27,6 +28,7 @@ from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
+from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.events import Remark, TestEnd
@@ -318,10 +320,11 @@ def _add_hits(
 ) -> None:
     good = baseline.tests[round]
     live = {places[index] for end in result.ends for index in end.live}
-    baseline.written_through |= {place for place in live if sources.is_written_through(place.site.span)}
+    baseline.written_through |= {one for one in live if sources.is_among(one.site.span, written_through)}
     for seen in result.sites:
         place = places[seen.index]
-        baseline.unread[place] = sources.is_unused(seen) and baseline.unread.get(place, True)
+        is_unused = seen.direct and sources.is_among(seen.span, unused_calls)
+        baseline.unread[place] = is_unused and baseline.unread.get(place, True)
     reaching: dict[Place, set[str]] = {}
     for end in result.ends:
         if end.test not in good:
