@@ -88,6 +88,7 @@ class Campaign:
     def job(self, round: int, tests: tuple[str, ...], mutants: Iterable[Mutant], **details: Any) -> Job:
         """The job of running these tests as these mutants, with the limits that the baseline gives."""
         factor = self.request.configuration.timeout_factor
+        refused = ((test, self.baseline.refused.get((round, test))) for test in tests)
         return self.request.job(
             round,
             tests=tests,
@@ -95,11 +96,7 @@ class Campaign:
             reaching=self.reaching(mutants, round),
             budgets={test: self.baseline.budget(round, test, factor) for test in tests},
             moments=self.baseline.probe_intervals.get(round, {}),
-            refused={
-                test: calls
-                for (of, test), calls in self.baseline.refused.items()
-                if of == round and test in tests
-            },
+            refused={test: calls for test, calls in refused if calls},
             known=self.baseline.known,
             **details,
         )

@@ -30,15 +30,6 @@ from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
-from mutabot.campaign.reuse.reuse import (
-    Reused,
-    Revision,
-    altered_since,
-    note_outdated,
-    only_altered,
-    open_others,
-    reuse,
-)
 from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, State
 from mutabot.campaign.schedule import OUT_OF_TIME, decide, earlier_decision, run_planned
 from mutabot.campaign.selection import refuse_typos, select
@@ -53,6 +44,8 @@ from mutabot.journal.journal import Journal, JournalReader
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
+
+from .reuse.reuse import Reused, Revision, altered_since, note_outdated, only_altered, open_others, reuse
 
 #: remarks that are told where there are no mutants
 _REMARKS = 8

@@ -174,17 +174,12 @@ def judged(campaign: Campaign, run: Run) -> Outcome:
 
 def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:
     """The outcome of a mutant that could not be judged; an error that is not about it is raised again."""
-    refuse_others(error)
+    if isinstance(error, MutabotError | OSError):  # it says something of the user's set-up or of the disk
+        raise error
     where = traceback.extract_tb(error.__traceback__)[-1]
     text = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
     message = f"mutabot could not judge what it saw of it: {text}"
     return Outcome(mutant.id, round, Verdict.ERROR, message=message, engine=engine)
-
-
-def refuse_others(error: Exception) -> None:
-    """Raise an error again that says nothing of a mutant, but of the user's set-up or of the disk."""
-    if isinstance(error, MutabotError | OSError):
-        raise error
 
 
 def _judged(campaign: Campaign, run: Run) -> Outcome:

@@ -21,24 +21,11 @@ from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
 from mutabot.languages.front_end import SiteName, front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
-from mutabot.model import (
-    FATAL,
-    IDENTITY,
-    Choice,
-    Instrumentation,
-    Mutant,
-    Operation,
-    Pattern,
-    ProgramText,
-    Role,
-    Site,
-    Span,
-    Vocabulary,
-)
+from mutabot.model import FATAL, IDENTITY, Operation, Pattern, Vocabulary
 from mutabot.model.answer import is_plain
 from mutabot.model.events import Remark, SiteSeen, TestEnd
 from mutabot.model.job import Budget, Idle, InProcess, RefusedAt
-from mutabot.model.mutant import Extent, Place
+from mutabot.model.mutant import Choice, Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
 from mutabot.operators.command import Identity
 
 #: what a control is at a place of a fault that is put in place by its provider's own code

@@ -12,14 +12,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.campaign.baseline.baseline import (
-    Baseline,
-    Hit,
-    RecordedAnswers,
-    Sources,
-    observation,
-    refused_of,
-)
 from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
@@ -35,6 +27,8 @@ from mutabot.model.events import Remark, TestEnd
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import first_line
 from mutabot.operators import load_all
+
+from .baseline import Baseline, Hit, RecordedAnswers, Sources, observation, refused_of
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance
 FAILS = "fails on the unmutated program"

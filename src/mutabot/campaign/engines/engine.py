@@ -25,17 +25,8 @@ from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.request import FORK, REPLAY
 from mutabot.campaign.reuse.keys import OutcomeWriter
-from mutabot.campaign.verdict import (
-    Death,
-    Run,
-    judged,
-    not_judged,
-    not_run,
-    refuse_others,
-    run_of,
-    without_tests,
-)
-from mutabot.errors import in_short
+from mutabot.campaign.verdict import Death, Run, judged, not_judged, not_run, run_of, without_tests
+from mutabot.errors import MutabotError, in_short
 from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
@@ -415,10 +406,11 @@ class _ForkParent:
         try:
             yield from self._take(event)
         except Exception as error:
-            refuse_others(error)
             if isinstance(event, events.ForkTestEnd | events.ForkDied) and event.mutant in self._open:
                 yield not_judged(self._open.pop(event.mutant).mutant, self._round, error, FORK)
                 return
+            if isinstance(error, MutabotError | OSError):
+                raise
             text = f"a report of the fork parent cannot be used: {type(error).__name__}: {error}"
             self._left.notes.append(text)
             self._is_off = self._is_off or isinstance(event, events.TestEnd)

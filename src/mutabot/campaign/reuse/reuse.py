@@ -17,15 +17,6 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, Tree, Was, tool_table
-from mutabot.campaign.reuse.snapshot import (
-    WRITTEN,
-    State,
-    counts_by_name,
-    digest_of,
-    is_note,
-    own_files,
-    read,
-)
 from mutabot.errors import JournalError, UsageError, in_short
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal, refuse_tracked
@@ -33,6 +24,8 @@ from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import SINCE, Kept, Since
 from mutabot.model import Mutant, Verdict
 from mutabot.repository import GitError, git, unignored
+
+from .snapshot import WRITTEN, State, counts_by_name, digest_of, is_note, own_files, read
 
 Pair = tuple[str, int]
 #: names that are given before it is said how many more there are
