@@ -185,6 +185,7 @@ class Sources:
     """
 
     root: Path
+    _names: dict[str, Mapping[Extent, SiteName]] = field(default_factory=dict)
     _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
 
     def places(self, sites: Iterable[SiteSeen]) -> dict[int, Place]:
@@ -193,8 +194,9 @@ class Sources:
 
     def _place(self, seen: SiteSeen) -> Place:
         span = seen.span
-        names: Mapping[Extent, SiteName] = self._in(span.file, front_end_of(span.file).names) or {}
-        text, occurrence = names.get(_extent(span), SiteName(f"line {span.line}", 1))
+        if span.file not in self._names:
+            self._names[span.file] = self._in(span.file, front_end_of(span.file).names) or {}
+        text, occurrence = self._names[span.file].get(_extent(span), SiteName(f"line {span.line}", 1))
         site = Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
         return Place(site, seen.operation, seen.pattern)
 
