@@ -19,7 +19,7 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from mutabot.report.terminal.progress import make_progress
+from mutabot.report.terminal.console import make_progress
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign

@@ -89,7 +89,7 @@ TRAVELS = {
 #: steps that are on other ways as well: to be called after the step before is all that is asked of them
 ON_MANY_WAYS = {
     "model.event_file.unsealed", "runtime.event_file.EventFile.send",
-    "report.terminal.progress.Lines.advance",
+    "report.terminal.console.Lines.advance",
     "config.document.Document.read",
 }  # fmt: skip
 

@@ -9,28 +9,39 @@ take longer than all the rest of the campaign, they are left out at first. A mut
 as a survivor after tests were left out is run with all of them before it counts. Of those that are let
 through, so many are run again with the whole suite, drawn at random, as at most double the campaign. If that
 notices one, all are run.
+
+Of ladders, as few runs are made as it takes to find their thresholds. The first round of a ladder is
+bisected. Each later one begins with both ends of its bracket, and is bisected where these disagree with it.
+What bisection runs always fits some threshold, so it can never see a larger fault that is missed: one more
+run a round, the guard, looks elsewhere. It is the largest magnitude first, then whichever was run least
+often. At the first violation the whole ladder is run in all rounds. A magnitude that the robot refuses bounds
+the search like one that is noticed. One that says nothing is passed over. All ladders of a campaign are
+searched at once, in waves, so that one fork parent serves the faults of a round. The first round comes first;
+the others, which begin with what it found, run side by side.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import accumulate
+from random import Random
 
 from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.faults.demanded import demanded_of, split_ladders
+from mutabot.campaign.faults.demanded import Ladders, demanded_of, split_ladders
 from mutabot.campaign.plan import shuffled
 from mutabot.campaign.request import REPLAY
 from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.campaign.reuse.reuse import Reused
-from mutabot.campaign.search import run_ladders
 from mutabot.config.options import in_words
 from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import BUDGET, CONFIRMATION, Budgeted, is_wrong, run_short
 from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.graded import MagnitudeResult, bracket_of, seen
 
 Pair = tuple[str, int]
 #: how a campaign ended whose budget was not enough
@@ -241,3 +252,146 @@ def _fixed(campaign: Campaign) -> float:
     rounds = range(request.rounds)
     once = sum(baseline.seconds(round, baseline.suite(round)) for round in rounds)
     return once * (request.repetitions + request.forks)
+
+
+# Ladders
+
+#: indices of a ladder's magnitudes, from the smallest
+Step = int
+
+
+@dataclass(slots=True)
+class LadderSearch:
+    """The search on one ladder.
+
+    Attributes:
+        size: how many magnitudes it has.
+        rounds: how many rounds there are.
+        seed: breaks ties among guards.
+        always: magnitudes that are run in every round, such as those that are demanded.
+        found: what was seen, by round and step.
+    """
+
+    size: int
+    rounds: int
+    seed: int = 0
+    always: frozenset[Step] = frozenset()
+    found: dict[int, dict[Step, MagnitudeResult]] = field(default_factory=dict)
+    _guards: set[int] = field(default_factory=set)
+
+    def take(self, round: int, step: Step, seen: MagnitudeResult) -> None:
+        """A magnitude was run in a round."""
+        self.found.setdefault(round, {})[step] = seen
+
+    @property
+    def is_violated(self) -> bool:
+        """Whether any round missed a larger fault where it noticed a smaller one."""
+        rows = ({float(step): one for step, one in row.items()} for row in self.found.values())
+        return any(bracket_of(row).is_violated for row in rows)
+
+    def due(self, round: int) -> set[Step]:
+        """The magnitudes to run next in a round; empty if nothing more is asked there."""
+        row = self.found.get(round, {})
+        left = set(range(self.size)) - row.keys()
+        if self.is_violated:
+            return left
+        always = self.always & left
+        if always:
+            return set(always)
+        ends = {step for step in self._guess(round) if 0 <= step < self.size}
+        wanted = (ends - row.keys()) or _middle(row, *_ends(row, self.size))
+        if wanted:
+            return wanted & left
+        return self._guard(round, row, left)
+
+    def _guess(self, round: int) -> tuple[Step, ...]:
+        """Both ends of the bracket of the first round; none in that round itself, or if it knows nothing."""
+        row = self.found.get(0, {})
+        if round == 0 or not any(one.is_valid for one in row.values()):
+            return ()
+        return _ends(row, self.size)
+
+    def _guard(self, round: int, row: Mapping[Step, MagnitudeResult], left: set[Step]) -> set[Step]:
+        """One magnitude more, the first time that nothing else is left to ask."""
+        if round in self._guards or not left:
+            return set()
+        self._guards.add(round)
+        runs = Counter(step for other in self.found.values() for step in other)
+        ties = Random(f"{self.seed}:{round}").random()
+        largest = self.size - 1
+        if largest in left and not runs[largest]:
+            return {largest}
+        least = min(runs[step] for step in left)
+        fewest = sorted(step for step in left if runs[step] == least)
+        return {fewest[int(ties * len(fewest))]}
+
+
+def _ends(row: Mapping[Step, MagnitudeResult], size: int) -> tuple[Step, Step]:
+    """The largest step that was missed, and the smallest above it that was noticed or refused.
+
+    −1 and ``size`` where there is none.
+    """
+    low = max((step for step, one in row.items() if one is MagnitudeResult.MISSED), default=-1)
+    bounds = (MagnitudeResult.NOTICED, MagnitudeResult.REFUSED)
+    high = min((step for step, one in row.items() if one in bounds and step > low), default=size)
+    return low, high
+
+
+def _middle(row: Mapping[Step, MagnitudeResult], low: Step, high: Step) -> set[Step]:
+    """The step in the middle between two, of those that were not run; none if all were."""
+    between = [step for step in range(low + 1, high) if step not in row]
+    return {between[len(between) // 2]} if between else set()
+
+
+def run_ladders(
+    campaign: Campaign,
+    ladders: Ladders,
+    writer: OutcomeWriter,
+    done: Collection[tuple[str, int]],
+    always: Mapping[str, Collection[float]],
+) -> None:
+    """Find the thresholds; every outcome is in the journal within a second.
+
+    ``done`` are the ids and rounds whose outcomes the journal holds already. ``always`` gives magnitudes that
+    are run in every round, by ladder.
+
+    Raises ControlError for a control that ends wrongly.
+    """
+    if not ladders:
+        return
+    kept = {
+        (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
+    }
+    request, searches = campaign.request, dict[str, LadderSearch]()
+    for name, mutants in ladders.items():
+        demanded = always.get(name, ())
+        steps = frozenset(step for step, one in enumerate(mutants) if one.magnitude in demanded)
+        searches[name] = LadderSearch(len(mutants), request.rounds, request.seed, steps)
+    found: list[Outcome] = []
+
+    def run(known: range) -> None:
+        """Run until nothing more is asked in these rounds; a violation asks in all of them."""
+        while trials := [
+            (searches[name], step, mutants[step], round)
+            for round in known
+            for name, mutants in ladders.items()
+            for step in sorted(searches[name].due(round))
+        ]:
+            found.clear()
+            new = [(mutant, round) for *_, mutant, round in trials if (mutant.id, round) not in kept]
+            run_trials(campaign, new, writer, found.append)
+            ended = {**kept, **{(one.mutant, one.round): one for one in found}}
+            for search, step, mutant, round in trials:
+                outcome = ended.get((mutant.id, round))
+                if outcome is not None:
+                    search.take(round, step, seen(outcome))
+
+    rounds = range(request.rounds)
+    run(rounds[:1])
+    run(rounds)
+    whole = len(rounds) * sum(map(len, ladders.values()))
+    runs = sum(len(row) for search in searches.values() for row in search.found.values())
+    campaign.progress.note(
+        f"thresholds: {len(ladders)} ladders in {len(rounds)} rounds took {runs} runs; all their magnitudes "
+        f"would have taken {whole}"
+    )
