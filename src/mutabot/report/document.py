@@ -128,8 +128,7 @@ def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
 
 
 def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
-    line = "state rounds ladders=all"
-    return {"format": FORMAT, **data_of.facts(found, line)}
+    return {"format": FORMAT, **data_of.facts(found, "state rounds ladders=all")}
 
 
 def _suggestions(found: Suggestions) -> dict[str, Any]:

@@ -164,18 +164,13 @@ def groups_of(
     for outcome in outcomes:
         if outcome.mutant in key_of:
             found[key_of[outcome.mutant]].append(outcome)
-    return tuple(
-        _group(family, role, sizes[family, role], those, rounds, drawing)
-        for (family, role), those in found.items()
-    )
-
-
-def _group(
-    family: str, role: str, size: int, outcomes: Iterable[Outcome], rounds: int, drawing: Drawing | None
-) -> Group:
-    stratum = drawing.stratum(family, role) if drawing is not None and drawing.sample is not None else None
-    population = stratum.population if stratum is not None else None
-    return Group(family, role, size, RoundScores.of(outcomes, rounds, population=population), population)
+    groups = []
+    for (family, role), those in found.items():
+        stratum = drawing.stratum(family, role) if drawing is not None else None
+        population = stratum.population if stratum is not None else None
+        scores = RoundScores.of(those, rounds, population=population)
+        groups.append(Group(family, role, sizes[family, role], scores, population))
+    return tuple(groups)
 
 
 def _mean(scores: Sequence[float | None]) -> float | None:
