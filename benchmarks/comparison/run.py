@@ -19,8 +19,6 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from mutabot.report.terminal.console import make_progress
-
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_of
@@ -29,7 +27,7 @@ from mutabot.faults import known_families
 from mutabot.journal.files import HOME
 from mutabot.journal.journal import JournalReader
 from mutabot.report.document import dumps
-from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.console import make_console, make_progress
 from mutabot.results.results import Results, read_results
 
 from . import without_checks
