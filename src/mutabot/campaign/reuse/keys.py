@@ -447,7 +447,7 @@ def _lines(text: str) -> tuple[int, ...]:
 def _names(was: Was) -> dict[str, set[str] | None]:
     """The names of the units that were executed; None for a file of which all counts."""
     files = {name: (was.found_in.file(name), lines) for name, lines in (was.executed or {}).items()}
-    return {name: file and file.names_at(lines) for name, (file, lines) in files.items()}
+    return {name: None if file is None else file.names_at(lines) for name, (file, lines) in files.items()}
 
 
 def _differing(names: Mapping[str, set[str] | None], old: Tree, new: Tree) -> list[str]:
