@@ -49,7 +49,7 @@ _REACHING, _SUITE, _UNTIL = "which tests reach it", "which tests there are", "th
 _ASIDE = "which tests are set aside"
 
 
-class Tree:
+class SourceTree:
     """The Python files of a project at one moment.
 
     Args:
@@ -75,7 +75,7 @@ class Tree:
         files = {name: self.file(name) for name in self.digests}
         return {name: file.said if file is not None else None for name, file in files.items()}
 
-    def moved(self, text: str, new: Tree) -> str | None:
+    def moved(self, text: str, new: SourceTree) -> str | None:
         """A text with the places that it names as they are in a new tree; None if one of them is gone."""
         gone = False
 
@@ -116,8 +116,8 @@ class Was:
     common: Parts | None
     place: Parts | None
     own: str
-    tree: Tree
-    found_in: Tree
+    tree: SourceTree
+    found_in: SourceTree
     executed: Executed | None
     notes: Parts
 
@@ -162,7 +162,7 @@ class Dependencies:
         self._made: dict[tuple[int, ...], tuple[tuple[object, ...], list[str]]] = {}
         self._groups: dict[tuple[str, ...], tuple[str, ...]] = {}
         code = {name: digest for name, digest in self.files.items() if name in self.texts}
-        self.tree = Tree(code, lambda name, digest: self.texts.get(name))
+        self.tree = SourceTree(code, lambda name, digest: self.texts.get(name))
         self._tree = self._stored(code)
         self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self.texts},
@@ -193,7 +193,7 @@ class Dependencies:
         self,
         key: str,
         parts: Callable[[str], Parts | None],
-        tree: Callable[[str], Tree],
+        tree: Callable[[str], SourceTree],
     ) -> Was:
         """What an outcome with this key depended on.
 
@@ -361,7 +361,7 @@ class Dependencies:
             found += [f"{file.shown(unit)} is executed now" for unit in sorted(new)]
         return found
 
-    def _names_of_all(self, tree: Tree, tests: Iterable[str]) -> dict[str, set[str] | None]:
+    def _names_of_all(self, tree: SourceTree, tests: Iterable[str]) -> dict[str, set[str] | None]:
         """All units that there were or are, bar those of other tests."""
         own = {(self.file_of(test), _function_of(test)) for test in tests}
 
@@ -375,7 +375,7 @@ class Dependencies:
             found[name] = {unit for file in files for unit in file.said if counts(name, unit)}
         return found
 
-    def is_of(self, test: str, tree: Tree) -> bool:
+    def is_of(self, test: str, tree: SourceTree) -> bool:
         """Whether a test of now was there in a tree; one that is no function is taken for that."""
         file, name = self.file_of(test), _function_of(test)
         now, then = self.tree.file(file), tree.file(file)
@@ -450,7 +450,7 @@ def _names(was: Was) -> dict[str, set[str] | None]:
     return {name: None if file is None else file.names_at(lines) for name, (file, lines) in files.items()}
 
 
-def _differing(names: Mapping[str, set[str] | None], old: Tree, new: Tree) -> list[str]:
+def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: SourceTree) -> list[str]:
     """Which of these units say something else in two trees, in words; what is new last."""
     found, made = [], []
     for name in sorted(names):

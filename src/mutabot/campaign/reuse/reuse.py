@@ -16,7 +16,7 @@ from pathlib import Path
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.reuse.keys import Dependencies, Tree, Was, tool_table
+from mutabot.campaign.reuse.keys import Dependencies, SourceTree, Was, tool_table
 from mutabot.errors import JournalError, UsageError, in_short
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal, refuse_tracked
@@ -44,7 +44,7 @@ class Earlier:
         self.kept = journal.found()
         self._now, self._journal = now, journal
         parts = cache(journal.parts)
-        tree = cache(lambda digest: Tree(parts(digest) or {}, lambda name, text: journal.text(text)))
+        tree = cache(lambda digest: SourceTree(parts(digest) or {}, lambda name, text: journal.text(text)))
         #: what an outcome with this key depended on
         self.was = cache(lambda key: now.was(key, parts, tree))
 
@@ -326,7 +326,7 @@ def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependen
     own = own_files(campaign.request)
     files = digests_then({**now.files, **{name: digest for name, digest in gone.items() if name not in own}})
     texts = {name: revision.read(root / name) or b"" for name in files if name.endswith(".py")}
-    tree = Tree({name: files[name] for name in texts}, lambda name, digest: texts[name])
+    tree = SourceTree({name: files[name] for name in texts}, lambda name, digest: texts[name])
     absent = {test for _, test in campaign.baseline.ends if not now.is_of(test, tree)}
     state = State(files, digests_then(now.notes), texts)
     return Dependencies(campaign.request, campaign.baseline, state, revision.read, absent)
