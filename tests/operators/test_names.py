@@ -19,13 +19,11 @@ ROOMS = {"operators"}
 NAMES = {*operators.names(), *operators_of_packages(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
-    "opposite": {"init", "config/vocabulary"},
+    "opposite": {"config/vocabulary"},
     "noise": {"config/vocabulary"},
     "skip": {"cli"},
     "reverse": {"campaign/baseline/writes.py"},  # a method of lists
-    "drop": {"init"},
-    "delay": {"init"},
-    "offset": {"init", "model"},  # what a demand means that names none
+    "offset": {"model"},  # what a demand means that names none
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)

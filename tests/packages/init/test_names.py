@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from mutabot.config.vocabulary import load
-from mutabot.init.messages import MessagePlace, entries, meaning
-from mutabot.init.observe import merged
-from mutabot.init.text import entry_text, vocabulary_text
 from mutabot.model.operation import Form
 from mutabot.model.watched import Use, Values, WatchedCalls, WatchedPart
 from mutabot.runtime.watching.values import look, type_of
+from mutabot_init.messages import MessagePlace, entries, meaning
+from mutabot_init.observe import merged
+from mutabot_init.text import entry_text, vocabulary_text
 
 HEADER = "std_msgs/Header"
 POSE, POINT, ROTATION = "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Quaternion"

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from mutabot.model import Mutant, Role, Site, Span
-from mutabot.suggest.checks import candidates
-from mutabot.suggest.project import PlaceInTest
-from mutabot.suggest.readings import ORACLE, PROBE, Measured, ReadExpression
-from mutabot.suggest.suggest import why_unsolved
+from mutabot_suggest.checks import candidates
+from mutabot_suggest.project import PlaceInTest
+from mutabot_suggest.readings import ORACLE, PROBE, Measured, ReadExpression
+from mutabot_suggest.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
 MUTANT = Mutant(1, "robot", "skip", SITE, "robot:go", None, None, "", "arm.go: do nothing")

@@ -17,8 +17,8 @@ from .projects import STYLES, TESTS, found_by, make, passes, patched
 SUGGEST = ["suggest", "--seeds", "5"]
 
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "suggest.md"
-PROJECTS = Path(__file__).parents[1] / "suites" / "projects"
+DOCUMENT = Path(__file__).parents[3] / "docs" / "suggest.md"
+PROJECTS = Path(__file__).parents[2] / "suites" / "projects"
 
 
 def survivors(found: dict[str, Any]) -> set[str]:

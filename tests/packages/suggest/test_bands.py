@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from mutabot.suggest.checks import _ReadAtEnd, _stated, band_of, digits_of, readable, unseen
-from mutabot.suggest.project import PlaceInTest
-from mutabot.suggest.readings import ReadExpression
-from mutabot.suggest.suggest import chosen_of
+from mutabot_suggest.checks import _ReadAtEnd, _stated, band_of, digits_of, readable, unseen
+from mutabot_suggest.project import PlaceInTest
+from mutabot_suggest.readings import ReadExpression
+from mutabot_suggest.suggest import chosen_of
 
 
 def test_hardly_any_further_run_of_the_original_lies_outside() -> None:

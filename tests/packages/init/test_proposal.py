@@ -13,14 +13,15 @@ from typing import Any
 
 import pytest
 
+import mutabot_init.propose
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError
-from mutabot.init import propose
-from mutabot.init.guess import NameContext, guess_argument, guess_elements, guess_reading
-from mutabot.init.words import words_of
 from mutabot.model import Kind, Mode
 from mutabot.model.watched import WatchedPart
+from mutabot_init.guess import NameContext, guess_argument, guess_elements, guess_reading
+from mutabot_init.propose import propose
+from mutabot_init.words import words_of
 
 ROBOT = '''
 from dataclasses import dataclass
@@ -160,7 +161,7 @@ def test_the_proposal_loads_and_names_program_oracle_and_tests(proposed: tuple[P
 def test_what_a_vocabulary_would_not_take_is_a_comment(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    module, line = sys.modules["mutabot.init.propose"], 'call = "robot:Base.home"'
+    module, line = mutabot_init.propose, 'call = "robot:Base.home"'
     loads = module._loads
     monkeypatch.setattr(module, "_loads", lambda text: line not in text.splitlines() and loads(text))
     told = "\n".join(propose(project))

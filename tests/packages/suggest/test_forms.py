@@ -9,10 +9,10 @@ import pytest
 from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
-from mutabot.suggest.checks import ProposedCheck
-from mutabot.suggest.project import OTHER, ProjectFiles, place_of
-from mutabot.suggest.readings import ORACLE, PROBE, ReadExpression, readings_at
-from mutabot.suggest.suggest import texts_with
+from mutabot_suggest.checks import ProposedCheck
+from mutabot_suggest.project import OTHER, ProjectFiles, place_of
+from mutabot_suggest.readings import ORACLE, PROBE, ReadExpression, readings_at
+from mutabot_suggest.suggest import texts_with
 
 from .projects import STYLES, make, passes, patched
 

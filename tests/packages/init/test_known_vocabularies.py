@@ -14,7 +14,7 @@ import pytest
 from mutabot.campaign.check import check
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
-from mutabot.init import propose
+from mutabot_init.propose import propose
 from tests.campaign.project import Quiet, request_for
 
 BULLET = """
