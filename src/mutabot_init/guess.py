@@ -11,8 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model.watched import WatchedPart
-
+from .watched import WatchedPart
 from .words import (
     DIRECTIONS,
     GRIPPER,

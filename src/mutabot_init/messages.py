@@ -12,9 +12,9 @@ from typing import Any
 
 from mutabot.config.vocabulary.schema import FORMS, SIDES, Sides
 from mutabot.model.operation import Form
-from mutabot.model.watched import Use, Values, WatchedPart
 
 from .guess import Guess, NameContext, Table, guess_argument, guess_elements, guess_reading
+from .watched import Use, Values, WatchedPart
 from .words import GRIPPER, READERS, VERBS, words_of
 
 Meant = dict[str, Guess]

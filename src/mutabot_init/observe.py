@@ -18,9 +18,9 @@ from typing import Any
 from mutabot.execution.processes import command, kill_group
 from mutabot.extensions import libraries, told_to_processes
 from mutabot.model.codec import from_data
-from mutabot.model.watched import WATCH_VARIABLE, Use, Values, WatchedCallable, WatchedCalls
 
 from .layout import Layout
+from .watched import WATCH_VARIABLE, Use, Values, WatchedCallable, WatchedCalls
 
 #: seconds that the tests may take; what was seen by then counts
 LIMIT = 180.0
@@ -34,7 +34,7 @@ def observe(layout: Layout, limit: float = LIMIT) -> WatchedCalls:
         folder = Path(name)
         order, output, log = folder / "watch.json", folder / "seen.json", folder / "log.txt"
         order.write_text(json.dumps(_order(layout, output)), encoding="utf-8")
-        own = ["-p", "mutabot.runtime.watching.plugin", "--assert=plain"]
+        own = ["-p", "mutabot_init.watching.plugin", "--assert=plain"]
         words = [*command(layout.arguments, folder), *own]
         overdue = _wait(words, layout.root, order, log, limit)
         said = log.read_text(encoding="utf-8", errors="replace")

@@ -10,10 +10,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model.watched import Command, WatchedCallable, WatchedPart
-
 from .guess import Guess, NameContext, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
+from .watched import Command, WatchedCallable, WatchedPart
 from .words import COMMANDS, GRIPPER, HOUSEKEEPING, OPPOSITES, READERS, REPLIES, SETUP, TALK, words_of
 
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)

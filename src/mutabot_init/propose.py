@@ -12,13 +12,13 @@ from mutabot.config.vocabulary import load
 from mutabot.config.vocabulary.load import shipped
 from mutabot.errors import ConfigurationError, UsageError
 from mutabot.model import ANY, Vocabulary
-from mutabot.model.watched import WatchedCallable
 
 from .layout import Layout, compared_with, imported_modules, look
 from .messages import MessageEntry, entries
 from .observe import LIMIT, observe
 from .operations import Proposal, commands_of, proposals, tells_commands
 from .text import counted, questions_in, value_text, vocabulary_text
+from .watched import WatchedCallable
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
 #: vocabularies of environments that are reached through the wrappers of another one

@@ -9,11 +9,11 @@ import pytest
 
 from mutabot.config.vocabulary import load
 from mutabot.model.operation import Form
-from mutabot.model.watched import Use, Values, WatchedCalls, WatchedPart
-from mutabot.runtime.watching.values import look, type_of
 from mutabot_init.messages import MessagePlace, entries, meaning
 from mutabot_init.observe import merged
 from mutabot_init.text import entry_text, vocabulary_text
+from mutabot_init.watched import Use, Values, WatchedCalls, WatchedPart
+from mutabot_init.watching.values import look, type_of
 
 HEADER = "std_msgs/Header"
 POSE, POINT, ROTATION = "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Quaternion"

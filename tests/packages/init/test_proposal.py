@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 import tomllib
+import venv
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -18,9 +19,9 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError
 from mutabot.model import Kind, Mode
-from mutabot.model.watched import WatchedPart
 from mutabot_init.guess import NameContext, guess_argument, guess_elements, guess_reading
 from mutabot_init.propose import propose
+from mutabot_init.watched import WatchedPart
 from mutabot_init.words import words_of
 
 ROBOT = '''
@@ -702,6 +703,26 @@ def test_programs_that_the_tests_start_as_processes_are_watched_there(tmp_path: 
     assert "calls 1 callable," in told
     (found,) = operations(tmp_path).values()
     assert (found.target, [one.name for one in found.arguments]) == ("robot:Arm.move_by", ["x"])
+
+
+def test_a_process_of_an_interpreter_that_has_no_mutabot_is_watched_as_well(tmp_path: Path) -> None:
+    venv.create(tmp_path / "bare", symlinks=True)
+    python = tmp_path / "bare" / "bin" / "python"
+    alone = subprocess.run([python, "-Ic", "import mutabot_init"], stderr=subprocess.PIPE, check=False)
+    assert b"No module named 'mutabot_init'" in alone.stderr
+    files = {
+        "robot.py": "class Arm:\n    def move_by(self, x=0.0): ...\n",
+        "mission.py": "from robot import Arm\n\nArm().move_by(x=0.5)\n",
+        "tests/test_mission.py": f"""
+            import subprocess
+
+            def test_mission():
+                subprocess.run([{str(python)!r}, "mission.py"], check=True)
+        """,
+    }
+    told = "\n".join(propose(write(tmp_path / "project", files)))
+    assert "1 passed; the program calls 1 callable," in told
+    assert set(operations(tmp_path / "project")) == {"robot:Arm.move_by"}
 
 
 STAND_INS = {

@@ -11,10 +11,10 @@ import pytest
 from mutabot.campaign.check import check
 from mutabot.config.vocabulary import load
 from mutabot.model import Kind
-from mutabot.model.watched import WatchedCallable
-from mutabot.runtime.watching.callee import any_method
-from mutabot.runtime.watching.watch import _command, _Seen
 from mutabot_init.propose import propose
+from mutabot_init.watched import WatchedCallable
+from mutabot_init.watching.callee import any_method
+from mutabot_init.watching.watch import _command, _Seen
 from tests.campaign.project import Quiet, request_for
 
 FIELDBUS = """

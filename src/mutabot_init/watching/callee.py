@@ -18,8 +18,8 @@ from typing import Any
 from mutabot.model import ANY
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, signature_of, takes_anything
-from mutabot.model.watched import WatchedCallable
 from mutabot.runtime.targets.target import NotFoundError, resolve
+from mutabot_init.watched import WatchedCallable
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
 _OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from mutabot.model.quantity import seconds_of
-from mutabot.model.watched import Values, WatchedPart
+from mutabot_init.watched import Values, WatchedPart
 
 #: different values that are kept of each part, elements of a sequence, parts of a value
 MOST_VALUES, MOST_ELEMENTS, MOST_PARTS = 8, 16, 64

@@ -11,11 +11,11 @@ from unittest import mock
 import pytest
 
 from mutabot.model import Role
-from mutabot.model.watched import WatchedCallable
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import CallSite
-from mutabot.runtime.watching.callee import Callee, meant_by
-from mutabot.runtime.watching.watch import Watch
+from mutabot_init.watched import WatchedCallable
+from mutabot_init.watching.callee import Callee, meant_by
+from mutabot_init.watching.watch import Watch
 
 OVERLOADED = """moveJ(*args, **kwargs)
 Overloaded function.

@@ -16,7 +16,7 @@ from mutabot.model.codec import to_data
 from mutabot.model.event_file import FOLDER
 from mutabot.runtime.processes.environment import carry, write_wake
 from mutabot.runtime.program_text.loading import hook_script
-from mutabot.runtime.watching.watch import Watch
+from mutabot_init.watching.watch import Watch
 
 _ORDER = "order.json"
 _SEEN = ".seen.json"

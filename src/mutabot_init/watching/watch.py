@@ -23,7 +23,6 @@ from typing import Any
 from mutabot.model import Role, Span
 from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.path import class_name
-from mutabot.model.watched import Command, Use, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
 from mutabot.runtime.interception.dispatcher import Untracked, is_under_way
 from mutabot.runtime.interception.trace import Locator
@@ -31,8 +30,9 @@ from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
 from mutabot.runtime.targets.messages import Messages
 from mutabot.runtime.targets.target import NOWHERE, Handler, Where
-from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
-from mutabot.runtime.watching.values import look, plain
+from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
+from mutabot_init.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
+from mutabot_init.watching.values import look, plain
 
 #: calls of one callable whose values are looked at; more are only counted
 MOST_CALLS = 300

@@ -1,6 +1,6 @@
 """Watching one plain run of the suite for ``mutabot init``: which calls the program makes, with which values.
 
-A pytest plug-in of its own: ``-p mutabot.runtime.watching.plugin``, told by the environment what to look at.
+A pytest plug-in of its own: ``-p mutabot_init.watching.plugin``, told by the environment what to look at.
 What it found is written to a file as JSON, together with what processes below the tests have seen.
 """
 
@@ -15,10 +15,10 @@ import pytest
 from mutabot import extensions
 from mutabot.errors import MutabotError
 from mutabot.model.codec import to_data
-from mutabot.model.watched import WATCH_VARIABLE
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.watching.elsewhere import read, seen_elsewhere, watch_elsewhere, write
-from mutabot.runtime.watching.watch import Watch
+from mutabot_init.watched import WATCH_VARIABLE
+from mutabot_init.watching.elsewhere import read, seen_elsewhere, watch_elsewhere, write
+from mutabot_init.watching.watch import Watch
 
 #: least seconds between two writings of what was found so far
 _PAUSE = 2.0

@@ -13,14 +13,14 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from mutabot.model.watched import Values
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import call_sites
 from mutabot.runtime.program_text.call_sites import CALLS
-from mutabot.runtime.watching.values import look
-from mutabot.runtime.watching.watch import Watch
+from mutabot_init.watched import Values
+from mutabot_init.watching.values import look
+from mutabot_init.watching.watch import Watch
 
-ORDINARY = Path(__file__).parents[2] / "packages" / "source" / "ordinary.py"
+ORDINARY = Path(__file__).parents[2] / "source" / "ordinary.py"
 
 
 def run(source: str, name: str, monkeypatch: pytest.MonkeyPatch) -> tuple[ModuleType, Watch]:
