@@ -282,7 +282,7 @@ def equal(style: str, text: str, value: str) -> str:
     return f"self.assertEqual({text}, {value})" if style == UNITTEST else f"assert {text} == {value}"
 
 
-_AT_END = "from mutabot.runtime.observation.noted import at_end as _mutabot_at_end"
+_AT_END = "from mutabot_suggest.noted import at_end as _mutabot_at_end"
 
 
 def edited(project: ProjectFiles, additions: Iterable[Addition]) -> dict[str, str]:

@@ -134,7 +134,7 @@ def _calls(operation: Operation) -> Iterator[str]:
 
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
-_NOTED = "mutabot.runtime.observation.noted"
+_NOTED = "mutabot_suggest.noted"
 _PROBE = f"{_NOTED}:values"
 
 #: what was read at the end of one test: expression to number, text or truth value
