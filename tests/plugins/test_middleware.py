@@ -207,6 +207,7 @@ def test_its_messages_are_mutated(tests: str, operators: tuple[str, ...], site: 
     }
 
 
+@pytest.mark.needs("init")
 def test_init_proposes_its_topics(site: Path, project: Path) -> None:
     for name in ("mutabot.toml", "robot.toml"):
         (project / name).unlink()

@@ -82,7 +82,7 @@ def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str
     """
     from mutabot.extensions import packages  # noqa: PLC0415  # of no use to processes below the tests
 
-    own = sorted({*packages(), "wrapt"})
+    own = sorted({*packages(), join.partition(".")[0], "wrapt"})
     lines = [
         f"join {join}",
         *(f"path {place}" for place in _folders_of(own)),
