@@ -286,10 +286,7 @@ class SilentLimit(ValueOperator):
     name = "silent-limit"
     family = CATALOGUE
     of_read = False
-    examples = (
-        changed(_LIMITED, 100, 90),
-        unchanged(_LIMITED, 50, "it is within"),
-    )
+    examples = (changed(_LIMITED, 100, 90), unchanged(_LIMITED, 50, "it is within"))
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         is_number = quantity.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)

@@ -35,10 +35,7 @@ class Skip(CommandOperator):
     needs = frozenset({Need.IDLE})
     does_nothing = True
     fault = "do nothing"
-    examples = (
-        Example(Subject(GRIP), {"position": 1}, performed=()),
-        Example(Subject(_HOME), performed=()),
-    )
+    examples = (Example(Subject(GRIP), {"position": 1}, performed=()), Example(Subject(_HOME), performed=()))
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         return idle_of(call)
@@ -76,11 +73,7 @@ class Opposite(CommandOperator):
         changed(_LAMP, False, True),
         changed(_OPEN_TO, 85.0, 0.0),
         Example(Subject(CLOSE), performed=({"reversed": True},)),
-        Example(
-            Subject(_SEND, _LIFT),
-            {"height": 5},
-            performed=({"height": 5, "reversed": True},),
-        ),
+        Example(Subject(_SEND, _LIFT), {"height": 5}, performed=({"height": 5, "reversed": True},)),
         unchanged(_OPEN_TO, 40.0, "half open has no opposite"),
         unchanged(GRIP, 0.5, "neither of the two states"),
         unchanged(_FAN, "slow", "three states have no opposite"),
@@ -201,10 +194,7 @@ class HalfWait(ValueOperator):
     family = CATALOGUE
     kinds = frozenset({Kind.DURATION})
     of_read = False
-    examples = (
-        changed(_WAIT, 0.8, 0.4),
-        unchanged(_WAIT, 0.0, "there is nothing to shorten"),
-    )
+    examples = (changed(_WAIT, 0.8, 0.4), unchanged(_WAIT, 0.0, "there is nothing to shorten"))
 
     def change(self, value: Value, context: Context) -> Value | None:
         return map_numbers(value, lambda number: like(number, number / 2.0))
@@ -214,10 +204,7 @@ class NoWait(HalfWait):
     """A wait is left out."""
 
     name = "no-wait"
-    examples = (
-        changed(_WAIT, 0.8, 0.0),
-        unchanged(_WAIT, 0.0, "there is nothing to shorten"),
-    )
+    examples = (changed(_WAIT, 0.8, 0.0), unchanged(_WAIT, 0.0, "there is nothing to shorten"))
 
     def change(self, value: Value, context: Context) -> Value | None:
         return map_numbers(value, lambda number: like(number, 0.0))

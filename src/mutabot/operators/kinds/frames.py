@@ -173,12 +173,7 @@ class BaseForTool(ValuesOperator):
     family = CATALOGUE
     needs = frozenset({Need.PLACE})
     examples = (
-        changed(
-            _MOVE_BY,
-            {"x": 0.1, "y": 0.0, "z": 0.2},
-            {"x": 0.0, "y": 0.1, "z": -0.2},
-            current=_DOWN,
-        ),
+        changed(_MOVE_BY, {"x": 0.1, "y": 0.0, "z": 0.2}, {"x": 0.0, "y": 0.1, "z": -0.2}, current=_DOWN),
         unchanged(
             _MOVE_BY,
             {"x": 0.1, "y": 0.0, "z": 0.2},

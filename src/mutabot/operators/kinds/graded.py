@@ -146,12 +146,7 @@ class Offset(NumberOperator):
     examples = (
         changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm")),
         changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm")),
-        changed(
-            _ORIENT,
-            [0.0, 0.0, 30.0],
-            [0.0, 0.0, 50.0],
-            size=("z+", 20.0, "deg"),
-        ),
+        changed(_ORIENT, [0.0, 0.0, 30.0], [0.0, 0.0, 50.0], size=("z+", 20.0, "deg")),
         unchanged(_LIFT, 0.45, "0.55 m is outside the range [0, 0.5]", size=("+", 100.0, "mm")),
     )
 
@@ -173,12 +168,7 @@ class Scale(NumberOperator):
     name = "scale"
     examples = (
         changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
-        changed(
-            _FEEL,
-            0.3,
-            0.27,
-            size=("-", 10.0, "percent"),
-        ),
+        changed(_FEEL, 0.3, 0.27, size=("-", 10.0, "percent")),
         unchanged(_MOVE, 0.0, "nothing is no share of", size=("+", 5.0, "percent")),
     )
 
@@ -239,13 +229,7 @@ class Drift(NumberOperator):
     needs = frozenset({Need.CLOCK})
     of_written = False
     examples = (
-        changed(
-            _FEEL,
-            0.3,
-            0.32,
-            size=("+", 2.0, "mm/s"),
-            time=10.0,
-        ),
+        changed(_FEEL, 0.3, 0.32, size=("+", 2.0, "mm/s"), time=10.0),
         unchanged(_FEEL, 0.3, "no time has passed yet", size=("-", 2.0, "mm/s")),
     )
 

@@ -359,11 +359,7 @@ class Negate(ValueOperator):
     examples = (
         changed(LOCATE, 0.55, -0.55),
         changed(_IN_MM, 12, -12),
-        changed(
-            _LOOK,
-            [0.8, 0.6, 0.0, 0.0],
-            [0.8, -0.6, 0.0, 0.0],
-        ),
+        changed(_LOOK, [0.8, 0.6, 0.0, 0.0], [0.8, -0.6, 0.0, 0.0]),
         unchanged(LOCATE, 0.0, "a zero has no sign"),
         unchanged(LOCATE, {}, "the reading has no such part this time"),
     )

@@ -158,13 +158,7 @@ class WrongName(_Setting):
     variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
     examples = (
         changed(SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
-        changed(
-            ADVERTISE,
-            "target",
-            "/target",
-            _GLOBAL,
-            quantity="name",
-        ),
+        changed(ADVERTISE, "target", "/target", _GLOBAL, quantity="name"),
         unchanged(CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
         unchanged(SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
     )
