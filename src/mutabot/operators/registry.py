@@ -22,18 +22,6 @@ _KINDS = Path(__file__).parent / "kinds"
 _ORDER = """
     reverse by-to skip repeat opposite negate noise misread
     offset scale sensor-noise drift quantise deadband lag early
-    cm-for-m mm-for-m inch-for-mm deg-for-rad ms-for-s
-    axis-swap joint-order left-handed base-for-tool tcp-missing tcp-doubled joint-turn
-    euler-order quaternion-order quaternion-sign
-    swap-next previous-target half-wait no-wait lost-command double-command late-grip early-release
-    unreported-refusal
-    dropout old-reading stuck-reading spike saturated-reading swapped-channels wrong-object confused-label
-    late-reading
-    speed-override force-override weak-grip wrong-payload partial-opening silent-limit
-    drop duplicate stale delay reorder
-    wrong-frame shift-stamp empty-stamp wrong-name short-queue flip-latch wrong-reliability wrong-durability
-    wrong-deadline wrong-period use-default
-    kill-node restart-node cancel-goal lose-answer jump-clock
 """
 
 
@@ -66,8 +54,8 @@ def load_all() -> list[Operator]:
 
 
 def preload(wanted: Iterable[str] | None = None) -> None:
-    """Load these operators, or all built-in ones; who needs one that cannot be loaded is told then."""
-    for name in built_in() if wanted is None else wanted:
+    """Load these operators, or all; who needs one that cannot be loaded is told then."""
+    for name in (*built_in(), *brought("operators")) if wanted is None else wanted:
         with suppress(OperatorError):
             operator(name)
 

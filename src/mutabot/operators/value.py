@@ -10,7 +10,6 @@ from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar, TypeVar
 
-from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import SAME_ORIENTATION, TURNED_ROUND, Value, is_same
 from mutabot.model.units import Quaternion, convert, distance, from_rotation_vector, inverse, product
@@ -195,42 +194,6 @@ def turned(
     return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
 
 
-class Exchange(ValuesOperator):
-    """Exchanges two values of one kind; the variant names the second."""
-
-    family = CATALOGUE
-
-    @abstractmethod
-    def pairs(self, whole: Subject) -> Iterable[tuple[Quantity, Quantity]]:
-        """The pairs of a call whose values could be exchanged."""
-
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
-        for one, other in self.pairs(whole):
-            yield replace(whole, quantity=one, variant=other.name.lstrip("."))
-
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        one, other = context.quantity.name, _other_of(context.subject).name
-        first, second = (given(values, name, context.subject) for name in (one, other))
-        return {one: second, other: first}
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        one, other = quantity_of(subject), _other_of(subject)
-        told = f"{label(one)} {one.text(before)} and {label(other)} {other.text(after)} exchanged"
-        return told if subject.is_written else f"reads {told}"
-
-
-def _other_of(subject: Subject) -> Quantity:
-    """The second quantity of a pair."""
-    name = subject.variant.partition("+")[0]
-    return next(one for one in subject.side if one.name.lstrip(".") == name)
-
-
-def is_alike(one: Quantity, other: Quantity) -> bool:
-    """Whether the values of two quantities mean the same, but for where they stand."""
-    return (one.kind, one.unit, one.mode, one.frame) == (other.kind, other.unit, other.mode, other.frame)
-
-
 def is_number(value: Value) -> bool:
     """Whether a value is a plain number (numpy scalars included, truth values not)."""
     if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
@@ -276,13 +239,3 @@ def like(before: float, after: float) -> float:
 def within(value: float, limits: tuple[float, float] | None) -> float:
     """A number, or the end of the limits that is nearest to it."""
     return value if limits is None else min(max(value, limits[0]), limits[1])
-
-
-def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
-    """The ends of the middle share of what a quantity may be. Raises Unchanged if nobody knows its range."""
-    limits = quantity.range or quantity.clip
-    if limits is None:
-        raise Unchanged("the vocabulary gives no range")
-    low, high = limits
-    cut = (high - low) * (1.0 - share) / 2.0
-    return low + cut, high - cut

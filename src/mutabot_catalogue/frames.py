@@ -17,17 +17,17 @@ from mutabot.operators.examples import MOVE_TO, changed, reading, unchanged, wri
 from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_PASSED,
-    Exchange,
     ValueOperator,
     ValuesOperator,
     given,
-    is_alike,
     is_number,
     label,
     like,
     map_numbers,
     turned,
 )
+
+from .values import Exchange, is_alike
 
 _BASE, _TOOL = "base", "tool"
 _AXES = "xyz"
