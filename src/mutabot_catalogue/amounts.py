@@ -11,9 +11,9 @@ from mutabot.model.quantity import Value
 from mutabot.model.units import convert
 from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.operator import Context, Subject, quantity_of
-from mutabot.operators.value import ValueOperator, like, map_numbers, within
+from mutabot.operators.value import ValueOperator, map_numbers, within
 
-from .values import middle_of
+from .values import like, middle_of
 
 #: the robot, or the program, takes the number as if it were in the other unit
 _TAKEN = "taken"

@@ -13,7 +13,9 @@ from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, whole, writing
 from mutabot.operators.kinds.commands import other_end
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
-from mutabot.operators.value import ValueOperator, given, like, map_numbers
+from mutabot.operators.value import ValueOperator, given, map_numbers
+
+from .values import like
 
 #: seconds: as long as a pneumatic gripper takes to open or close
 _LATE = 0.5

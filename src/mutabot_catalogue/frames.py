@@ -22,12 +22,11 @@ from mutabot.operators.value import (
     given,
     is_number,
     label,
-    like,
     map_numbers,
     turned,
 )
 
-from .values import Exchange, is_alike
+from .values import Exchange, is_alike, like
 
 _BASE, _TOOL = "base", "tool"
 _AXES = "xyz"

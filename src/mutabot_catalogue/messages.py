@@ -9,13 +9,14 @@ from mutabot.families import MIDDLEWARE
 from mutabot.model import Call, CallFault, Proceed, Reply
 from mutabot.model.operation import COMING, WRITTEN, Form
 from mutabot.model.quantity import Value
-from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
+from mutabot.operators.command import CommandOperator, form_of
 from mutabot.operators.examples import whole
 from mutabot.operators.magnitudes import Magnitudes
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import CallOrReply
 
 from ._examples import CALL, CALL_TO, GOAL, PUBLISH, RECEIVE, TICK
+from .values import comes_by_itself
 
 _THIRD, _CHANCE = "every-3rd", "30%"
 _PROBABILITY = 0.3

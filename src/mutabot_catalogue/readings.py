@@ -12,7 +12,7 @@ from typing import ClassVar
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import MEASURED, WHOLE, Value
-from mutabot.operators.command import CommandOperator, comes_by_itself
+from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import changed, reading, unchanged, whole
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
@@ -20,13 +20,12 @@ from mutabot.operators.value import (
     ValueOperator,
     is_number,
     label,
-    like,
     map_numbers,
     next_of,
     within,
 )
 
-from .values import Exchange, is_alike, middle_of
+from .values import Exchange, comes_by_itself, is_alike, like, middle_of
 
 _NONE, _NAN = "none", "nan"
 _MEASURE = reading("laser:distance", Kind.DISTANCE, unit="m")

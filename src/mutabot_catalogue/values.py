@@ -1,4 +1,4 @@
-"""What several operators on values share: two values exchanged, and the middle of a range."""
+"""What several operators share: two values exchanged, the middle of a range, what comes by itself."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from dataclasses import replace
 
 from mutabot.families import CATALOGUE
 from mutabot.model import Operation, Pattern, Quantity
+from mutabot.model.operation import COMING
 from mutabot.model.quantity import Value
+from mutabot.operators.command import form_of
 from mutabot.operators.operator import Context, Subject, Unchanged, quantity_of
 from mutabot.operators.value import ValuesOperator, given, label
 
@@ -57,3 +59,14 @@ def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
     low, high = limits
     cut = (high - low) * (1.0 - share) / 2.0
     return low + cut, high - cut
+
+
+def like(before: float, after: float) -> float:
+    """A number in the type of the one in whose place it comes, where that loses nothing."""
+    is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
+    return int(after) if is_whole else after
+
+
+def comes_by_itself(operation: Operation) -> bool:
+    """Whether nobody asks for it: a message to a callback, a tick."""
+    return form_of(operation) in COMING

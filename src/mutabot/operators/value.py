@@ -230,12 +230,6 @@ def next_of(value: Value, quantity: Quantity, by: int = 1) -> Value:
     return values[(values.index(value) + by) % len(values)]
 
 
-def like(before: float, after: float) -> float:
-    """A number in the type of the one in whose place it comes, where that loses nothing."""
-    is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
-    return int(after) if is_whole else after
-
-
 def within(value: float, limits: tuple[float, float] | None) -> float:
     """A number, or the end of the limits that is nearest to it."""
     return value if limits is None else min(max(value, limits[0]), limits[1])
