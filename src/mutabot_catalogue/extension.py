@@ -1,121 +1,77 @@
-"""What this package brings to mutabot: two families of operators on calls.
-
-Their order is that of the documentation, and of the numbers of their mutants.
-"""
+"""What this package brings to mutabot: two families of operators on calls."""
 
 from __future__ import annotations
 
 from mutabot.extensions import INTERFACE, Extension
 
-#: the operators of each module, by their names
-_OPERATORS: tuple[tuple[str, dict[str, str]], ...] = (
-    (
-        "amounts",
-        {
-            "cm-for-m": "CentimetreForMetre",
-            "mm-for-m": "MillimetreForMetre",
-            "inch-for-mm": "InchForMillimetre",
-            "deg-for-rad": "DegreeForRadian",
-            "ms-for-s": "MillisecondForSecond",
-        },
-    ),
-    (
-        "frames",
-        {
-            "axis-swap": "AxisSwap",
-            "joint-order": "JointOrder",
-            "left-handed": "LeftHanded",
-            "base-for-tool": "BaseForTool",
-            "tcp-missing": "TcpMissing",
-            "tcp-doubled": "TcpDoubled",
-            "joint-turn": "JointTurn",
-            "euler-order": "EulerOrder",
-            "quaternion-order": "QuaternionOrder",
-            "quaternion-sign": "QuaternionSign",
-        },
-    ),
-    (
-        "commands",
-        {
-            "swap-next": "SwapNext",
-            "previous-target": "PreviousTarget",
-            "half-wait": "HalfWait",
-            "no-wait": "NoWait",
-            "lost-command": "LostCommand",
-            "double-command": "DoubleCommand",
-            "late-grip": "LateGrip",
-            "early-release": "EarlyRelease",
-            "unreported-refusal": "UnreportedRefusal",
-        },
-    ),
-    (
-        "readings",
-        {
-            "dropout": "Dropout",
-            "old-reading": "OldReading",
-            "stuck-reading": "StuckReading",
-            "spike": "Spike",
-            "saturated-reading": "SaturatedReading",
-            "swapped-channels": "SwappedChannels",
-            "wrong-object": "WrongObject",
-            "confused-label": "ConfusedLabel",
-            "late-reading": "LateReading",
-        },
-    ),
-    (
-        "amounts",
-        {
-            "speed-override": "SpeedOverride",
-            "force-override": "ForceOverride",
-            "weak-grip": "WeakGrip",
-            "wrong-payload": "WrongPayload",
-            "partial-opening": "PartialOpening",
-            "silent-limit": "SilentLimit",
-        },
-    ),
-    (
-        "messages",
-        {
-            "drop": "Drop",
-            "duplicate": "Duplicate",
-            "stale": "Stale",
-            "delay": "Delay",
-            "reorder": "Reorder",
-        },
-    ),
-    (
-        "settings",
-        {
-            "wrong-frame": "WrongFrame",
-            "shift-stamp": "ShiftStamp",
-            "empty-stamp": "EmptyStamp",
-            "wrong-name": "WrongName",
-            "short-queue": "ShortQueue",
-            "flip-latch": "FlipLatch",
-            "wrong-reliability": "WrongReliability",
-            "wrong-durability": "WrongDurability",
-            "wrong-deadline": "WrongDeadline",
-            "wrong-period": "WrongPeriod",
-            "use-default": "UseDefault",
-        },
-    ),
-    (
-        "messages",
-        {
-            "kill-node": "KillNode",
-            "restart-node": "RestartNode",
-            "cancel-goal": "CancelGoal",
-            "lose-answer": "LoseAnswer",
-            "jump-clock": "JumpClock",
-        },
-    ),
-)
+#: module, name and class of each, in the order of the documentation and of the numbers of their mutants
+_OPERATORS = """
+    amounts   cm-for-m            CentimetreForMetre
+    amounts   mm-for-m            MillimetreForMetre
+    amounts   inch-for-mm         InchForMillimetre
+    amounts   deg-for-rad         DegreeForRadian
+    amounts   ms-for-s            MillisecondForSecond
+    frames    axis-swap           AxisSwap
+    frames    joint-order         JointOrder
+    frames    left-handed         LeftHanded
+    frames    base-for-tool       BaseForTool
+    frames    tcp-missing         TcpMissing
+    frames    tcp-doubled         TcpDoubled
+    frames    joint-turn          JointTurn
+    frames    euler-order         EulerOrder
+    frames    quaternion-order    QuaternionOrder
+    frames    quaternion-sign     QuaternionSign
+    commands  swap-next           SwapNext
+    commands  previous-target     PreviousTarget
+    commands  half-wait           HalfWait
+    commands  no-wait             NoWait
+    commands  lost-command        LostCommand
+    commands  double-command      DoubleCommand
+    commands  late-grip           LateGrip
+    commands  early-release       EarlyRelease
+    commands  unreported-refusal  UnreportedRefusal
+    readings  dropout             Dropout
+    readings  old-reading         OldReading
+    readings  stuck-reading       StuckReading
+    readings  spike               Spike
+    readings  saturated-reading   SaturatedReading
+    readings  swapped-channels    SwappedChannels
+    readings  wrong-object        WrongObject
+    readings  confused-label      ConfusedLabel
+    readings  late-reading        LateReading
+    amounts   speed-override      SpeedOverride
+    amounts   force-override      ForceOverride
+    amounts   weak-grip           WeakGrip
+    amounts   wrong-payload       WrongPayload
+    amounts   partial-opening     PartialOpening
+    amounts   silent-limit        SilentLimit
+    messages  drop                Drop
+    messages  duplicate           Duplicate
+    messages  stale               Stale
+    messages  delay               Delay
+    messages  reorder             Reorder
+    settings  wrong-frame         WrongFrame
+    settings  shift-stamp         ShiftStamp
+    settings  empty-stamp         EmptyStamp
+    settings  wrong-name          WrongName
+    settings  short-queue         ShortQueue
+    settings  flip-latch          FlipLatch
+    settings  wrong-reliability   WrongReliability
+    settings  wrong-durability    WrongDurability
+    settings  wrong-deadline      WrongDeadline
+    settings  wrong-period        WrongPeriod
+    settings  use-default         UseDefault
+    messages  kill-node           KillNode
+    messages  restart-node        RestartNode
+    messages  cancel-goal         CancelGoal
+    messages  lose-answer         LoseAnswer
+    messages  jump-clock          JumpClock
+"""
 
 EXTENSION = Extension(
     interface=INTERFACE,
     operators={
-        name: f"mutabot_catalogue.{module}:{kind}"
-        for module, operators in _OPERATORS
-        for name, kind in operators.items()
+        name: f"{__package__}.{module}:{kind}"
+        for module, name, kind in map(str.split, _OPERATORS.strip().splitlines())
     },
 )
