@@ -17,19 +17,13 @@ from .command import CONTROLS
 from .operator import Operator
 
 _KINDS = Path(__file__).parent / "kinds"
-#: mutabot's own operators in the order of the documentation and of the numbers of their mutants; those that
-#: are not here come last
-_ORDER = """
-    reverse by-to skip repeat opposite negate noise misread
-    offset scale sensor-noise drift quantise deadband lag early
-"""
+#: files in the order of the documentation, and of the numbers of mutants; others come last
+_ORDER = ("motions", "commands", "readings", "graded")
 
 
 def built_in() -> list[str]:
     """Names of mutabot's own operators that make mutants, in the order of the documentation."""
-    places = {name: place for place, name in enumerate(_ORDER.split())}
-    found = (rule.name for module in _modules() for rule in _of_module(module))
-    return sorted(found, key=lambda name: (places.get(name, len(places)), name))
+    return [rule.name for module in _modules() for rule in _of_module(module)]
 
 
 def names() -> list[str]:
@@ -89,7 +83,7 @@ def _modules() -> dict[str, str]:
     """
     return {
         f"{__package__}.kinds.{module}": (_KINDS / f"{module}.py").read_text(encoding="utf-8")
-        for module in modules_in(_KINDS)
+        for module in sorted(modules_in(_KINDS), key=lambda one: (*_ORDER, one).index(one))
     }
 
 

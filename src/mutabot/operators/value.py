@@ -12,7 +12,7 @@ from typing import Any, ClassVar, TypeVar
 
 from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import SAME_ORIENTATION, TURNED_ROUND, Value, is_same
-from mutabot.model.units import Quaternion, convert, distance, from_rotation_vector, inverse, product
+from mutabot.model.units import Quaternion, distance, inverse
 
 from .magnitudes import Magnitudes, sized
 from .operator import Context, Operator, Subject, Unchanged, quantity_of
@@ -22,8 +22,6 @@ _NAMES = re.compile(r"[._]")
 #: why an operator leaves a call alone, or what it reads, that is without its value
 NOT_PASSED = "the call does not pass this argument"
 NOT_RETURNED = "the call does not return this value"
-#: why an operator that asks where the robot is leaves a call alone
-NOT_TOLD = "the position of the robot is not known yet"
 SAME = "the value would stay the same"
 
 
@@ -168,13 +166,6 @@ def _allowed(quantity: Quantity, value: Value) -> bool:
 def the_other_way(quantity: Quantity, value: Value) -> Value | None:
     """The inverse rotation, written like the value; the value itself where that is the same orientation."""
     return turned(quantity, value, inverse, TURNED_ROUND)
-
-
-def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
-    """The orientation turned by a random rotation vector of this standard deviation in each part."""
-    sigma = convert(deviation, quantity.unit or "rad", "rad")
-    turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
-    return turned(quantity, value, lambda orientation: product(turn, orientation))
 
 
 def turned(

@@ -300,30 +300,6 @@ _PAUSE = writing("cell:Cell.wait", "seconds", Kind.DURATION, unit="s", range=(0.
 _HOME = Operation("robot:Arm.home")
 
 
-class Early(NumberOperator):
-    """A wait is shorter, so that what comes next comes too early.
-
-    Where: waits: arguments of kind `duration`.
-
-    Stands for: A wait that was measured on a faster machine: {timing}.
-    """
-
-    name = "early"
-    directions = ("-",)
-    of_read = False
-    examples = (
-        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms")),
-        unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
-    )
-
-    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
-        return ladder_in(quantity, Dimension.TIME) if quantity.kind is Kind.DURATION else None
-
-    def number(self, size: float, value: float, context: Context) -> float:
-        after = value + size
-        return after if after >= -1e-9 else value
-
-
 class Lag(CommandOperator):
     """Each command is carried out later; each reading was taken earlier. Needs a `wait` in the vocabulary,
     or a middleware.
@@ -362,3 +338,27 @@ class Lag(CommandOperator):
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         what = "is carried out" if subject.is_command else "comes"
         return f"{what} {subject.magnitude:g} {subject.unit} later"
+
+
+class Early(NumberOperator):
+    """A wait is shorter, so that what comes next comes too early.
+
+    Where: waits: arguments of kind `duration`.
+
+    Stands for: A wait that was measured on a faster machine: {timing}.
+    """
+
+    name = "early"
+    directions = ("-",)
+    of_read = False
+    examples = (
+        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms")),
+        unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
+        return ladder_in(quantity, Dimension.TIME) if quantity.kind is Kind.DURATION else None
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        after = value + size
+        return after if after >= -1e-9 else value

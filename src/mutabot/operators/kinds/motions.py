@@ -12,7 +12,6 @@ from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, wri
 from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_PASSED,
-    NOT_TOLD,
     ValueOperator,
     ValuesOperator,
     is_number,
@@ -168,7 +167,7 @@ async def _value_and_place(values: Mapping[str, Value], context: Context) -> tup
     try:
         return value, await context.call.current(quantity)
     except NotToldError:
-        raise Unchanged(NOT_TOLD) from None
+        raise Unchanged("the position of the robot is not known yet") from None
 
 
 def _within_turn(quantity: Quantity, angle: float) -> float:

@@ -7,28 +7,16 @@ from dataclasses import replace
 from random import Random
 
 from mutabot.model import Kind, Quantity
-from mutabot.model.quantity import MEASURED, PLAIN, Value
+from mutabot.model.quantity import MEASURED, PLAIN, WHOLE, Value
+from mutabot.model.units import convert, from_rotation_vector, product
 from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
 from mutabot.operators.operator import Context, Subject, quantity_of
-from mutabot.operators.value import (
-    ValueOperator,
-    disturbed,
-    label,
-    map_numbers,
-    next_of,
-    the_other_way,
-    within,
-)
+from mutabot.operators.value import ValueOperator, label, map_numbers, next_of, the_other_way, turned, within
 
 #: standard deviation where the vocabulary gives none: a clearly bad sensor, not a broken one (m, rad)
 DEFAULT_DEVIATION = {
-    Kind.POSITION: (0.02, "m"),
-    Kind.DISTANCE: (0.02, "m"),
-    Kind.ORIENTATION: (0.05, "rad"),
-    Kind.ANGLE: (0.05, "rad"),
-    Kind.ROTATION_VECTOR: (0.05, "rad"),
-    Kind.QUATERNION: (0.05, "rad"),
-    Kind.EULER: (0.05, "rad"),
+    **dict.fromkeys((Kind.POSITION, Kind.DISTANCE), (0.02, "m")),
+    **dict.fromkeys((Kind.ORIENTATION, Kind.ANGLE, *WHOLE), (0.05, "rad")),
 }
 #: up to this many labels, each other label is a mutant of its own; with more, only the next one is
 ALL_UP_TO = 4
@@ -145,3 +133,10 @@ def deviation_of(quantity: Quantity) -> float:
         return quantity.noise
     amount, unit = DEFAULT_DEVIATION[quantity.kind]
     return quantity.from_unit(amount, unit)
+
+
+def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
+    """The orientation turned by a random rotation vector of this standard deviation in each part."""
+    sigma = convert(deviation, quantity.unit or "rad", "rad")
+    turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
+    return turned(quantity, value, lambda orientation: product(turn, orientation))
