@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 INTERFACE = 1
 GROUP = "mutabot"
 #: what comes with mutabot's own packages: who asks for it is told which one is not installed
-_OF_OWN_PACKAGES = {"cluster": "mutabot_dask", "live": "mutabot_live", "motion": "mutabot_motion"}
+_OF_OWN_PACKAGES = {
+    **dict.fromkeys(("catalogue", "middleware"), "mutabot_catalogue"),
+    **{"cluster": "mutabot_dask", "live": "mutabot_live", "motion": "mutabot_motion"},
+}
 #: kinds of parts that processes of the tests need
 _OF_PROCESSES = ("operators", "middlewares", "environments", "futures")
 #: those that are modules of the packages themselves
@@ -213,7 +216,9 @@ def _part(name: str, declared: str | Described, owner: str) -> ExtensionPart:
 def not_installed(name: str, kind: str) -> str | None:
     """What to say of a part that one of mutabot's own packages brings, and is missing; else None."""
     package = _OF_OWN_PACKAGES.get(name)
-    if package is None or name in brought(kind):
+    if package is None or name in (found := brought(kind)):
+        return None
+    if any(package == _package(part.reference) for part in found.values()):  # a family of its operators
         return None
     return f"comes with the package {package}, which is not installed"
 
