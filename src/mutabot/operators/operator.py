@@ -9,9 +9,9 @@ kind of fault. What every operator declares, whatever it acts on, says ``Rule``.
   operators are and what else they have to declare.
 
 What several share has a name that begins with ``_``, be it a class or a file. A package, as
-``mutabot_catalogue`` does, names its classes in its ``mutabot.extensions.Extension``. Engines, plan, reports and
-documentation know no operator by name: whatever they need to know of one stands here or in the contract of
-its provider.
+``mutabot_catalogue`` does, names its classes in its ``mutabot.extensions.Extension``. Engines, plan, reports
+and documentation know no operator by name: whatever they need to know of one stands here or in the contract
+of its provider.
 
 An ``Operator`` answers four questions: where could it act, what does it do there, what does that look like
 to an engineer, and which examples show it. It sees quantities and their values, never Python syntax or
