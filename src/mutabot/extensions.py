@@ -36,6 +36,7 @@ _OF_OWN_PACKAGES = {
     },
     "executors": {"cluster": "mutabot_dask"},
     "tables": {"cluster": "mutabot_dask"},
+    "operators": dict.fromkeys(("catalogue", "middleware"), "mutabot_catalogue"),
 }
 #: kinds of parts that processes of the tests need
 _OF_PROCESSES = ("operators", "middlewares", "environments", "futures")
@@ -225,7 +226,9 @@ def _part(name: str, declared: str | Described, owner: str) -> ExtensionPart:
 def not_installed(name: str, kind: str) -> str | None:
     """What to say of a part that one of mutabot's own packages brings, and is missing; else None."""
     package = _OF_OWN_PACKAGES.get(kind, {}).get(name)
-    if package is None or name in brought(kind):
+    if package is None or name in (found := brought(kind)):
+        return None
+    if any(package == _package(part.reference) for part in found.values()):  # a family of its operators
         return None
     return f"comes with the package {package}, which is not installed"
 

@@ -183,6 +183,7 @@ def verdicts(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
     return {name: (end["verdict"], end["by"]) for name, end in ends.items()}
 
 
+@pytest.mark.needs("catalogue")
 @pytest.mark.parametrize(
     ("tests", "operators"),
     [

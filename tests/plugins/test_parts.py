@@ -280,7 +280,7 @@ def test_a_part_that_is_not_what_it_should_be_is_named(
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder without these packages beside the core."""
     ignored = shutil.ignore_patterns(
-        "mutabot_dask", "mutabot_init", "mutabot_live", "mutabot_motion", "mutabot_suggest"
+        "mutabot_catalogue", "mutabot_dask", "mutabot_init", "mutabot_live", "mutabot_motion", "mutabot_suggest"
     )
     source = Path(mutabot.__file__).parents[1]
     return Path(shutil.copytree(source, tmp_path_factory.mktemp("site") / "alone", ignore=ignored))
@@ -304,6 +304,7 @@ sys.exit(main(sys.argv[1:]))
         (["live"], "the command live comes with the package mutabot_live, which is not installed"),
         (["motion", "3"], "the command motion comes with the package mutabot_motion, which is not installed"),
         (["run", "--cluster", "local:2"], "--cluster comes with the package mutabot_dask, which is not"),
+        (["list", "--family", "catalogue"], "the family catalogue comes with the package mutabot_catalogue"),
         (["list"], "pyproject.toml:5 · tool.mutabot.cluster: comes with the package mutabot_dask, which"),
     ],
 )

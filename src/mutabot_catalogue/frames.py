@@ -17,17 +17,16 @@ from mutabot.operators.examples import MOVE_TO, changed, reading, unchanged, wri
 from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_PASSED,
-    Exchange,
     ValueOperator,
     ValuesOperator,
     given,
-    is_alike,
     is_number,
     label,
-    like,
     map_numbers,
     turned,
 )
+
+from .values import Exchange, is_alike, like
 
 _BASE, _TOOL = "base", "tool"
 _AXES = "xyz"
@@ -173,12 +172,7 @@ class BaseForTool(ValuesOperator):
     family = CATALOGUE
     needs = frozenset({Need.PLACE})
     examples = (
-        changed(
-            _MOVE_BY,
-            {"x": 0.1, "y": 0.0, "z": 0.2},
-            {"x": 0.0, "y": 0.1, "z": -0.2},
-            current=_DOWN,
-        ),
+        changed(_MOVE_BY, {"x": 0.1, "y": 0.0, "z": 0.2}, {"x": 0.0, "y": 0.1, "z": -0.2}, current=_DOWN),
         unchanged(
             _MOVE_BY,
             {"x": 0.1, "y": 0.0, "z": 0.2},

@@ -9,7 +9,7 @@ from mutabot.faults import Project
 from mutabot.model import Operation, Role, Site, Span, Vocabulary
 from mutabot.model.mutant import Place
 from mutabot.model.operation import Form
-from mutabot.operators.kinds._examples import (
+from mutabot_catalogue._examples import (
     ADVERTISE,
     HEARD_FRAME,
     HEARD_STAMP,

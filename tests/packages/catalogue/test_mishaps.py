@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from mutabot.model.operation import Form, Refused
-from mutabot.operators.kinds._examples import (
+from mutabot_catalogue._examples import (
     ADVERTISE,
     CALL,
     FRAME,

@@ -18,7 +18,7 @@ NODE = """
     from pathlib import Path
 
     from mutabot.runtime.processes import member
-    from mutabot.operators.kinds._examples import CALL
+    from mutabot_catalogue._examples import CALL
     from tests.runtime.client import ClientStage
     from tests.runtime.stage import take_away
 

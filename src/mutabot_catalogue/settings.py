@@ -14,25 +14,12 @@ from mutabot.operators.examples import changed, unchanged
 from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of
 from mutabot.operators.value import SAME, ValueOperator, is_number, next_of
 
-from ._examples import (
-    ADVERTISE,
-    CLIENT,
-    FRAME,
-    HEAR_STAMP,
-    HEARD_FRAME,
-    OPEN_FRAME,
-    RATE,
-    SEND_STAMP,
-    SPEED,
-    SUBSCRIBE,
-    TIMER,
-    operation,
-)
+from . import _examples as calls
 
 _EMPTY, _UNKNOWN = "empty", "unknown"
-_SEND = operation(Form.PUBLISH, "/arm/target", (FRAME,))
-_SEND_ANY = operation(Form.PUBLISH, "/arm/target", (OPEN_FRAME,))
-_HEAR = operation(Form.RECEIVE, "/scan", result=(HEARD_FRAME,))
+_SEND = calls.operation(Form.PUBLISH, "/arm/target", (calls.FRAME,))
+_SEND_ANY = calls.operation(Form.PUBLISH, "/arm/target", (calls.OPEN_FRAME,))
+_HEAR = calls.operation(Form.RECEIVE, "/scan", result=(calls.HEARD_FRAME,))
 
 
 class FreeValueOperator(ValueOperator):
@@ -85,10 +72,10 @@ class ShiftStamp(FreeValueOperator):
     #: between two numbers of seconds since 1970, as values are compared
     variants: ClassVar[Mapping[str, float]] = {"-5": -5.0, "5": 5.0}
     examples = (
-        changed(SEND_STAMP, 20.0, 15.0, "-5"),
-        changed(HEAR_STAMP, 20.0, 25.0, "5"),
-        unchanged(SEND_STAMP, 0.0, "the stamp is empty", "5"),
-        unchanged(SEND_STAMP, 2.0, "no stamp is before zero", "-5"),
+        changed(calls.SEND_STAMP, 20.0, 15.0, "-5"),
+        changed(calls.HEAR_STAMP, 20.0, 25.0, "5"),
+        unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty", "5"),
+        unchanged(calls.SEND_STAMP, 2.0, "no stamp is before zero", "-5"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -110,9 +97,9 @@ class EmptyStamp(FreeValueOperator):
     name = "empty-stamp"
     kinds = frozenset({Kind.STAMP})
     examples = (
-        changed(SEND_STAMP, 20.0, 0.0),
-        changed(HEAR_STAMP, 20.0, 0.0),
-        unchanged(SEND_STAMP, 0.0, "the stamp is empty already"),
+        changed(calls.SEND_STAMP, 20.0, 0.0),
+        changed(calls.HEAR_STAMP, 20.0, 0.0),
+        unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty already"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -157,16 +144,10 @@ class WrongName(_Setting):
     setting = "name"
     variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
     examples = (
-        changed(SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
-        changed(
-            ADVERTISE,
-            "target",
-            "/target",
-            _GLOBAL,
-            quantity="name",
-        ),
-        unchanged(CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
-        unchanged(SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
+        changed(calls.SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
+        changed(calls.ADVERTISE, "target", "/target", _GLOBAL, quantity="name"),
+        unchanged(calls.CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
+        unchanged(calls.SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -187,9 +168,9 @@ class ShortQueue(_Setting):
     name = "short-queue"
     setting = "depth"
     examples = (
-        changed(SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"),
+        changed(calls.SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"),
         unchanged(
-            ADVERTISE, {"name": "target", "depth": 1}, "the value would stay the same", quantity="depth"
+            calls.ADVERTISE, {"name": "target", "depth": 1}, "the value would stay the same", quantity="depth"
         ),
     )
 
@@ -213,9 +194,9 @@ class FlipLatch(_OtherOfTwo):
     name = "flip-latch"
     setting = "latch"
     examples = (
-        changed(ADVERTISE, True, False, quantity="latch"),
-        changed(ADVERTISE, False, True, quantity="latch"),
-        unchanged(ADVERTISE, {"name": "target"}, "its middleware latches nothing", quantity="latch"),
+        changed(calls.ADVERTISE, True, False, quantity="latch"),
+        changed(calls.ADVERTISE, False, True, quantity="latch"),
+        unchanged(calls.ADVERTISE, {"name": "target"}, "its middleware latches nothing", quantity="latch"),
     )
 
 
@@ -225,7 +206,10 @@ def _of_two(quantity: str, one: str, other: str, first: Operation, second: Opera
         changed(first, one, other, quantity=quantity),
         changed(second, other, one, quantity=quantity),
         unchanged(
-            SUBSCRIBE, "system_default", f"system_default is neither {one} nor {other}", quantity=quantity
+            calls.SUBSCRIBE,
+            "system_default",
+            f"system_default is neither {one} nor {other}",
+            quantity=quantity,
         ),
     )
 
@@ -235,7 +219,7 @@ class WrongReliability(_OtherOfTwo):
 
     name = "wrong-reliability"
     setting = "reliability"
-    examples = _of_two("reliability", "reliable", "best_effort", ADVERTISE, SUBSCRIBE)
+    examples = _of_two("reliability", "reliable", "best_effort", calls.ADVERTISE, calls.SUBSCRIBE)
 
 
 class WrongDurability(_OtherOfTwo):
@@ -243,7 +227,7 @@ class WrongDurability(_OtherOfTwo):
 
     name = "wrong-durability"
     setting = "durability"
-    examples = _of_two("durability", "volatile", "transient_local", SUBSCRIBE, ADVERTISE)
+    examples = _of_two("durability", "volatile", "transient_local", calls.SUBSCRIBE, calls.ADVERTISE)
 
 
 class WrongDeadline(_Setting):
@@ -254,9 +238,9 @@ class WrongDeadline(_Setting):
     #: seconds: more often than any of the programs this is for publishes
     variants: ClassVar[Mapping[str, float]] = {_TIGHT: 0.001, _NONE: 0.0}
     examples = (
-        changed(SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
-        changed(ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
-        unchanged(ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
+        changed(calls.SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
+        changed(calls.ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
+        unchanged(calls.ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -272,9 +256,9 @@ class WrongPeriod(_Setting):
     setting = "period"
     variants: ClassVar[Mapping[str, float]] = {"x2": 2.0, "x0.5": 0.5}
     examples = (
-        changed(TIMER, 0.1, 0.2, "x2", quantity="period"),
-        changed(RATE, 0.1, 0.05, "x0.5", quantity="period"),
-        unchanged(TIMER, 0.0, "it has no period", "x2", quantity="period"),
+        changed(calls.TIMER, 0.1, 0.2, "x2", quantity="period"),
+        changed(calls.RATE, 0.1, 0.05, "x0.5", quantity="period"),
+        unchanged(calls.TIMER, 0.0, "it has no period", "x2", quantity="period"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -283,7 +267,7 @@ class WrongPeriod(_Setting):
         return value * context.option
 
 
-_SET, _READ = Subject(SPEED, quantity=SPEED.result[0]), {"value": 0.25}
+_SET, _READ = Subject(calls.SPEED, quantity=calls.SPEED.result[0]), {"value": 0.25}
 
 
 class UseDefault(FreeValueOperator):

@@ -11,7 +11,9 @@ from mutabot.model.quantity import Value
 from mutabot.model.units import convert
 from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.operator import Context, Subject, quantity_of
-from mutabot.operators.value import ValueOperator, like, map_numbers, middle_of, within
+from mutabot.operators.value import ValueOperator, map_numbers, within
+
+from .values import like, middle_of
 
 #: the robot, or the program, takes the number as if it were in the other unit
 _TAKEN = "taken"
@@ -286,10 +288,7 @@ class SilentLimit(ValueOperator):
     name = "silent-limit"
     family = CATALOGUE
     of_read = False
-    examples = (
-        changed(_LIMITED, 100, 90),
-        unchanged(_LIMITED, 50, "it is within"),
-    )
+    examples = (changed(_LIMITED, 100, 90), unchanged(_LIMITED, 50, "it is within"))
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         is_number = quantity.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)

@@ -9,13 +9,14 @@ from mutabot.families import MIDDLEWARE
 from mutabot.model import Call, CallFault, Proceed, Reply
 from mutabot.model.operation import COMING, WRITTEN, Form
 from mutabot.model.quantity import Value
-from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
+from mutabot.operators.command import CommandOperator, form_of
 from mutabot.operators.examples import whole
 from mutabot.operators.magnitudes import Magnitudes
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import CallOrReply
 
 from ._examples import CALL, CALL_TO, GOAL, PUBLISH, RECEIVE, TICK
+from .values import comes_by_itself
 
 _THIRD, _CHANCE = "every-3rd", "30%"
 _PROBABILITY = 0.3
@@ -114,13 +115,7 @@ class Stale(MessageOperator):
     examples = (
         whole(RECEIVE, 0.02, 0.5, variant=_FIRST, earlier=(0.5, 0.3)),
         whole(PUBLISH, 0.4, 0.3, variant=_PREVIOUS, earlier=(0.2, 0.3)),
-        whole(
-            CALL_TO,
-            0.4,
-            0.2,
-            variant=_FIRST,
-            earlier=(0.2, 0.3),
-        ),
+        whole(CALL_TO, 0.4, 0.2, variant=_FIRST, earlier=(0.2, 0.3)),
         whole(PUBLISH, 0.4, variant=_FIRST, away=_NONE_BEFORE),
         whole(RECEIVE, 0.02, variant=_PREVIOUS, away=_NONE_BEFORE),
     )
@@ -149,13 +144,7 @@ class Delay(MessageOperator):
     examples = (
         whole(PUBLISH, 0.4, {"x": 0.4, "late": 0.1}, size=(0.1, None)),
         whole(CALL, {}, {"late": 1.0}, size=(1.0, None)),
-        whole(
-            RECEIVE,
-            0.02,
-            0.02,
-            size=(1.0, None),
-            late=1.0,
-        ),
+        whole(RECEIVE, 0.02, 0.02, size=(1.0, None), late=1.0),
     )
 
     def magnitudes(self, whole: Subject) -> Magnitudes | None:
