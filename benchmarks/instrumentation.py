@@ -19,9 +19,8 @@ from typing import Any
 
 from mutabot.model import Instrumentation, ProgramText
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text.instrument import instrumented
+from mutabot.runtime.program_text.instrument import SessionText, instrumented
 from mutabot.runtime.program_text.loading import compile_tree
-from mutabot.runtime.program_text.session_text import SessionText
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
 

@@ -16,14 +16,8 @@ from collections.abc import Iterable
 from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.model.source_units import (
-    ALL_FILES,
-    MODULE,
-    WHOLE,
-    Executed,
-    functions_of,
-)
-from mutabot.runtime.audit import FRAMES, listen
+from mutabot.model.source_units import ALL_FILES, MODULE, WHOLE, Executed, functions_of
+from mutabot.runtime.processes.environment import FRAMES, listen
 from mutabot.runtime.program_text import loading
 
 #: the built-in name of the bytes, one for each function
@@ -140,7 +134,7 @@ class ExecutedUnits:
         return real[len(self._root) :]
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """Something happens that may matter beside what is executed; see ``runtime.audit``."""
+        """Something happens that may matter beside what is executed; see ``environment.listen``."""
         if event == "open":
             path, _, flags = arguments
             if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):

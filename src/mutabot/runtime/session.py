@@ -27,14 +27,12 @@ from mutabot.runtime.observation.instances import Instances
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
 from mutabot.runtime.process_fault import ProcessFaults
 from mutabot.runtime.program_text.call_sites import CallSites
-from mutabot.runtime.program_text.handing import Handing
+from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.returns import Returns
-from mutabot.runtime.program_text.session_text import SessionText
-from mutabot.runtime.program_text.standing import Standing, StandIns, last_name
+from mutabot.runtime.program_text.standing import Handing, Standing, StandIns, last_name
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.messages import Messages
-from mutabot.runtime.targets.target import Finding, Handler
+from mutabot.runtime.targets.target import Finding, Handler, Messages
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent

@@ -24,8 +24,7 @@ from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.isolation.files import Isolation, PrivateFiles
 from mutabot.runtime.isolation.fork_parent import ForkParent
 from mutabot.runtime.isolation.forkable import track_event_loops
-from mutabot.runtime.isolation.forked_run import ForkedRun
-from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
+from mutabot.runtime.isolation.namespaces import ALONE, die_with_parent, nobody_listens
 from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
@@ -33,8 +32,7 @@ from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.test_end import classify, with_evidence
-from mutabot.runtime.test_hooks import TestHooks
+from mutabot.runtime.test_hooks import ForkedRun, TestHooks, classify, with_evidence
 
 if TYPE_CHECKING:
     from mutabot.runtime.isolation.fork_server import ForkServer

@@ -17,9 +17,8 @@ import pytest
 
 from mutabot.model import Instrumentation
 from mutabot.model.codec import from_data, to_data
-from mutabot.runtime.program_text.instrument import instrumented
+from mutabot.runtime.program_text.instrument import SessionText, instrumented
 from mutabot.runtime.program_text.loading import compile_tree
-from mutabot.runtime.program_text.session_text import SessionText
 from mutabot.runtime.program_text.switches import Alternatives, error_of
 from mutabot_source.refine import merge, refine
 from mutabot_source.texts import find_texts

@@ -26,10 +26,9 @@ from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 from mutabot.operators.passage import Carried, run
 from mutabot.runtime.evidence import Meter
-from mutabot.runtime.interception.active_mutant import ActiveMutant
+from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
 from mutabot.runtime.interception.live import is_live
-from mutabot.runtime.interception.refusals import RefusedCalls
 from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.observation.instances import Instances
 from mutabot.runtime.observation.probes import Along

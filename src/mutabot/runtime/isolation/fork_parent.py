@@ -28,8 +28,15 @@ from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import Isolation, StateBeforeFork
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
-from mutabot.runtime.isolation.namespaces import ForkedPids, end_first, fork, leave_out
-from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
+from mutabot.runtime.isolation.namespaces import (
+    ALONE,
+    ForkedPids,
+    die_with_parent,
+    end_first,
+    fork,
+    leave_out,
+    nobody_listens,
+)
 from mutabot.runtime.plugins import alarm_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are

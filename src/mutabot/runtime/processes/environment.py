@@ -3,6 +3,11 @@
 The environment goes along also where a process is given one of its own. It leads to the start-up module, and
 that reads in ``wake`` what is of interest. All processes below a test know at no cost which test is running.
 The test process notes which processes are started out of sight, how each ended, and by whose signals.
+
+Listen to audit events: one hook hands each event to those that asked for it.
+
+Python calls every hook at every event, and ``sys._getframe`` is one, which notes in the program text ask for
+at each call. A hook cannot be taken back.
 """
 
 from __future__ import annotations
@@ -20,7 +25,27 @@ from itertools import takewhile
 from typing import Any
 
 from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
-from mutabot.runtime.audit import listen
+
+#: told an event's name and its arguments
+Hear = Callable[[str, tuple[Any, ...]], None]
+#: lists: a listener may add another one, which hears the same event
+_listeners: dict[str, list[Hear]] = {}
+#: from the frame of a listener to that of what caused the event
+FRAMES = 2
+
+
+def listen(events: Iterable[str], hear: Hear) -> None:
+    """Let ``hear`` have these events from now on."""
+    if not _listeners:
+        sys.addaudithook(_hear)
+    for event in events:
+        _listeners.setdefault(event, []).append(hear)
+
+
+def _hear(event: str, arguments: tuple[Any, ...]) -> None:
+    for hear in _listeners.get(event, ()):
+        hear(event, arguments)
+
 
 #: the folder of the start-up module
 STARTUP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "startup")

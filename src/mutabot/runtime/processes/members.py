@@ -7,19 +7,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from mutabot.extensions import brought
+from mutabot.model import events
 from mutabot.model.event_file import FOLDER
-from mutabot.model.events import (
-    Began,
-    Event,
-    Found,
-    NotInstrumented,
-    PlacesReached,
-    Problem,
-    Remark,
-    Signalled,
-    TestEnd,
-    TextsSeen,
-)
 from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
 from mutabot.model.job import Job
 from mutabot.runtime.processes.environment import Now, ProcessWatch, carry, write_wake
@@ -49,7 +38,7 @@ class Members:
         self._now = Now(self.folder, is_host=True)
         self._children = Children(home, session.job.key)
         self._present: list[ChildRecord] = []
-        self._texts: list[TextsSeen] = []
+        self._texts: list[events.TextsSeen] = []
         self._unseen: set[str] = set()
         self._acted = has_acted
         carry(self.folder)
@@ -60,7 +49,7 @@ class Members:
         self._now.begin(test)
         self._present = [one for one in self._children.records.values() if is_alive(one.began.pid)]
 
-    def merged(self, end: TestEnd) -> TestEnd:
+    def merged(self, end: events.TestEnd) -> events.TestEnd:
         """The end of the running test with what members did in it; an error if that cannot be known."""
         self._take_all()
         here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
@@ -68,7 +57,7 @@ class Members:
         end = self._with_recorded(fold(end, here, known), here, known)
         self._acted = self._acted or end.acted > 0
         if places := {place for one in here for place in one.places}:
-            self._session.pipe.send(PlacesReached(end.test, tuple(sorted(places)), elsewhere=True))
+            self._session.pipe.send(events.PlacesReached(end.test, tuple(sorted(places)), elsewhere=True))
         end = replace(end, processes=tuple((one.began.pid, one.name) for one in here))
         for one in here:
             one.forget()
@@ -84,7 +73,7 @@ class Members:
         """Why what members told cannot be relied on, or None."""
         return self._children.doubt
 
-    def texts_seen(self) -> list[TextsSeen]:
+    def texts_seen(self) -> list[events.TextsSeen]:
         """What members saw of the program text, over all tests."""
         self._take_all()
         return self._texts
@@ -98,38 +87,30 @@ class Members:
                 yield one
 
     def _known(self) -> Known:
-        session = self._session
-        return Known(
-            session.job,
-            session.recorder.index_of,
-            self._acted,
-            self._watch.codes,
-            self._watch.signalled,
-        )
+        job, watch = self._session.job, self._watch
+        return Known(job, self._session.recorder.index_of, self._acted, watch.codes, watch.signalled)
 
     def _take_all(self) -> None:
         for event in self._children.read():
             self._take(event)
 
-    def _take(self, event: Event) -> None:
+    def _take(self, event: events.Event) -> None:
         """What concerns the session, and no test alone."""
         match event:
-            case Began(unable=why) if why is not None:
+            case events.Began(unable=why) if why is not None:
                 self._say_unseen(" ".join(event.command[:3]), why)
-            case TextsSeen():
+            case events.TextsSeen():
                 self._texts.append(event)
-            case Signalled():
+            case events.Signalled():
                 self._watch.signalled.add(event.pid)
-            case Found():
+            case events.Found():
                 for targets in self._session.targets:
                     targets.found_elsewhere(event.targets)
                 self._session.inspection.elsewhere.update(event.modules)
-            case NotInstrumented() | Problem() | Remark():
+            case events.NotInstrumented() | events.Problem() | events.Remark():
                 self._session.pipe.send(event)
-            case _:
-                pass
 
-    def _with_recorded(self, end: TestEnd, here: list[ChildRecord], known: Known) -> TestEnd:
+    def _with_recorded(self, end: events.TestEnd, here: list[ChildRecord], known: Known) -> events.TestEnd:
         """The calls of all processes by their times, in what is recorded."""
         recorder, recording = self._session.recorder, self._session.recording
         if end.recording is None:
@@ -145,7 +126,7 @@ class Members:
             return
         self._unseen.add(name)
         text = f"nothing in this process is seen or mutated: {why}"
-        self._session.pipe.send(Remark("processes", name, text))
+        self._session.pipe.send(events.Remark("processes", name, text))
 
 
 def _write_wake(folder: str, job: Job) -> None:
