@@ -135,7 +135,7 @@ def test_the_sleeping_plugin_loads_neither_operators_nor_wrapt() -> None:
 
 def test_processes_below_the_tests_need_no_pytest() -> None:
     code = (
-        "import sys, mutabot.runtime.processes.member, mutabot.runtime.watching.watch\n"
+        "import sys, mutabot.runtime.processes.member, mutabot.runtime.watching.elsewhere\n"
         "heavy = {'pytest', '_pytest', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'libcst'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )

@@ -17,7 +17,8 @@ from mutabot.errors import MutabotError
 from mutabot.model.codec import to_data
 from mutabot.model.watched import WATCH_VARIABLE
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.watching.watch import Watch, read, seen_elsewhere, watch_elsewhere, write
+from mutabot.runtime.watching.elsewhere import read, seen_elsewhere, watch_elsewhere, write
+from mutabot.runtime.watching.watch import Watch
 
 #: least seconds between two writings of what was found so far
 _PAUSE = 2.0

@@ -3,18 +3,12 @@
 Every call, and every attribute that is read, asks the watch first: see ``program_text.call_sites``. Nothing
 changes that the program can see. What is done under the names of a middleware passes the hooks of a campaign
 (``runtime.targets.target``).
-
-Watching goes on in the processes that the tests start; each writes what it saw when it ends.
 """
 
 from __future__ import annotations
 
-import atexit
 import inspect
-import json
-import os
 import re
-import signal
 import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -26,20 +20,15 @@ from functools import cache, cached_property
 from types import FrameType, ModuleType
 from typing import Any
 
-from mutabot import extensions
 from mutabot.model import Role, Span
-from mutabot.model.codec import to_data
-from mutabot.model.event_file import FOLDER
 from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.path import class_name
 from mutabot.model.watched import Command, Use, Values, WatchedCallable, WatchedCalls
 from mutabot.runtime.interception.adapter import is_mock
 from mutabot.runtime.interception.dispatcher import Untracked, is_under_way
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.processes.environment import carry, write_wake
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
-from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.targets.target import NOWHERE, Handler, Messages, Where
 from mutabot.runtime.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
 from mutabot.runtime.watching.values import look, plain
@@ -92,7 +81,11 @@ class NamesSeen(Messages):
         passed: told of each use: calls that are under way lead to it.
     """
 
-    def __init__(self, locator: Locator, passed: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        locator: Locator,
+        passed: Callable[[], None],
+    ) -> None:
         self._locator, self._passed = locator, passed
         self.uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
@@ -173,7 +166,11 @@ class Watch:
             name of its own.
     """
 
-    def __init__(self, locator: Locator, libraries: Iterable[str] = ()) -> None:
+    def __init__(
+        self,
+        locator: Locator,
+        libraries: Iterable[str] = (),
+    ) -> None:
         self._locator, self._libraries = locator, tuple(libraries)
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._method_of = cache(method_of)
@@ -427,67 +424,3 @@ def _prints_itself(value: Any) -> bool:
 def _is_no_robot(top: str) -> bool:
     """Whether nothing of a top-level package is to be described as a call."""
     return top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest")
-
-
-_ORDER = "order.json"
-_SEEN = ".seen.json"
-
-
-def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
-    """Watch processes that are started from now on; ``path`` is that of the order.
-
-    Returns the folder in which they write.
-    """
-    folder = os.path.join(os.path.dirname(path), FOLDER)
-    os.mkdir(folder)
-    write(os.path.join(folder, _ORDER), order)
-    names = {name.rpartition("/")[2].removesuffix(".py") for name in order["program"].values()}
-    folders = {part for name in order["program"].values() for part in name.split("/")[:-1]}
-    write_wake(folder, __name__, names | folders, order["program"])
-    carry(folder)
-    return folder
-
-
-def join(folder: str) -> None:
-    """Watch this process, which turned out to be of interest."""
-    order = read(os.path.join(folder, _ORDER))
-    extensions.use(order["extensions"])
-    watch = Watch.of(order)
-    watch.install()
-    hook_script()
-    leave = os._exit
-
-    def write_all() -> None:
-        write(os.path.join(folder, f"{os.getpid()}{_SEEN}"), to_data(watch.data()))
-
-    def leave_at_once(status: int) -> None:
-        write_all()
-        leave(status)
-
-    def end(number: int, frame: FrameType | None) -> None:
-        sys.exit(128 + number)
-
-    atexit.register(write_all)
-    os._exit = leave_at_once  # type: ignore[assignment]
-    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
-        signal.signal(signal.SIGTERM, end)  # else nothing would be written
-
-
-def write(path: str, data: Mapping[str, Any]) -> None:
-    """Write data as JSON, all of it or nothing."""
-    with open(f"{path}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
-        json.dump(data, file, default=str)
-    os.replace(f"{path}.new", path)
-
-
-def read(path: str) -> dict[str, Any]:
-    """Read data that ``write`` has written."""
-    with open(path, encoding="utf-8", errors="surrogateescape") as file:
-        data: dict[str, Any] = json.load(file)
-    return data
-
-
-def seen_elsewhere(folder: str) -> list[dict[str, Any]]:
-    """Return what processes saw, each as the data of a ``WatchedCalls``."""
-    names = sorted(name for name in os.listdir(folder) if name.endswith(_SEEN))
-    return [read(os.path.join(folder, name)) for name in names]
