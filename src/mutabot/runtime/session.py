@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ from mutabot.model.operation import owner_of
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import EventWriter
 from mutabot.runtime.evidence import Evidence, Meter, together
-from mutabot.runtime.inspection import Inspection, Kinds
+from mutabot.runtime.inspection import Inspection
 from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
@@ -38,23 +38,25 @@ if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
 
 
-@dataclass(slots=True)
 class Session:
     """The job at hand.
 
-    Attributes:
+    Args:
         job: what to do.
         pipe: where reports go.
         locator: finds the site of a frame, and of a function that is called back.
+
+    Attributes:
         recorder: traces; always kept, since survivors are compared with the original.
         callables, messages: what stands around the vocabulary's targets; no messages where none is asked for.
+        targets: those that there are of the two.
         passing: the way of the program's calls.
+        activations: the mutants of calls that are at work: none for the original.
         inspection: what is wrong with the vocabulary.
         is_fork: whether this process was forked to be its mutant.
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
         standing: what stands there.
-        handing: sees calls of what the program hands on.
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
@@ -63,46 +65,37 @@ class Session:
         placed: faults that their providers put in place before each test.
     """
 
-    job: Job
-    pipe: EventWriter
-    locator: Locator
-    recorder: Recorder = field(init=False)
-    callables: Callables = field(init=False)
-    messages: Messages | None = None
-    passing: Dispatcher = field(init=False)
-    inspection: Inspection = field(init=False)
-    placed: ProcessFaults = field(init=False)
-    recording: TestRecording = field(init=False)
-    instances: Instances = field(default_factory=Instances)
-    along: Along = field(init=False)
-    is_fork: bool = False
-    text: SessionText | None = None
-    returns: Returns | None = None
-    call_sites: CallSites = field(init=False)
-    standing: Standing = field(init=False)
-    handing: Handing = field(init=False)
-    test: str = ""
-    noted: dict[Noted, None] = field(default_factory=dict)
-    on_noted: Callable[[Noted], None] | None = None
-    _adapters: list[Adapter] = field(default_factory=list)
-    _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
-    _telling: list[Adapter] = field(default_factory=list)
-    _time: ProgramTime = field(init=False)
-    _main_thread: int | None = field(default_factory=lambda: threading.main_thread().ident)
-    _sees_itself: set[Handler] = field(default_factory=set)
+    call_sites: CallSites
+    standing: Standing
 
-    def __post_init__(self) -> None:
+    def __init__(self, job: Job, pipe: EventWriter, locator: Locator) -> None:
+        self.job, self.pipe, self.locator = job, pipe, locator
         self.recorder = Recorder(self._site_seen)
         self.recording = TestRecording()
+        self.instances = Instances()
         self.along = Along(partial(self._read_probes, along=True))
-        self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
+        self.inspection = Inspection(job.vocabulary, job.inspect, self._send)
         self.placed = ProcessFaults(self._acted)
         self.callables = Callables(self.inspection.target_is_wrong)
+        self.messages: Messages | None = None
+        self.targets: list[Callables | Messages] = [self.callables]
         self.passing = Dispatcher(
-            self.locator, self.recorder, self.instances, self.along, self._raised, self._on_end
+            locator, self.recorder, self.instances, self.along, self._raised, self._on_end
         )
-        self.passing.oracle_nodes = self.job.oracle_nodes
-        self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
+        self.passing.oracle_nodes = job.oracle_nodes
+        self.activations = self.passing.mutants
+        self.is_fork = False
+        self.text: SessionText | None = None
+        self.returns: Returns | None = None
+        self.test = ""
+        self.noted: dict[Noted, None] = {}
+        self.on_noted: Callable[[Noted], None] | None = None
+        self._adapters: list[Adapter] = []
+        self._lately: dict[str, Mapping[str, Value]] = {}
+        self._telling: list[Adapter] = []
+        self._time = ProgramTime(job.vocabulary, lambda: self.meter, self.instances)
+        self._main_thread = threading.main_thread().ident
+        self._sees_itself: set[Handler] = set()
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
@@ -122,7 +115,7 @@ class Session:
         if vocabulary.clock is not None:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
-            self.callables.wrap(clock.tick, reader.handler())
+            self.callables.wrap(clock.tick, reader.handle)
         self._listen()
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
@@ -135,8 +128,8 @@ class Session:
         self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
         self._tell_standing()
         names = {last_name(one.operation) for one in called}
-        self.handing = Handing(self.standing, self.passing.given)
-        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
+        handing = Handing(self.standing, self.passing.given)
+        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, handing)
         self.call_sites.install()
 
     def _tell_standing(self) -> None:
@@ -162,13 +155,10 @@ class Session:
 
     def _heeded(self) -> Messages:
         """The names on middlewares, which are hooked as soon as anybody asks for one."""
-        self.messages = self.messages or Messages(self.inspection.target_is_wrong)
+        if self.messages is None:
+            self.messages = Messages(self.inspection.target_is_wrong)
+            self.targets.append(self.messages)
         return self.messages
-
-    @property
-    def targets(self) -> Kinds:
-        """All targets of this process."""
-        return [self.callables] if self.messages is None else [self.callables, self.messages]
 
     def _heard(self, name: str, message: Any) -> None:
         for activation in self.activations:
@@ -210,11 +200,6 @@ class Session:
         return tuple(self.recorder.sites)
 
     @property
-    def activations(self) -> list[ActiveMutant]:
-        """The mutants of calls that are at work: none for the original."""
-        return self.passing.mutants
-
-    @property
     def meter(self) -> Meter | None:
         """What the running test has used; None between tests."""
         return self.passing.meter
@@ -252,7 +237,7 @@ class Session:
             refusals = self._refusals(operation)
             on_act = partial(self._acted, mutant.id)
             told = (on_act, self._in_mutated_call, self._time.now_if_known)
-            self.passing.mutants.append(ActiveMutant(mutant, operation, refusals, *told))
+            self.activations.append(ActiveMutant(mutant, operation, refusals, *told))
 
     def grow(self, parent: ForkParent) -> None:
         """Run the original from now on, and fork a process for each of the parent's mutants."""
@@ -289,7 +274,7 @@ class Session:
         """
         self._end_imports()
         self.test = test
-        self._look_again()
+        self.standing.note_modules(self.call_sites.loaded)
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
         is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
@@ -298,8 +283,8 @@ class Session:
         self.instances.start(fixtures)
         self.passing.calls.clear()
         self.noted.clear()
-        self.passing.on_live = self._is_live if is_baseline else None
-        self.passing.refused.on_refused = self._refused if is_baseline else None
+        self.passing.on_live = self._note if is_baseline else None
+        self.passing.refused.on_refused = partial(self._note, is_refused=True) if is_baseline else None
         self.passing.refused.start(self.job.refused.get(test, ()))
         self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
@@ -310,7 +295,7 @@ class Session:
             self.text.start_test(test)
             self._watch_text()
         self._start_activations()
-        self.placed.start_test(test, self._random_of)
+        self.placed.start_test(test, lambda mutant: Random(self._seed_of(mutant)))
         has_clock = self.job.vocabulary.clock is not None
         self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
 
@@ -319,18 +304,9 @@ class Session:
         is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
         return Untracked(self.returns if is_main else None)
 
-    def _look_again(self) -> None:
-        """What the program has made since the last test."""
-        if self.call_sites.loaded:
-            self.standing.note_modules(frozenset(self.call_sites.loaded))
-            self.call_sites.loaded.clear()
-
     def _seed_of(self, mutant: Mutant) -> int:
         """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
         return derive(self.job.seed, self.job.round, self.test, mutant.ladder or mutant.id)
-
-    def _random_of(self, mutant: Mutant) -> Random:
-        return Random(self._seed_of(mutant))
 
     def _start_activations(self) -> None:
         for activation in self.activations:
@@ -398,18 +374,15 @@ class Session:
         if self.text is not None:
             self.text.finish(texts)
         if self.job.record and self.job.mutant is None:
-            self._tell_known_later()
+            # of sites at which an operation stood in some tests and something unknown in others
+            stood = self.standing.stood | {seen.span: seen.operation for seen in self.sites}
+            for span in sorted(self.standing.alone & stood.keys()):
+                self._send(KnownLater(span, stood[span]))
         if self.job.inspect:
             self.inspect_targets()
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
-
-    def _tell_known_later(self) -> None:
-        """Tell of sites at which an operation stood in some tests and something unknown in others."""
-        stood = self.standing.stood | {seen.span: seen.operation for seen in self.sites}
-        for span in sorted(self.standing.alone & stood.keys()):
-            self._send(KnownLater(span, stood[span]))
 
     def inspect_targets(self) -> None:
         """Look at every target of the vocabulary, also of what no test has led to."""
@@ -423,21 +396,13 @@ class Session:
         if self.text is not None and not refused.has(made):
             self.text.raised(error, made.call, names)
 
-    def _refused(self, made: SiteCall) -> None:
-        """The robot refused a call of the original."""
-        self._note(Noted(self._index_of(made), made.number))
-
-    def _is_live(self, made: SiteCall) -> None:
-        """A call of the original returned the robot's own memory."""
-        self._note(Noted(self._index_of(made)))
-
-    def _note(self, one: Noted) -> None:
+    def _note(self, made: SiteCall, *, is_refused: bool = False) -> None:
+        """A call of the original was refused by the robot, or returned the robot's own memory."""
+        index = self.recorder.index_of(replace(seen_by(made), direct=False))
+        one = Noted(index, made.number if is_refused else None)
         if one not in self.noted and self.on_noted is not None:
             self.on_noted(one)
         self.noted[one] = None
-
-    def _index_of(self, made: SiteCall) -> int:
-        return self.recorder.index_of(replace(seen_by(made), direct=False))
 
     @property
     def _on_end(self) -> Callable[..., None] | None:

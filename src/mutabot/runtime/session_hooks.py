@@ -24,7 +24,7 @@ from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.isolation.files import Isolation, PrivateFiles
 from mutabot.runtime.isolation.fork_parent import ForkParent
 from mutabot.runtime.isolation.forkable import track_event_loops
-from mutabot.runtime.isolation.namespaces import ALONE, die_with_parent, nobody_listens
+from mutabot.runtime.isolation.namespaces import die_with_parent
 from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
@@ -75,9 +75,7 @@ class SessionHooks:
     @classmethod
     def from_files(cls, job_file: str, descriptor: int) -> SessionHooks:
         """Read the job, set the limits of the process and put the interception in place."""
-        die_with_parent()
-        if nobody_listens(descriptor):  # the controller died before the kernel was asked
-            os._exit(ALONE)
+        die_with_parent(pipe=descriptor)
         home = os.path.dirname(job_file)
         job = read_job(home)
         extensions.use(job.extensions)

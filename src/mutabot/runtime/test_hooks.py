@@ -16,6 +16,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import islice
 from time import perf_counter, process_time  # tests may replace those of the module
+from traceback import walk_tb
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeGuard
 
@@ -27,7 +28,6 @@ from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
 from mutabot.model.path import class_name
 from mutabot.model.process_time import TimeUsed
-from mutabot.model.source_units import Executed
 from mutabot.runtime import FOLDER, seeds
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
 from mutabot.runtime.executed import ExecutedUnits
@@ -122,11 +122,6 @@ def with_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None
     )
 
 
-def is_expected_failure(report: pytest.TestReport) -> bool:
-    """Whether something failed as the test said it would."""
-    return report.skipped and hasattr(report, "wasxfail")
-
-
 def outcome_so_far(report: pytest.TestReport, before: str) -> str:
     """The outcome of a test with one more report that is no failure.
 
@@ -178,7 +173,8 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
     for frame, _ in _from_the_raise(error):
         filename = locator.real(frame.f_code.co_filename)
-        if filename.startswith(FOLDER) or _is_of_a_middleware(frame):
+        package = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+        if filename.startswith(FOLDER) or package in packages():  # such bring operators, or hooks
             return False
         role = locator.role(filename)
         if role is Role.PROGRAM:
@@ -188,19 +184,9 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     return True
 
 
-def _is_of_a_middleware(frame: FrameType) -> bool:
-    """Whether a frame is of a package that brings operators or the hooks of a middleware."""
-    return str(frame.f_globals.get("__name__", "")).partition(".")[0] in packages()
-
-
 def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
     """The frames that the exception came through and the lines they were at, innermost first."""
-    frames = []
-    traceback = error.__traceback__
-    while traceback is not None:
-        frames.append((traceback.tb_frame, traceback.tb_lineno))
-        traceback = traceback.tb_next
-    return frames[::-1]
+    return list(walk_tb(error.__traceback__))[::-1]
 
 
 def _place(error: BaseException, locator: Locator) -> str | None:
@@ -258,13 +244,11 @@ class ForkedRun:
     def end_test(self, end: TestEnd) -> None:
         """A test is over: tell how it ended, and leave if it decides about the mutant."""
         self._has_acted |= end.acted > 0
-        if not end.is_decided or self._parent.forking.every_test:
-            self._report(end)
-            return
         try:
             self._report(end)
-        finally:  # whatever happens, nothing must run on in this process
-            os._exit(DECIDED)
+        finally:
+            if end.is_decided and not self._parent.forking.every_test:
+                os._exit(DECIDED)  # whatever happens, nothing must run on in this process
 
     def finish(self, errors: list[str]) -> None:
         """The session is over: what its exit code is, the parent will tell."""
@@ -330,7 +314,6 @@ class TestHooks:
         self.looks = Looks()
         self.units = ExecutedUnits(session.job.root)
         self._address: str | None = None
-        self._hears = False
         self._failure: TestEnd | None = None
         self._failed_in = ""
         self._expected: TestEnd | None = None
@@ -339,6 +322,7 @@ class TestHooks:
         self._reading = Reading()
         self._started = (0.0, 0.0)
         self._used = TimeUsed.from_now()
+        listen(("socket.bind",), self._hear)
 
     def start_clocks(self, *, is_new: bool = False) -> None:
         """Count from now on what the test takes; ``is_new``: in a process that was just forked."""
@@ -374,9 +358,6 @@ class TestHooks:
         self._failure, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self._address = self._logged = None
         self.looks.clear()
-        if not self._hears:
-            self._hears = True
-            listen(("socket.bind",), self._hear)
         session = self.session
         session.pipe.send(TestStart(test))
         limit = watched_by_faulthandler(item)
@@ -438,7 +419,7 @@ class TestHooks:
             self._note_failure(self._classified(item, call) or passed, call.when)
         elif self._outcome != FAILED:
             self._outcome = outcome_so_far(report, self._outcome)
-            if is_expected_failure(report):
+            if report.skipped and hasattr(report, "wasxfail"):  # it failed as the test said it would
                 self._expected = self._classified(item, call)
         return report
 
@@ -446,11 +427,6 @@ class TestHooks:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """A report counts for the suite: a plug-in that runs a test again does not report what it undoes."""
         self._logged = bool(self._logged) or report.failed
-
-    def _executed(self, evidence: Evidence) -> Executed:
-        """What was executed: in a test that a mutant neither reached nor failed, in that test alone."""
-        is_mutant = self.session.job.mutant is not None or self.fork is not None
-        return self.units.of_test(alone=is_mutant and not evidence.hits and self._outcome != FAILED)
 
     def _note_failure(self, end: TestEnd, phase: str) -> None:
         """The first failure counts; of several subtests, the first that is more than a refusal."""
@@ -470,14 +446,13 @@ class TestHooks:
     def _test_end(self, test: str) -> TestEnd:
         if self._outcome == FAILED and self._logged is False:
             self._failure, self._outcome = None, PASSED
-        session, evidence, meter, returns = (
-            self.session,
-            self.session.evidence,
-            self.session.meter,
-            self.session.returns,
-        )
+        session, returns = self.session, self.session.returns
+        evidence, meter = session.evidence, session.meter
         wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
         assert meter is not None
+        # of a test that a mutant neither reached nor failed, it is told what was executed in that test alone
+        is_mutant = session.job.mutant is not None or self.fork is not None
+        is_alone = is_mutant and not evidence.hits and self._outcome != FAILED
         end = self._failure or TestEnd(test, self._outcome)
         end = with_evidence(end, evidence, self._failure or self._expected)
         end = replace(
@@ -501,7 +476,7 @@ class TestHooks:
             not_along=self._reading.not_along,
             more_checks=self.looks.more,
             recording=session.recording.text(session.recorder.told()),
-            executed=self._executed(evidence),
+            executed=self.units.of_test(alone=is_alone),
         )
         if not session.job.record:
             return end

@@ -28,22 +28,12 @@ from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import Isolation, StateBeforeFork
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
-from mutabot.runtime.isolation.namespaces import (
-    ALONE,
-    ForkedPids,
-    die_with_parent,
-    end_first,
-    fork,
-    leave_out,
-    nobody_listens,
-)
+from mutabot.runtime.isolation.namespaces import ForkedPids, die_with_parent, end_first, fork, leave_out
 from mutabot.runtime.plugins import alarm_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are
 #: unlike any that a program would leave with by itself
 DECIDED = 113
-#: exit code of a process that could not report
-FAILED = ALONE
 #: exit code of a child that stopped before it did what others would have noticed
 STOPPED = 116
 
@@ -272,9 +262,7 @@ class ForkParent:
             self._forking = False
         if pids is None:
             os.close(reading)
-            die_with_parent()
-            if nobody_listens(writing):  # the parent died before the kernel was asked
-                os._exit(ALONE)
+            die_with_parent(pipe=writing)
             self._begin_child(mutant, before, began)
             os.close(writing)
             return None

@@ -11,21 +11,17 @@ import selectors
 import stat
 import sys
 import weakref
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from typing import Any
 
 import wrapt
 
 _loops: weakref.WeakSet[Any] = weakref.WeakSet()
-_is_on = False
 
 
 def track_event_loops() -> None:
     """Note the loops that are made from now on."""
-    global _is_on  # noqa: PLW0603  # what is patched stays patched
-    if _is_on:
-        return
-    _is_on = True
     # most processes have no loop, and need not import asyncio for it
     wrapt.register_post_import_hook(_track, "asyncio.selector_events")
 
@@ -107,13 +103,7 @@ def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> s
         own_children: processes that this one forked for mutants.
         known: what was open before the user's code ran, as ``open_now`` gives it.
     """
-    checks: tuple[Callable[[], str | None], ...] = (
-        _threads,
-        lambda: subprocesses(own_children),
-        lambda: _open_since(known),
-        _graphics,
-    )
-    return next((reason for check in checks if (reason := check()) is not None), None)
+    return _threads() or subprocesses(own_children) or _open_since(known) or _graphics()
 
 
 def _threads() -> str | None:
@@ -183,14 +173,18 @@ def open_now() -> frozenset[tuple[int, str]]:
 
 
 def _open() -> Iterator[tuple[int, str]]:
-    for name in os.listdir(f"{_SELF}/fd"):
-        try:
-            mode, link = os.fstat(int(name)).st_mode, os.readlink(f"{_SELF}/fd/{name}")
-        except OSError:  # the descriptor of the listing itself
-            continue
+    for descriptor, status in descriptors():
+        mode, link = status.st_mode, os.readlink(f"{_SELF}/fd/{descriptor}")
         is_file = stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode)
         if not is_file and link not in _NOBODYS and not link.startswith(_HARMLESS):
-            yield int(name), link
+            yield descriptor, link
+
+
+def descriptors() -> Iterator[tuple[int, os.stat_result]]:
+    """The descriptors that are open, and what they lead to."""
+    for name in os.listdir(f"{_SELF}/fd"):
+        with suppress(OSError):  # the descriptor of the listing itself
+            yield int(name), os.fstat(int(name))
 
 
 def _shared_memory() -> Iterator[tuple[int, str]]:

@@ -51,7 +51,7 @@ def leave_out(seconds: float) -> None:
     global _left_out  # noqa: PLW0603  # a process has one clock
     if len(os.listdir("/proc/self/task")) > 1:  # the kernel would refuse when it is too late
         raise OSError(errno.EUSERS, "there are other threads")
-    _call("unshare", _CLONE_NEWTIME)
+    call("unshare", _CLONE_NEWTIME)
     whole, rest = divmod(-round((_left_out + seconds) * 1e9), 10**9)
     with open("/proc/self/timens_offsets", "w", encoding="ascii") as file:
         file.write(f"monotonic {whole} {rest}\nboottime {whole} {rest}\n")
@@ -123,7 +123,7 @@ def _start_first() -> int:
     top = (ctypes.addressof(_stack()) + _STACK_BYTES) & ~15
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
     try:
-        return _call("clone", function, ctypes.c_void_p(top), flags, None)
+        return call("clone", function, ctypes.c_void_p(top), flags, None)
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
@@ -138,7 +138,7 @@ def _fork_as(pid: int) -> int:
     arguments = (ctypes.c_uint64 * 11)(0, 0, 0, 0, signal.SIGCHLD, 0, 0, 0, ctypes.addressof(wanted), 1, 0)
     ctypes.pythonapi.PyOS_BeforeFork()
     try:
-        found = _call("syscall", _CLONE3, arguments, ctypes.sizeof(arguments))
+        found = call("syscall", _CLONE3, arguments, ctypes.sizeof(arguments))
     except OSError:
         ctypes.pythonapi.PyOS_AfterFork_Parent()
         raise
@@ -152,16 +152,17 @@ def _fork_as(pid: int) -> int:
 def _enter(path: str, kind: int) -> None:
     descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     try:
-        _call("setns", descriptor, kind)
+        call("setns", descriptor, kind)
     finally:
         os.close(descriptor)
 
 
-def _call(name: str, *arguments: Any) -> int:
+def call(name: str, *arguments: Any, what: str = "") -> int:
+    """Call a function of the C library. Raises OSError, with ``what`` that means if it fails."""
     result: int = getattr(_libc(), name)(*arguments)
     if result < 0:
-        number = ctypes.get_errno()
-        raise OSError(number, f"{name}: {os.strerror(number)}")
+        number, reason = ctypes.get_errno(), os.strerror(ctypes.get_errno())
+        raise OSError(number, f"{what} ({reason})" if what else f"{name}: {reason}")
     return result
 
 
@@ -181,15 +182,18 @@ ALONE = 115
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
 
-def die_with_parent(parent: int | None = None) -> None:
-    """Ask the kernel to end this process when its parent dies; end it now if ``parent`` is already gone."""
+def die_with_parent(parent: int | None = None, pipe: int | None = None) -> None:
+    """Ask the kernel to end this process when its parent dies; end it now if that is already gone.
+
+    It is if it is not ``parent``, or if nobody has the reading end of this ``pipe``.
+    """
     _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
-    if parent is not None and os.getppid() != parent:  # it died before the kernel was asked
+    # it may have died before the kernel was asked
+    if (parent is not None and os.getppid() != parent) or (pipe is not None and _nobody_listens(pipe)):
         os._exit(ALONE)
 
 
-def nobody_listens(descriptor: int) -> bool:
-    """Whether the reading end of a pipe is gone."""
+def _nobody_listens(descriptor: int) -> bool:
     poll = select.poll()
     poll.register(descriptor, select.POLLERR)
     return any(event & select.POLLERR for _, event in poll.poll(0))

@@ -6,7 +6,7 @@ import inspect
 import reprlib
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import isfinite
 from types import CoroutineType
 from typing import Any
@@ -19,50 +19,39 @@ from mutabot.model.units import convert
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.adapter import Invocation
 from mutabot.runtime.observation.instances import Instances
-from mutabot.runtime.targets.target import Handler, resolve
+from mutabot.runtime.targets.target import resolve
 
 
-@dataclass(slots=True)
 class ClockReader:
     """Tells a meter about the calls of the clock's tick.
 
-    Attributes:
+    Args:
         clock: what the vocabulary says.
         meter: the meter of the running test; None between tests.
         on_problem: told why a call gives no time: (key, text).
     """
 
-    clock: Clock
-    meter: Callable[[], Meter | None]
-    on_problem: Callable[[str, str], None]
-    _path: Path = field(init=False)
-    _step: float | None = field(init=False)
-
-    def __post_init__(self) -> None:
-        clock = self.clock
+    def __init__(
+        self, clock: Clock, meter: Callable[[], Meter | None], on_problem: Callable[[str, str], None]
+    ) -> None:
+        self._clock, self._meter, self._on_problem = clock, meter, on_problem
         self._path = Path.parse(clock.time, rooted=clock.rooted)
         self._step = None if clock.step is None else convert(clock.step, clock.unit, "s")
+        self._is_direct = not clock.time and self._step is None and clock.unit == "s"
 
-    def handler(self) -> Handler:
-        """What stands around the tick."""
-        is_direct = not self.clock.time and self._step is None and self.clock.unit == "s"
-
-        def handle(
-            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
-        ) -> Any:
-            __tracebackhide__ = True
-            result = wrapped(*args, **kwargs)
-            if is_direct and type(result) is float and isfinite(result):  # the way of most simulators
-                meter = self.meter()
-                if meter is not None:
-                    meter.tick(result)
-                return result
-            if isinstance(result, CoroutineType):  # nothing has happened yet
-                return self._awaited(result, wrapped, instance, args, kwargs)
+    def handle(self, wrapped: Callable[..., Any], instance: Any, args: Any, kwargs: Any) -> Any:
+        """Stand around the tick."""
+        __tracebackhide__ = True
+        result = wrapped(*args, **kwargs)
+        if self._is_direct and type(result) is float and isfinite(result):  # the way of most simulators
+            meter = self._meter()
+            if meter is not None:
+                meter.tick(result)
+        elif isinstance(result, CoroutineType):  # nothing has happened yet
+            return self._awaited(result, wrapped, instance, args, kwargs)
+        else:
             self._told(result, wrapped, instance, args, kwargs)
-            return result
-
-        return handle
+        return result
 
     async def _awaited(self, result: Any, *call: Any) -> Any:
         __tracebackhide__ = True
@@ -72,14 +61,12 @@ class ClockReader:
 
     def _told(self, result: Any, *call: Any) -> None:
         __tracebackhide__ = True
-        meter = self.meter()
+        meter = self._meter()
         if meter is None:
             return
         if self._step is not None:
             meter.advance(self._step)
-            return
-        time = self._time(result, *call)
-        if time is not None:
+        elif (time := self._time(result, *call)) is not None:
             meter.tick(time)
 
     def _time(self, result: Any, *call: Any) -> float | None:
@@ -94,10 +81,12 @@ class ClockReader:
         except (TypeError, ValueError):
             number = float("nan")
         if not isfinite(number):
-            where = f"the path {self.clock.time!r}" if self.clock.time else f"what {self.clock.tick} returns"
+            where = (
+                f"the path {self._clock.time!r}" if self._clock.time else f"what {self._clock.tick} returns"
+            )
             self._wrong(f"{where} gives {reprlib.repr(value)}, which is no number")
             return None
-        return convert(number, self.clock.unit, "s")
+        return convert(number, self._clock.unit, "s")
 
     def _start(self, *call: Any) -> Any:
         """The object or argument at which the path begins. Raises PathError if the call has none."""
@@ -108,11 +97,11 @@ class ClockReader:
         if start is None and root not in known:
             of_call = f"has no argument {root!r}; it has {', '.join(known)}"
             why = "is no method, so it has no self" if root == "self" else of_call
-            raise PathError(f"{self.clock.tick} {why}", step=root, known=known)
+            raise PathError(f"{self._clock.tick} {why}", step=root, known=known)
         return start
 
     def _wrong(self, text: str) -> None:
-        self.on_problem(
+        self._on_problem(
             "time", f"{text}; name a path that gives the time as a number, or write step = … instead"
         )
 

@@ -165,7 +165,7 @@ class CallSites:
         self._sees_itself = sees_itself
         self._hands = hands
         self._are_read = are_read
-        self.loaded: list[str] = []
+        self.loaded: set[str] = set()
         self._numbers: dict[tuple[str, Extent, str], int] = {}
 
     def install(self) -> None:
@@ -193,7 +193,7 @@ class CallSites:
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
-            self.loaded.append(path)
+            self.loaded.add(path)
 
     def give_up(self, path: str, error: Exception) -> None:
         """It is compiled without: its calls are seen by what they call."""

@@ -201,11 +201,12 @@ class Standing:
             named[id(names), first] = (names, first, names.get(first))
         return tuple(named.values())
 
-    def note_modules(self, paths: Collection[str]) -> None:
-        """Note which names of the modules of these files mean operations: they were loaded just now."""
-        for module in list(sys.modules.values()):
+    def note_modules(self, paths: set[str]) -> None:
+        """Note which names mean operations in the modules of these files, which were loaded just now."""
+        for module in list(sys.modules.values()) if paths else ():
             if isinstance(module, ModuleType) and getattr(module, "__file__", None) in paths:
                 self._names_of(vars(module))
+        paths.clear()
 
     def call(
         self, one: Adapter, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
