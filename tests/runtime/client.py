@@ -261,4 +261,5 @@ class ClientStage:
         assert session.meter is not None
         self.counted = session.meter.operations
         take_away(session)
-        return result, client, session.activations[0]
+        assert session.mutant is not None
+        return result, client, session.mutant

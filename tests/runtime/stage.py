@@ -141,7 +141,8 @@ class Stage:
         )
         session = self.session(mutant)
         result = self.run(session)
-        return result, session.activations[0]
+        assert session.mutant is not None
+        return result, session.mutant
 
 
 def _site(span: Span) -> Site:

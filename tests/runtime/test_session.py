@@ -254,7 +254,7 @@ def test_an_operator_that_fails_is_a_failure_of_the_tool_not_of_the_program(make
     stage.load_robot().locate = lambda: None  # where the robot is cannot be read
     with pytest.raises(TypeError):
         stage.mutated("by-to", "x")
-    activation = stage.sessions[-1].activations[0]
+    activation = stage.sessions[-1].mutant
     assert activation is not None
     assert "operator by-to" in (activation.evidence.failure or "")
 

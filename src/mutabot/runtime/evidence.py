@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import resource
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NoReturn
 
 from mutabot.errors import MutabotError
 from mutabot.model.job import Budget
-from mutabot.model.outcome import added
 from mutabot.model.path import class_name
 
 #: classes that are told by their names, since their modules may not be loaded, with what they hold
@@ -130,23 +129,6 @@ class Evidence:
     def refusal(self) -> str | None:
         """How the robot refused a mutated call, in its own words; None if it did not."""
         return str(leaves(self.refusals[-1])[0]) if self.refusals else self.said
-
-
-def together(found: Sequence[Evidence]) -> Evidence:
-    """The evidence of several mutants that are one: it acts if all of them do."""
-    if len(found) == 1:
-        return found[0]
-    return Evidence(
-        hits=min((one.hits for one in found), default=0),
-        acted=min((one.acted for one in found), default=0),
-        example=next((one.example for one in found if one.example is not None), None),
-        refusals=tuple(refusal for one in found for refusal in one.refusals),
-        said=next((one.said for one in found if one.said is not None), None),
-        failure=next((one.failure for one in found if one.failure is not None), None),
-        is_of_text=any(one.is_of_text for one in found),
-        is_unknown=any(one.is_unknown for one in found),
-        away=added(one.away for one in found),
-    )
 
 
 class BudgetExceeded(BaseException):  # it is no error of the program's

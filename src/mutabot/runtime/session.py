@@ -16,7 +16,7 @@ from mutabot.model.job import Budget, Job
 from mutabot.model.operation import owner_of
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import EventWriter
-from mutabot.runtime.evidence import Evidence, Meter, together
+from mutabot.runtime.evidence import Evidence, Meter
 from mutabot.runtime.inspection import Inspection
 from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
@@ -25,7 +25,7 @@ from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_
 from mutabot.runtime.observation.clock import ClockReader, ProgramTime
 from mutabot.runtime.observation.instances import Instances
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
-from mutabot.runtime.process_fault import ProcessFaults
+from mutabot.runtime.process_fault import PlacedFault
 from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.returns import Returns
@@ -51,7 +51,6 @@ class Session:
         callables, messages: what stands around the vocabulary's targets; no messages where none is asked for.
         targets: those that there are of the two.
         passing: the way of the program's calls.
-        activations: the mutants of calls that are at work: none for the original.
         inspection: what is wrong with the vocabulary.
         is_fork: whether this process was forked to be its mutant.
         text: the program text, if it is instrumented.
@@ -62,7 +61,7 @@ class Session:
         test: node id of the running test.
         noted: in the baseline, calls of the running test that the robot refused, or that returned its memory.
         on_noted: told of each of them; None if nobody asks.
-        placed: faults that their providers put in place before each test.
+        placed: the mutant, if it is a fault that its provider puts in place before each test.
     """
 
     call_sites: CallSites
@@ -75,7 +74,7 @@ class Session:
         self.instances = Instances()
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(job.vocabulary, job.inspect, self._send)
-        self.placed = ProcessFaults(self._acted)
+        self.placed = PlacedFault(self._acted)
         self.callables = Callables(self.inspection.target_is_wrong)
         self.messages: Messages | None = None
         self.targets: list[Callables | Messages] = [self.callables]
@@ -83,7 +82,6 @@ class Session:
             locator, self.recorder, self.instances, self.along, self._raised, self._on_end
         )
         self.passing.oracle_nodes = job.oracle_nodes
-        self.activations = self.passing.mutants
         self.is_fork = False
         self.text: SessionText | None = None
         self.returns: Returns | None = None
@@ -161,8 +159,8 @@ class Session:
         return self.messages
 
     def _heard(self, name: str, message: Any) -> None:
-        for activation in self.activations:
-            activation.heard(name, message)
+        if self.mutant is not None:
+            self.mutant.heard(name, message)
         self.passing.refused.heard(name, message)
         for adapter in self._telling:
             adapter.observe_message(name, message)
@@ -183,7 +181,7 @@ class Session:
         """What the program does while it is imported counts for every test that comes after."""
         self.passing.meter = Meter(Budget())
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if self.job.mutant is None else None
-        self._start_activations()
+        self._start_mutant()
 
     def _end_imports(self) -> None:
         """The first test begins."""
@@ -191,13 +189,18 @@ class Session:
             return
         for call in self.recorder.trace:
             self.pipe.send(Called(*call))
-        for activation in self.activations:
-            activation.keep_import_evidence()
+        if self.mutant is not None:
+            self.mutant.keep_import_evidence()
 
     @property
     def sites(self) -> tuple[SiteSeen, ...]:
         """All sites that were reached so far."""
         return tuple(self.recorder.sites)
+
+    @property
+    def mutant(self) -> ActiveMutant | None:
+        """The mutant of calls that is at work; None for the original, and for other mutants."""
+        return self.passing.mutant
 
     @property
     def meter(self) -> Meter | None:
@@ -213,15 +216,14 @@ class Session:
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
         self.look_back()
-        found = [activation.evidence for activation in self.activations]
         if self.text is not None and self.text.is_mutant:
-            found.append(self.text.evidence)
-        return together([*found, *self.placed.evidence])
+            return self.text.evidence
+        return self.mutant.evidence if self.mutant is not None else self.placed.evidence
 
     def look_back(self, *, at_all: bool = False) -> None:
-        """Look whether the program has written to copies that mutants handed out; ``at_all`` of them."""
-        for activation in self.activations:
-            activation.look_back(at_all=at_all)
+        """Look whether the program has written to copies that the mutant handed out; ``at_all`` of them."""
+        if self.mutant is not None:
+            self.mutant.look_back(at_all=at_all)
 
     @property
     def commands(self) -> int:
@@ -232,12 +234,12 @@ class Session:
         """Take on a mutant. What of it is an alternative in the program text stands there already."""
         operation = self.job.vocabulary.operation(mutant.operation)
         if mutant.id in self.job.faults:
-            self.placed.add(mutant, self.job.faults[mutant.id])
+            self.placed.place(mutant, self.job.faults[mutant.id])
         elif operation is not None:
             refusals = self._refusals(operation)
             on_act = partial(self._acted, mutant.id)
             told = (on_act, self._in_mutated_call, self._time.now_if_known)
-            self.activations.append(ActiveMutant(mutant, operation, refusals, *told))
+            self.passing.mutant = ActiveMutant(mutant, operation, refusals, *told)
 
     def grow(self, parent: ForkParent) -> None:
         """Run the original from now on, and fork a process for each of the parent's mutants."""
@@ -254,7 +256,7 @@ class Session:
         """In a process that was just forked: be this mutant, with its alternatives in the program text."""
         self.passing.fork_parent, self.is_fork = None, True
         self.activate(mutant)
-        self._start_activations()
+        self._start_mutant()
         if self.text is not None:
             self.text.alternatives.on_place = None
             self.text.alternatives.activate(*choices)
@@ -294,7 +296,7 @@ class Session:
         if self.text is not None:
             self.text.start_test(test)
             self._watch_text()
-        self._start_activations()
+        self._start_mutant()
         self.placed.start_test(test, lambda mutant: Random(self._seed_of(mutant)))
         has_clock = self.job.vocabulary.clock is not None
         self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
@@ -308,12 +310,12 @@ class Session:
         """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
         return derive(self.job.seed, self.job.round, self.test, mutant.ladder or mutant.id)
 
-    def _start_activations(self) -> None:
-        for activation in self.activations:
-            mutant = activation.mutant
+    def _start_mutant(self) -> None:
+        if self.mutant is not None:
+            mutant = self.mutant.mutant
             seed = self._seed_of(mutant)
             usual = self.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
-            activation.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
+            self.mutant.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
 
     def _moment_of(self, mutant: Mutant) -> Moment | None:
         """At which calls of the running test a mutant acts."""

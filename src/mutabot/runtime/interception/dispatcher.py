@@ -85,7 +85,7 @@ class Dispatcher:
         meter: what the running test has used; None between tests: then nothing is noted.
         fork_parent: set while this process runs the original and forks for each mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
-        mutants: the mutants of calls that are at work: none for the original.
+        mutant: the mutant of calls that is at work; None for the original, and for other mutants.
         on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
         refused: the calls of the running test that the robot refuses in the original.
         given: where functions of the robot were handed on, for calls that no frame tells of.
@@ -101,7 +101,7 @@ class Dispatcher:
     turn: Callable[[], None] | None = None
     meter: Meter | None = None
     fork_parent: ForkParent | None = None
-    mutants: list[ActiveMutant] = field(default_factory=list)
+    mutant: ActiveMutant | None = None
     oracle_nodes: tuple[str, ...] = ()
     on_live: Callable[[SiteCall], None] | None = None
     refused: RefusedCalls = field(default_factory=RefusedCalls)
@@ -146,7 +146,7 @@ class Dispatcher:
             on_its_way = self.dispatch(adapter, site, invocation, is_async, is_direct)
             if is_async:
                 return on_its_way
-            return run(on_its_way, operator=" and ".join(one.mutant.operator for one in self.mutants))
+            return run(on_its_way, operator=self.mutant.mutant.operator if self.mutant is not None else "")
 
         return handle
 
@@ -204,17 +204,16 @@ class Dispatcher:
                 if self.fork_parent is not None:
                     self.fork_parent.fork_at(site[0], call, made.number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
-                mutant = next((one for one in self.mutants if one.is_here(site, call)), None)
-                if mutant is None:
-                    for one in self.mutants:
-                        one.passed_by(call)
+                mutant = self.mutant
+                if mutant is not None and mutant.is_here(site, call):
+                    result, reply = await mutant.apply(adapter, made)
+                else:
+                    if mutant is not None:
+                        mutant.passed_by(call)
                     reply = await self._perform(adapter, made)
                     result = reply.payload
-                else:
-                    result, reply = await mutant.apply(adapter, made)
-                if self.mutants and call.is_command and site[1] is Role.PROGRAM:
-                    for one in self.mutants:
-                        await one.catch_up(is_async)
+                if mutant is not None and call.is_command and site[1] is Role.PROGRAM:
+                    await mutant.catch_up(is_async)
                 # 4. The program receives the result.
                 return result
             finally:

@@ -22,7 +22,7 @@ from mutabot.model.event_file import ANYBODY
 from mutabot.model.job import Budget, Job, read_job
 from mutabot.runtime import FOLDER as OURS
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves, together
+from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves
 from mutabot.runtime.processes.environment import STARTS, Now, carry, listen, starts_a_killer
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
@@ -73,7 +73,7 @@ class TextOnly:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
-        return together([self.text.evidence] if self.text is not None and self.text.is_mutant else [])
+        return self.text.evidence if self.text is not None and self.text.is_mutant else Evidence()
 
     def _acted(self) -> None:
         self.pipe.send(events.Acted(self.test))

@@ -140,7 +140,7 @@ class _Instrumenter(ast.NodeTransformer):
         if not others:
             return [node]
         raising = all(one.raises for one in place.alternatives)
-        tells = ast.Call(ast.Attribute(_switch(0), "tell", ast.Load()), [ast.Constant(place.number)], [])
+        tells = ast.Call(ast.Attribute(_switch(0), "tell", ast.Load()), [], [])
         chain: list[ast.stmt] = [others[-1]]
         for index in reversed(range(len(others) - 1)):
             chain = [placed(ast.If(_is_index(place, index), [others[index]], chain), node)]
@@ -261,7 +261,7 @@ class SessionText:
         root: absolute path of the project.
         instrumentation: what is to stand in the text.
         pipe: where reports go; a copy of a fork server gets its own.
-        on_act: told when all active alternatives have changed something in a test.
+        on_act: told when the active alternative changes something for the first time in a test.
 
     Attributes:
         alternatives: the switches of the instrumented text; idle where places are only looked at.
@@ -283,7 +283,7 @@ class SessionText:
         self.alternatives = Alternatives(size)
         self.alternatives.activate(*instrumentation.active)
         self.alternatives.forms = cache(self._forms)
-        self.alternatives.on_act = self._acted
+        self.alternatives.on_act = on_act
         self.sightings: Sightings | None = None
         if instrumentation.record:
             variables = {number: place.text for number, place in self._places.items() if place.variable}
@@ -291,7 +291,6 @@ class SessionText:
         self.pipe = pipe
         self.imported: list[str] = []
         self.problems: dict[str, str] = {}
-        self._on_act = on_act
         self._originals: dict[int, ast.expr] = {}
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._real: Callable[[str], str] = cache(os.path.realpath)
@@ -355,7 +354,7 @@ class SessionText:
     @property
     def is_mutant(self) -> bool:
         """Whether an alternative is active."""
-        return bool(self.alternatives.active)
+        return self.alternatives.active is not None
 
     def start_test(self, test: str) -> None:
         """A test begins."""
@@ -395,19 +394,18 @@ class SessionText:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
         from mutabot.runtime.interception.active_mutant import is_refusal, with_refusal  # noqa: PLC0415
 
-        if self.is_mutant and self.has_acted and is_refusal(error, refusals):
+        if self.is_mutant and self.alternatives.acted and is_refusal(error, refusals):
             self._refusals = with_refusal(self._refusals, error)
             # the vocabulary says what commands there are; this is none of them
             self._unknown = call.operation.message is not None and call.pattern is None
 
     @property
     def evidence(self) -> Evidence:
-        """What the mutant did in the running test. One of several alternatives acts if all of them did."""
-        active, alternatives = self.alternatives.active, self.alternatives
+        """What the mutant did in the running test."""
         return Evidence(
-            hits=min((alternatives.hits.get(place, 0) for place in active), default=0),
-            acted=min(map(alternatives.acted, active), default=0),
-            example=next(iter(alternatives.examples.values()), None),
+            hits=self.alternatives.hits.get(self.alternatives.place, 0),
+            acted=self.alternatives.acted,
+            example=self.alternatives.example,
             refusals=self._refusals,
             is_of_text=True,
             is_unknown=self._unknown,
@@ -416,15 +414,6 @@ class SessionText:
     def _tell_reached(self) -> None:
         assert self.sightings is not None
         self._send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
-
-    @property
-    def has_acted(self) -> bool:
-        """Whether all active alternatives have changed something in this test, or before any."""
-        return all(map(self.alternatives.acted, self.alternatives.active))
-
-    def _acted(self, place: int) -> None:
-        if self.has_acted:
-            self._on_act()
 
     def _send(self, event: Event) -> None:
         if self.pipe is not None:

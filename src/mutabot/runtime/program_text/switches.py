@@ -335,33 +335,33 @@ class Alternatives:
     """All places of the program, and which of their alternatives is active.
 
     Attributes:
-        active: index of the active alternative by place; more than one for mutants of higher order.
+        active: the active alternative; None for the original.
         hits: evaluations of each place that was on, in the running test and before any.
-        idle: evaluations of each active place at which the alternative had the value of the original; of a
+        idle: evaluations of the active place at which the alternative had the value of the original; of a
             watched place, those at which all alternatives that are still watched had it.
-        examples: value of the original and of the alternative when they first differed, by place; of what
-            is no plain value, its type.
+        example: value of the original and of the alternative when they first differed; of what is no plain
+            value, its type.
         on_place: told the number of a watched place, and which of its watched alternatives are about to
             differ for the first time from the original, or may be; it may activate one of them, which then
             stands there at once.
         forms: gives a place as trees that can be looked ahead of; None for statements.
         on_first: told the number of a place that is on when it is first evaluated since ``start``.
-        on_act: told the number of an active place when its alternative is known to change something, or
-            may do so, for the first time since ``start``.
+        on_act: told when the active alternative is known to change something, or may do so, for the first
+            time since ``start``.
         switches: what instrumented program text looks at; item 0 is this object.
     """
 
     def __init__(self, size: int) -> None:
         """``size``: the largest number of a place."""
-        self.active: dict[int, int] = {}
+        self.active: Choice | None = None
         self.hits: dict[int, int] = {}
         self.idle: dict[int, int] = {}
-        self.examples: dict[int, tuple[Any, Any]] = {}
-        self._kept: tuple[dict[int, Any], ...] = ({}, {}, {})
-        self._told: set[int] = set()
+        self.example: tuple[Any, Any] | None = None
+        self._kept: tuple[dict[int, int], dict[int, int], tuple[Any, Any] | None] = ({}, {}, None)
+        self._has_told = False
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
-        self.on_act: Callable[[int], None] | None = None
+        self.on_act: Callable[[], None] = lambda: None
         self.on_first: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
 
@@ -371,36 +371,41 @@ class Alternatives:
 
     def keep(self) -> None:
         """Count what was counted so far in every test."""
-        self._kept = (self.hits, self.idle, self.examples)
+        self._kept = (self.hits, self.idle, self.example)
 
     def start(self) -> None:
         """A new test begins: count anew."""
-        self.hits, self.idle, self.examples = map(dict, self._kept)
-        self._told.clear()
+        hits, idle, self.example = self._kept
+        self.hits, self.idle, self._has_told = dict(hits), dict(idle), False
 
-    def acted(self, place: int) -> int:
+    @property
+    def place(self) -> int:
+        """The place of the active alternative; 0 for the original."""
+        return self.active.place if self.active is not None else 0
+
+    @property
+    def acted(self) -> int:
         """Evaluations at which the active alternative changed something, or raised."""
-        return self.hits.get(place, 0) - self.idle.get(place, 0)
+        return self.hits.get(self.place, 0) - self.idle.get(self.place, 0)
 
     def note(self, place: int, before: Any, after: Any) -> None:
         """An alternative has its value; compare it with the original's, where that is known."""
         if before is not _UNKNOWN and _is_same(before, after):
             self.idle[place] = self.idle.get(place, 0) + 1
             return
-        if before is not _UNKNOWN and place not in self.examples:
-            self.examples[place] = (_plain(before), _plain(after))
-        self.tell(place)
+        if before is not _UNKNOWN and self.example is None:
+            self.example = (_plain(before), _plain(after))
+        self.tell()
 
-    def tell(self, place: int) -> None:
-        """An alternative changed something, or may have."""
-        if place not in self._told:
-            self._told.add(place)
-            if self.on_act is not None:
-                self.on_act(place)
+    def tell(self) -> None:
+        """The active alternative changed something, or may have."""
+        if not self._has_told:
+            self._has_told = True
+            self.on_act()
 
-    def activate(self, *choices: Choice) -> None:
-        """Make these alternatives, and no others, stand for the original."""
-        self.active = {choice.place: choice.index for choice in choices}
+    def activate(self, choice: Choice | None = None) -> None:
+        """Make this alternative, and no other, stand for the original."""
+        self.active = choice
         self._set({})
 
     def watch(self, live: Mapping[int, frozenset[int]]) -> None:
@@ -418,7 +423,7 @@ class Alternatives:
             self.on_first(place)
         if switch.watched:
             self._look_ahead(switch, frame)
-        index = self.active.get(place)
+        index = self.active.index if self.active is not None and self.active.place == place else None
         if index is not None and index < 0:
             self._control(place, index)
             return False
@@ -432,7 +437,7 @@ class Alternatives:
             self.switches[place] = False
         if due and self.on_place is not None:
             self.on_place(place, due)
-        if switch.watched and place not in self.active:
+        if switch.watched and place != self.place:
             self.idle[place] = self.idle.get(place, 0) + 1
 
     def foreseen(self, place: int, frame: FrameType) -> Any:
@@ -454,7 +459,7 @@ class Alternatives:
     def _control(self, place: int, index: int) -> None:
         """The controls, which every place knows: nothing happens, or it raises."""
         if index == FATAL:
-            self.tell(place)
+            self.tell()
             from mutabot.operators.command import FatalFault  # noqa: PLC0415  # a control, once in a campaign
 
             raise FatalFault(f"control: place {place} fails")
@@ -463,17 +468,18 @@ class Alternatives:
 
     def _set(self, watched: Mapping[int, frozenset[int]]) -> None:
         switches: list[Any] = [False] * len(self.switches)
-        for place in watched.keys() | self.active.keys():
-            index, watching = self.active.get(place), watched.get(place, frozenset())
-            switches[place] = Switch(self, place, index, watching)
+        for place, indexes in watched.items():
+            switches[place] = Switch(self, place, None, indexes)
+        if self.active is not None:
+            place, watching = self.active.place, watched.get(self.active.place, frozenset())
+            switches[place] = Switch(self, place, self.active.index, watching)
         self.switches[1:] = switches[1:]  # at once: other threads may look at them
 
     # what templates may call (``HELPER``); none of it belongs to one operator
 
     def fail(self, name: str, text: str) -> NoReturn:
         """Raise an exception of this name and text."""
-        for place in self.active:
-            self.tell(place)
+        self.tell()
         raise error_of(name)(text)
 
     def fail_if(self, value: Any, wrong: Any, name: str, text: str) -> Any:
