@@ -159,7 +159,7 @@ def take_away(session: Session) -> None:
     """Let nothing of a session act any more: only tests have several in one process."""
     session.passing.meter = None
     sites: Any = session.call_sites
-    sites._stands, sites._hands = (lambda site, found, receiver, frame: found), None
+    sites.stands, sites.hands = (lambda site, found, receiver, frame: found), None
     for step in (sites, session.text, session.returns):
         forget(step)
     for target, original in session.callables.found.items():

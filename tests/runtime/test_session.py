@@ -131,9 +131,9 @@ def test_noise_is_the_same_for_the_same_seed_and_differs_between_hits(make_stage
     first = make_stage(ROBOT, program, VOCABULARY)
     readings, activation = first.mutated("noise", "result")
     assert len(set(readings)) == 3
-    activation.start(7)
+    activation.start(7, 0, "", None, frozenset())
     again = first.run(first.sessions[-1])
-    activation.start(7)
+    activation.start(7, 0, "", None, frozenset())
     assert first.run(first.sessions[-1]) == again
     assert activation.evidence.acted == 3
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import resource
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Any, NoReturn
 
@@ -120,6 +120,10 @@ class Evidence:
     is_unknown: bool = False
     away: dict[str, int] = field(default_factory=dict)
 
+    def copy(self) -> Evidence:
+        """The same, for itself."""
+        return replace(self, away=dict(self.away))
+
     @property
     def culprits(self) -> frozenset[int]:
         """The refusals and all that they hold, each by its ``id``."""
@@ -159,10 +163,6 @@ class Meter:
     def __post_init__(self) -> None:
         self.most = inf if self.budget.operations is None else self.budget.operations
 
-    def exceed_operations(self) -> NoReturn:
-        """End a test whose intercepted calls are more than ``most``. Raises BudgetExceeded."""
-        self._exceed(f"more than {self.budget.operations} operations")
-
     def tick(self, time: float) -> None:
         """The simulation has advanced to ``time`` (s). Raises BudgetExceeded beyond the limit."""
         if self.started is None or self.now is None:
@@ -182,7 +182,7 @@ class Meter:
         self.now = time
         limit = self.budget.simulated
         if limit is not None and (self.simulated or 0.0) > limit:
-            self._exceed(f"more than {limit:.6g} s of simulated time")
+            self.exceed(f"more than {limit:.6g} s of simulated time")
 
     @property
     def simulated(self) -> float | None:
@@ -191,7 +191,8 @@ class Meter:
             return None
         return self.used + self.now - self.started
 
-    def _exceed(self, text: str) -> NoReturn:
+    def exceed(self, text: str) -> NoReturn:
+        """End a test that goes beyond a limit. Raises BudgetExceeded."""
         self.exceeded = self.exceeded or text
         raise BudgetExceeded(text)
 

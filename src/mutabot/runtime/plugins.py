@@ -139,14 +139,11 @@ def _stand_in(plugin: ModuleType, hooks: tuple[str, ...]) -> ModuleType:
     """A plug-in with the declarations and fixtures of another."""
     found = ModuleType(f"stand-in for {plugin.__name__}")
     for name, value in vars(plugin).items():
-        if name in hooks or _is_fixture(value):
+        # before pytest 8.4, a fixture is a function with a mark
+        is_fixture = hasattr(value, "_pytestfixturefunction")
+        if name in hooks or is_fixture or type(value).__name__ == "FixtureFunctionDefinition":
             setattr(found, name, value)
     return found
-
-
-def _is_fixture(value: Any) -> bool:
-    # before pytest 8.4, a fixture is a function with a mark
-    return type(value).__name__ == "FixtureFunctionDefinition" or hasattr(value, "_pytestfixturefunction")
 
 
 def _normal(requirement: str) -> str:

@@ -70,7 +70,7 @@ class Session:
     def __init__(self, job: Job, pipe: EventWriter, locator: Locator) -> None:
         self.job, self.pipe, self.locator = job, pipe, locator
         self.recorder = Recorder(self._site_seen)
-        self.recording = TestRecording()
+        self.recording = TestRecording(self._simulated, self._aside, job.vocabulary.clock is not None)
         self.instances = Instances()
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(job.vocabulary, job.inspect, self._send)
@@ -118,7 +118,11 @@ class Session:
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
         if self.job.record or self.job.serving is not None:
-            self._watch_imports()
+            # what the program does while it is imported counts for every test that comes after
+            self.passing.meter = Meter(Budget())
+            is_original = self.job.mutant is None
+            self.recorder.answers = Answers(handles_of(vocabulary)) if is_original else None
+            self._start_mutant()
 
     def _see_calls(self) -> None:
         """See calls where they are written, of whatever stands in the place of an operation."""
@@ -176,21 +180,6 @@ class Session:
         adapter.handler = self.passing.handler(adapter)
         self._sees_itself.add(adapter.handler)
         return adapter.handler
-
-    def _watch_imports(self) -> None:
-        """What the program does while it is imported counts for every test that comes after."""
-        self.passing.meter = Meter(Budget())
-        self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if self.job.mutant is None else None
-        self._start_mutant()
-
-    def _end_imports(self) -> None:
-        """The first test begins."""
-        if self.meter is None or self.test:
-            return
-        for call in self.recorder.trace:
-            self.pipe.send(Called(*call))
-        if self.mutant is not None:
-            self.mutant.keep_import_evidence()
 
     @property
     def sites(self) -> tuple[SiteSeen, ...]:
@@ -274,7 +263,11 @@ class Session:
 
         ``fixtures`` tells what objects they hold; None in a process below the tests.
         """
-        self._end_imports()
+        if self.meter is not None and not self.test:  # the first test
+            for call in self.recorder.trace:
+                self.pipe.send(Called(*call))
+            if self.mutant is not None:
+                self.mutant.early = self.mutant.evidence
         self.test = test
         self.standing.note_modules(self.call_sites.loaded)
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
@@ -298,8 +291,7 @@ class Session:
             self._watch_text()
         self._start_mutant()
         self.placed.start_test(test, lambda mutant: Random(self._seed_of(mutant)))
-        has_clock = self.job.vocabulary.clock is not None
-        self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
+        self.recording.start(test, is_wanted=self.job.evidence)
 
     def _aside(self) -> Untracked:
         """What is done in this context is none of the program's doing."""

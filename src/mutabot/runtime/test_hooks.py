@@ -58,12 +58,7 @@ FAILED = "failed"
 
 
 def classify(
-    error: BaseException,
-    test: str,
-    test_file: str,
-    locator: Locator,
-    vocabulary: Vocabulary,
-    evidence: Evidence,
+    error: BaseException, test: str, file: str, locator: Locator, vocabulary: Vocabulary, evidence: Evidence
 ) -> TestEnd:
     """The end of a test that this exception means: why it failed, and nothing else.
 
@@ -73,13 +68,13 @@ def classify(
     Args:
         error: what pytest caught.
         test: node id of the test.
-        test_file: its file, whose folder holds the test's own helpers.
+        file: its file, whose folder holds the test's own helpers.
     """
     found = leaves(error)
     culprits = evidence.culprits
     is_refused = is_due_to(error, culprits)
     counting = [leaf for leaf in found if is_refused or not is_due_to(leaf, culprits)]
-    no_checks = [leaf for leaf in counting if not _is_check(leaf, test_file, locator, vocabulary)]
+    no_checks = [leaf for leaf in counting if not _is_check(leaf, file, locator, vocabulary)]
     overdue = next((leaf for leaf in found if _is_timeout(leaf)), None)
     shown = overdue or (no_checks or counting)[0]
     is_syntax = all(isinstance(leaf, SyntaxError) for leaf in found)
@@ -257,10 +252,11 @@ class ForkedRun:
         self._session.pipe.send(ForkSessionEnd((self.mutant.id,), errors=tuple(errors)))
 
     def _report(self, end: TestEnd) -> None:
-        sites = self._session.recorder.sites_of(end.trace) if end.outcome != FAILED else ()
         if end.outcome == FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
-        self._session.pipe.send(ForkTestEnd(self.mutant.id, end, sites, self._shared, self._is_early))
+        sites = [self._session.recorder.sites[index] for index in sorted({hit[0] for hit in end.trace})]
+        told = ForkTestEnd(self.mutant.id, end, tuple(sites), self._shared, self._is_early)
+        self._session.pipe.send(told)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """The program is about to start its first process, which is to be the mutant as well."""
@@ -293,7 +289,6 @@ class TestHooks:
 
     Args:
         session: the job at hand.
-        locator: whose file is whose.
 
     Attributes:
         members: processes below the test process; None as long as no job is known. A fork has its own.
@@ -305,9 +300,8 @@ class TestHooks:
 
     __test__ = False  # not a test class, whatever pytest may think of the name
 
-    def __init__(self, session: Session, locator: Locator) -> None:
+    def __init__(self, session: Session) -> None:
         self.session = session
-        self.locator = locator
         self.members: Members | None = None
         self.fork: ForkedRun | None = None
         self.left_out: frozenset[str] = frozenset()
@@ -440,7 +434,7 @@ class TestHooks:
         if call.excinfo is None:
             return None
         session = self.session
-        known = (self.locator, session.job.vocabulary, session.evidence)
+        known = (session.locator, session.job.vocabulary, session.evidence)
         return classify(call.excinfo.value, node_id(item), str(item.path), *known)
 
     def _test_end(self, test: str) -> TestEnd:

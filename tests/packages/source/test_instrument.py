@@ -227,7 +227,7 @@ def test_an_alternative_that_changes_no_value_has_not_acted(
     tmp_path: Path, operator: str, variant: str, arguments: Any, acted: int, example: Any
 ) -> None:
     text = text_of(tmp_path, "def f(x, y):\n    return x + y\n", operator)
-    choice, place, _ = next(
+    choice, _, _ = next(
         found for found in choices(text) if found[2].variant == variant and found[1].text != "x"
     )
     told: list[int] = []

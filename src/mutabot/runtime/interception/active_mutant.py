@@ -14,7 +14,7 @@ from random import Random
 from typing import Any
 
 from mutabot.errors import OperatorError, PathError
-from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Path, Proceed, Reply, Role, Span
+from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Path, Proceed, Reply, Span
 from mutabot.model.answer import is_member, member_of, restore
 from mutabot.model.job import Idle, RefusedAt
 from mutabot.model.operation import Form, Refused
@@ -27,7 +27,7 @@ from mutabot.runtime.interception import call_faults
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot
 from mutabot.runtime.interception.live import HandedCopies, copied, is_live
 from mutabot.runtime.interception.trace import LOST
-from mutabot.runtime.targets.target import is_named
+from mutabot.runtime.targets.target import Place, is_named
 
 #: a call of a test: its site, operation and pattern, and its number among those of the site
 _Key = tuple[Span, str, str | None]
@@ -115,11 +115,6 @@ def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
     return None
 
 
-def is_told_on(refused: Iterable[Refused], name: str) -> bool:
-    """Whether messages under this name say how commands end."""
-    return any(one.topic is not None and fnmatchcase(name, one.topic) for one in refused)
-
-
 def _is_rejected(call: Call, result: Any) -> bool:
     named = call.operation.named
     return named is not None and named.form is Form.GOAL and getattr(result, "accepted", None) is False
@@ -178,6 +173,7 @@ class ActiveMutant:
         watched: how the robot says that it refuses the last mutated call of the running test.
         usual: numbers of the calls of its site in the running test that the robot refuses in the original.
         copies: whether its operator remembers calls and replies, so that it needs copies.
+        early: what it did before the first test, which counts in every test.
     """
 
     mutant: Mutant
@@ -191,6 +187,7 @@ class ActiveMutant:
     watched: tuple[Refused, ...] = ()
     usual: frozenset[int] = frozenset()
     copies: bool = False
+    early: Evidence = field(default_factory=Evidence)
     _told_by: tuple[Refused, ...] = ()
     _commands: int = 0
     _told: int = 0
@@ -199,23 +196,11 @@ class ActiveMutant:
     _idle: Idle | None = None
     _moment: Moment | None = None
     _test: tuple[int, str] = (0, "")
-    _early: Evidence = field(default_factory=Evidence)
     _handed: HandedCopies | None = None
     _due: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
     _next: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
 
-    def keep_import_evidence(self) -> None:
-        """Count what it did before the first test in every test."""
-        self._early = self.evidence
-
-    def start(
-        self,
-        seed: int,
-        round: int = 0,
-        test: str = "",
-        moment: Moment | None = None,
-        usual: frozenset[int] = frozenset(),
-    ) -> None:
+    def start(self, seed: int, round: int, test: str, moment: Moment | None, usual: frozenset[int]) -> None:
         """Begin a new test; the mutant's randomness follows from ``seed`` alone.
 
         Args:
@@ -225,7 +210,7 @@ class ActiveMutant:
             usual: numbers of the calls of its site that the robot refuses in the original too.
         """
         self.usual = usual
-        self.evidence = replace(self._early, away=dict(self._early.away))
+        self.evidence = self.early.copy()
         self.rule = operator(self.mutant.operator)
         self.copies = Need.COPIES in self.rule.needs
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
@@ -236,7 +221,7 @@ class ActiveMutant:
         self._handed = None
         self._due, self._next = [], []
 
-    def is_here(self, site: tuple[Span, Role], call: Call) -> bool:
+    def is_here(self, site: Place, call: Call) -> bool:
         """Whether a call at this place is the mutant's, by its operation and text command."""
         own = self.mutant.site
         pattern = call.pattern.text if call.pattern is not None else None
@@ -317,7 +302,7 @@ class ActiveMutant:
 
     def heard(self, name: str, message: Any) -> None:
         """Look whether a message that came by says that the robot refuses what it was told."""
-        if not is_told_on(self._told_by, name):
+        if not any(one.topic is not None and fnmatchcase(name, one.topic) for one in self._told_by):
             return
         self._told += 1
         if self.watched:
@@ -458,8 +443,8 @@ class _MutatedCall:
             result = await self._perform(call)
         except BaseException as error:
             self.raised = error.error if isinstance(error, Carried) else error
-            if is_changed:
-                self._judge(self.raised)
+            if is_changed and is_refusal(self.raised, mutant.refusals) and not self._is_usual:
+                mutant.evidence.refusals = with_refusal(mutant.evidence.refusals, self.raised)
             raise
         finally:
             if is_changed:
@@ -507,11 +492,6 @@ class _MutatedCall:
         self.mutant.note(self.passage)
         self.mutant.on_call(False)
         self.mutant.on_act()
-
-    def _judge(self, error: BaseException) -> None:
-        """Note what the robot raised, if it refuses the mutated call."""
-        if is_refusal(error, self.mutant.refusals) and not self._is_usual:
-            self.mutant.evidence.refusals = with_refusal(self.mutant.evidence.refusals, error)
 
 
 def is_refusal(error: BaseException, names: Iterable[str]) -> bool:

@@ -19,7 +19,7 @@ from inspect import Parameter, Signature
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Role, Span, Vocabulary
+from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Vocabulary
 from mutabot.model.answer import NotKeptError, is_member, is_of_numpy, keep, name_of, restore
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
@@ -28,7 +28,7 @@ from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
-from mutabot.runtime.targets.target import NOWHERE, Handler, Where, resolve
+from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where, resolve
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
@@ -147,7 +147,7 @@ class SiteCall:
         is_direct: whether the program itself makes the call, rather than a library that it calls.
     """
 
-    site: tuple[Span, Role]
+    site: Place
     call: Call
     number: int
     is_async: bool = False
@@ -314,8 +314,9 @@ class Adapter:
         if call is original:
             return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
-        wrapped = self._opposite(call) if call.reversed and not is_text else invocation.wrapped
         meant = call.pattern if call.pattern is not None else self.operation
+        opposite = meant.opposite if call.reversed and not is_text else None
+        wrapped = self._other(opposite, invocation) if opposite is not None else invocation.wrapped
         changed = changes(meant.arguments, original.values, call.values)
         args, kwargs = invocation.args, invocation.kwargs
         if invocation.values is not None and (changed or call.reversed):
@@ -376,12 +377,6 @@ class Adapter:
             given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
             text = f"{self.operation.signature} does not take the call ({', '.join(given)})"
             self._tell("signature", text)
-
-    def _opposite(self, call: Call) -> Callable[..., Any]:
-        target = call.pattern.opposite if call.pattern is not None else self.operation.opposite
-        assert target is not None
-        opposite: Callable[..., Any] = self._other(target, call.payload)
-        return opposite
 
     def _other(self, target: str, invocation: Invocation) -> Any:
         """Return another attribute of the same object, or of its module where that is not possible."""

@@ -32,7 +32,7 @@ from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.observation.instances import Instances
 from mutabot.runtime.observation.probes import Along
-from mutabot.runtime.targets.target import NOWHERE, Handler, Where
+from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -105,7 +105,7 @@ class Dispatcher:
     oracle_nodes: tuple[str, ...] = ()
     on_live: Callable[[SiteCall], None] | None = None
     refused: RefusedCalls = field(default_factory=RefusedCalls)
-    given: dict[Adapter, tuple[Span, Role] | None] = field(default_factory=dict)
+    given: dict[Adapter, Place | None] = field(default_factory=dict)
     calls: Counter[tuple[Span, str, str | None]] = field(default_factory=Counter)
 
     def handler(self, adapter: Adapter) -> Handler:
@@ -114,13 +114,7 @@ class Dispatcher:
         # how many ticks and sleeps of a rate there are is a matter of time
         is_counted = named is None or named.form not in (Form.TICK, Form.SLEEP)
 
-        def handle(
-            wrapped: Callable[..., Any],
-            instance: Any,
-            args: tuple[Any, ...],
-            kwargs: dict[str, Any],
-            where: Where = NOWHERE,
-        ) -> Any:
+        def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where = NOWHERE) -> Any:
             __tracebackhide__ = True
             if self.turn is not None:
                 self.turn()
@@ -133,7 +127,7 @@ class Dispatcher:
             if is_counted and not where.is_again:
                 self.meter.operations += 1
                 if self.meter.operations > self.meter.most:
-                    self.meter.exceed_operations()
+                    self.meter.exceed(f"more than {self.meter.most} operations")
             frame = sys._getframe(1)
             site = where.site or self._site(frame, where, adapter)
             if site is None:
@@ -150,7 +144,7 @@ class Dispatcher:
 
         return handle
 
-    def _site(self, frame: FrameType, where: Where, adapter: Adapter) -> tuple[Span, Role] | None:
+    def _site(self, frame: FrameType, where: Where, adapter: Adapter) -> Place | None:
         node, code, locator = where.node, where.code, self.locator
         site = locator.locate(frame) if code is None else locator.locate_definition(code)
         if site is not None and node is not None and any(fnmatchcase(node, one) for one in self.oracle_nodes):
@@ -169,12 +163,7 @@ class Dispatcher:
         return frame is not None and self.locator.locate_definition(frame.f_code) is not None
 
     async def dispatch(
-        self,
-        adapter: Adapter,
-        site: tuple[Span, Role],
-        invocation: Invocation,
-        is_async: bool,
-        is_direct: bool,
+        self, adapter: Adapter, site: Place, invocation: Invocation, is_async: bool, is_direct: bool
     ) -> Any:
         """Let one call go its way.
 

@@ -6,7 +6,7 @@ Whose call it is, and exactly where it stands: from the frames of the running pr
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import CodeType, FrameType
@@ -20,6 +20,7 @@ from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
 from mutabot.runtime.interception.adapter import SiteCall, call_context
+from mutabot.runtime.targets.target import Place
 
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
@@ -101,10 +102,6 @@ class Recorder:
         role = Role.ORACLE if site.oracle else Role.PROGRAM
         ended = began if ended is None else ended
         return RecordedCall(began, ended, site.operation, place, site.pattern, written, read, role)
-
-    def sites_of(self, trace: Iterable[Any]) -> tuple[SiteSeen, ...]:
-        """Return the sites that a trace refers to, those of processes below the tests as well."""
-        return tuple(self.sites[index] for index in sorted({hit[0] for hit in trace}))
 
 
 def seen_by(made: SiteCall) -> SiteSeen:
@@ -206,7 +203,7 @@ class Locator:
         # every other frame is Python's: asking its front end for each would cost each call
         self._interpreted = [one for one in front_ends() if one is not PYTHON]
 
-    def locate(self, frame: FrameType | None) -> tuple[Span, Role] | None:
+    def locate(self, frame: FrameType | None) -> Place | None:
         """Span and role of the call that is running in ``frame`` or the nearest frame around it."""
         interpreted = self._interpreted
         while frame is not None:
@@ -220,7 +217,7 @@ class Locator:
             frame = frame.f_back
         return None
 
-    def locate_definition(self, code: CodeType) -> tuple[Span, Role] | None:
+    def locate_definition(self, code: CodeType) -> Place | None:
         """Span and role of a function's definition; None for one of neither the program nor the oracle."""
         role = self.role(code.co_filename)
         if role is None:
@@ -239,7 +236,7 @@ class Locator:
     def _absolute(self, path: str) -> str:
         return os.path.realpath(os.path.join(self._root, path))
 
-    def _in_interpreter(self, frame: FrameType) -> tuple[Span, Role] | None:
+    def _in_interpreter(self, frame: FrameType) -> Place | None:
         """The same for a frame in which an interpreter carries out a file of the program or the oracle."""
         for front_end in self._interpreted:
             filename = front_end.file_of(frame)

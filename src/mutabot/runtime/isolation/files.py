@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from mutabot.frozen import frozen
 from mutabot.runtime.isolation.forkable import descriptors, go_on_running, own_event_loops, running_loop
 from mutabot.runtime.isolation.namespaces import asks_for_id, call, keeps_ids
 
@@ -31,6 +30,10 @@ _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE = 4096, 16384, 1 << 18
 _NO_MOUNTS = "this system allows no private mounts"
 _SHARED_MEMORY = "/dev/shm"
+#: where a process keeps what it prints, in its home
+LOG = "log.txt"
+#: where forks have their folders, there
+_FORKS = "forks"
 #: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
 #: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
 _LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
@@ -60,11 +63,15 @@ class PrivateFiles:
         root: absolute path of the project.
         home: the process's own folder, beside those of other processes, which it cannot touch.
         shared: the folder that stays common to all processes, but for those folders.
+
+    Attributes:
+        why_not: why its files are not private, in words; None if they are.
     """
 
     root: str
     home: str
     shared: str
+    why_not: str | None = "private_files is switched off"
     _own: str = ""
     _is_privileged: bool = False
     _below: list[str] | None = None
@@ -79,7 +86,7 @@ class PrivateFiles:
         Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if
         it is done.
         """
-        place = os.getcwd()
+        place, self.why_not = os.getcwd(), None
         try:
             self._is_privileged = _enter_namespace()
             _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
@@ -91,10 +98,40 @@ class PrivateFiles:
             if self._bare >= 0:
                 self._go_back()
                 os.chdir(place)
-            return f"{error.strerror or error}"
-        with suppress(OSError):  # the same folder, but seen through its new layers
-            os.chdir(place)
+            self.why_not = f"{error.strerror or error}"
+        else:
+            with suppress(OSError):  # the same folder, but seen through its new layers
+                os.chdir(place)
+        return self.why_not
+
+    def forbids_fork(self) -> str | None:
+        """Why open files or missing namespaces forbid a fork right now; None if they do not."""
+        if self.why_not is not None:
+            return f"its files are not private: {self.why_not}"
+        folders = private_folders(self.root)
+        for path, mode in _written():
+            if is_below(path, self.home):
+                continue
+            if mode == os.O_RDWR:  # a database knows which file it has opened, and a fork has another one
+                return f"{path} is open for reading and writing"
+            if not any(is_below(path, one) for one in folders):
+                return f"{path} is open for writing"
+        if not keeps_ids() and (file := asks_for_id(self.root)) is not None:
+            return f"{file} asks for the process id, and a fork of an ordinary user has one of its own"
         return None
+
+    def enter(self, name: str) -> str:
+        """In a process that was just forked, while its parent waits: share nothing with it any more.
+
+        ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
+        cannot be kept apart.
+        """
+        folder, log = os.path.join(self.home, _FORKS, name), os.stat(os.path.join(self.home, LOG))
+        os.makedirs(folder)
+        self.go_on_apart(folder)
+        isolate_files(log)  # what leads to the parent's log leads nowhere
+        own_event_loops()
+        return folder
 
     def _go_back(self) -> None:
         """Go where nothing is covered; the working folder is the root then."""
@@ -311,8 +348,6 @@ def is_below(path: str, folder: str) -> bool:
 
 
 _CHUNK = 1 << 16
-#: where forks have their folders, in that of the process
-_FORKS = "forks"
 #: device, inode, position and flags of an open file: descriptors that agree in them share one opening
 _Shared = tuple[int, int, int, int]
 
@@ -333,53 +368,6 @@ class StateBeforeFork:
         go_on_running(self._loop)
 
 
-@frozen
-class Isolation:
-    """How a forked process is kept apart from its parent.
-
-    Attributes:
-        log: device and inode of the parent's log; in a fork, what leads there leads nowhere.
-        home: the parent's own folder.
-        files: the parent's private files; None if its files are not private.
-        why_not: why they are not, in words, or None.
-    """
-
-    log: tuple[int, int]
-    home: str
-    files: PrivateFiles | None
-    why_not: str | None = None
-
-    def reason(self) -> str | None:
-        """Why open files or missing namespaces forbid a fork right now; None if they do not."""
-        if self.files is None:
-            return f"its files are not private: {self.why_not}"
-        folders = private_folders(self.files.root)
-        for path, mode in _written():
-            if is_below(path, self.files.home):
-                continue
-            if mode == os.O_RDWR:  # a database knows which file it has opened, and a fork has another one
-                return f"{path} is open for reading and writing"
-            if not any(is_below(path, one) for one in folders):
-                return f"{path} is open for writing"
-        if not keeps_ids() and (file := asks_for_id(self.files.root)) is not None:
-            return f"{file} asks for the process id, and a fork of an ordinary user has one of its own"
-        return None
-
-    def enter(self, name: str) -> str:
-        """In a process that was just forked, while its parent waits: share nothing with it any more.
-
-        ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
-        cannot be kept apart.
-        """
-        assert self.files is not None
-        folder = os.path.join(self.home, _FORKS, name)
-        os.makedirs(folder)
-        self.files.go_on_apart(folder)
-        isolate_files(self.log)
-        own_event_loops()
-        return folder
-
-
 def _written() -> Iterator[tuple[str, int]]:
     """Paths of the files that are open for writing and have a name, and how they are open."""
     for descriptor, status in descriptors():
@@ -389,7 +377,7 @@ def _written() -> Iterator[tuple[str, int]]:
             yield os.readlink(f"/proc/self/fd/{descriptor}"), mode
 
 
-def isolate_files(log: tuple[int, int], instead: int | None = None) -> None:
+def isolate_files(log: os.stat_result, instead: int | None = None) -> None:
     """In a process that was just forked: stop reading and writing where its parent does.
 
     An open file has one position for parent and child; the child opens its own. Of a deleted temporary file,
@@ -397,14 +385,14 @@ def isolate_files(log: tuple[int, int], instead: int | None = None) -> None:
     elsewhere.
 
     Args:
-        log: device and inode of the parent's log.
+        log: the parent's log.
         instead: descriptor of the child's own log; None for nowhere.
     """
     found = list(descriptors())  # before any is opened here
     nowhere = os.open(os.devnull, os.O_WRONLY)
     copies: dict[_Shared, int] = {}
     for descriptor, status in found:
-        if (status.st_dev, status.st_ino) == log:
+        if os.path.samestat(status, log):
             target = nowhere if instead is None else instead
             os.dup2(target, descriptor, inheritable=os.get_inheritable(descriptor))
         elif stat.S_ISREG(status.st_mode):

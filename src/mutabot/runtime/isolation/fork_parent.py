@@ -26,7 +26,7 @@ from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Un
 from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.isolation.files import Isolation, StateBeforeFork
+from mutabot.runtime.isolation.files import PrivateFiles, StateBeforeFork
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
 from mutabot.runtime.isolation.namespaces import ForkedPids, die_with_parent, end_first, fork, leave_out
 from mutabot.runtime.plugins import alarm_held
@@ -97,7 +97,7 @@ class ForkParent:
         forking: the mutants, and what children may use.
         tests: the tests of the session, in their order.
         pipe: the file of events.
-        isolation: how a child is kept apart from this process.
+        files: those of this process, which keep a child apart from it.
         become: called in a child, with its mutant and its folder: it goes on as that mutant.
         has_nodes: whether nodes below a child would meet those below others.
         has_started: whether processes of the program were started, which have run it as the original.
@@ -108,7 +108,7 @@ class ForkParent:
     forking: Forking
     tests: tuple[str, ...]
     pipe: EventFile
-    isolation: Isolation
+    files: PrivateFiles
     become: Callable[[Mutant, str], None]
     has_nodes: bool = False
     has_started: Callable[[], bool] = lambda: False
@@ -211,7 +211,9 @@ class ForkParent:
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
             own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
-            reason = STARTED if self._is_overtaken() else self.isolation.reason() or why_not(own, self._known)
+            reason = (
+                STARTED if self._is_overtaken() else self.files.forbids_fork() or why_not(own, self._known)
+            )
             if reason is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
@@ -278,7 +280,7 @@ class ForkParent:
         for descriptor in (*self._children, *self.forking.tokens):
             os.close(descriptor)
         try:
-            folder = self.isolation.enter(self.pipe.name)
+            folder = self.files.enter(self.pipe.name)
             leave_out(monotonic() - began)
         except OSError as error:
             try:

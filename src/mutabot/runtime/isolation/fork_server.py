@@ -123,6 +123,6 @@ class ForkServer:
         """In the copy: what is printed goes into its own folder, which is this one."""
         old = os.stat(os.path.join(self.home, self.log))
         log = os.open(os.path.join(home, self.log), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-        isolate_files((old.st_dev, old.st_ino), log)
+        isolate_files(old, log)
         os.close(log)
         return home

@@ -42,16 +42,6 @@ def open_loops() -> list[Any]:
     return [loop for loop in list(_loops) if not loop.is_closed()]
 
 
-def descriptors_of_loops() -> set[int]:
-    """The descriptors by which loops wait."""
-    return {
-        end.fileno()
-        for loop in open_loops()
-        for end in (loop._ssock, loop._csock, loop._selector)
-        if end is not None
-    }
-
-
 def running_loop() -> Any:
     """The loop that runs in this thread, or None; to be asked before a fork."""
     events = sys.modules.get("asyncio.events")
@@ -125,14 +115,10 @@ def count_threads() -> int:
     threads = os.listdir(f"{_SELF}/task")
     if len(threads) == 1:
         return 1
-    waiting = _tracer_areas()
-    return sum(not _waits_in(thread, waiting) for thread in threads) if waiting else len(threads)
-
-
-def _tracer_areas() -> list[tuple[int, int]]:
-    """Where threads of a tracer wait to be asked. They do nothing until then, so a fork does without."""
+    # threads of a tracer wait to be asked. They do nothing until then, so a fork does without
     areas = [line.split(maxsplit=1)[0].split("-") for line in _maps() if _TRACER in line]
-    return [(int(start, 16), int(end, 16)) for start, end in areas]
+    waiting = [(int(start, 16), int(end, 16)) for start, end in areas]
+    return sum(not _waits_in(thread, waiting) for thread in threads) if waiting else len(threads)
 
 
 def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
@@ -159,7 +145,8 @@ def subprocesses(own: Iterable[int]) -> str | None:
 
 
 def _open_since(known: frozenset[tuple[int, str]]) -> str | None:
-    loops = descriptors_of_loops()
+    ends = (end for loop in open_loops() for end in (loop._ssock, loop._csock, loop._selector))
+    loops = {end.fileno() for end in ends if end is not None}
     found = [name for descriptor, name in open_now() - known if descriptor not in loops]
     sockets = sum(name.startswith("socket:") for name in found)
     if sockets:

@@ -23,6 +23,8 @@ from mutabot.runtime.targets.target import NotFoundError, resolve
 
 #: objects per class and test that are read
 MOST = 20
+#: modules that run others
+_IMPORTERS = ("importlib._bootstrap", "importlib._bootstrap_external", "_pytest.assertion.rewrite")
 
 
 class Instances:
@@ -128,14 +130,10 @@ def _is_importing() -> bool:
     """Whether a module is being imported: what it makes then is there for all tests that follow."""
     frame = sys._getframe(1)
     while frame.f_back is not None:
-        if frame.f_code.co_name == "<module>" and _is_of_import(frame.f_back.f_globals.get("__name__")):
+        if frame.f_code.co_name == "<module>" and frame.f_back.f_globals.get("__name__") in _IMPORTERS:
             return True
         frame = frame.f_back
     return False
-
-
-def _is_of_import(module: str | None) -> bool:
-    return module in ("importlib._bootstrap", "importlib._bootstrap_external", "_pytest.assertion.rewrite")
 
 
 def _forget(made: dict[int, weakref.ref[Any]], key: int, gone: weakref.ref[Any]) -> None:
@@ -156,9 +154,7 @@ def _held(instance: Any) -> Callable[[], Any]:
 def _note_made(owner: type, note: Callable[[Any], None]) -> None:
     """Let ``note`` be told every object of a class when it has been made."""
 
-    def handle(
-        wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
-    ) -> Any:
+    def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any) -> Any:
         __tracebackhide__ = True
         result = wrapped(*args, **kwargs)
         note(instance)
@@ -174,14 +170,11 @@ def _inherited(owner: Any) -> Callable[..., None]:
 
     def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807
         __tracebackhide__ = True
+        kind: Any = type(self)
         following = super(owner, self).__init__
         if getattr(following, "__objclass__", None) is not object:
             following(*args, **kwargs)
-        elif (args or kwargs) and "__new__" not in _names_above_object(type(self)):
-            raise TypeError(f"{type(self).__name__}() takes no arguments")
+        elif (args or kwargs) and kind.__new__ is object.__new__:
+            raise TypeError(f"{kind.__name__}() takes no arguments")
 
     return __init__
-
-
-def _names_above_object(kind: type) -> set[str]:
-    return {name for base in kind.__mro__ if base is not object for name in vars(base)}

@@ -375,11 +375,23 @@ def _digest(data: bytes) -> str:
 
 
 class TestRecording:
-    """The recording of the running test; nothing is recorded where it is not asked for."""
+    """The recording of the running test; nothing is recorded where it is not asked for.
+
+    Args:
+        clock: tells its simulated time, s, as long as no feed does.
+        aside: what feeds read in this context is none of the program's calls.
+        is_simulated: whether it is known that there is such a time.
+    """
 
     __test__ = False
 
-    def __init__(self) -> None:
+    def __init__(
+        self,
+        clock: Callable[[], float | None],
+        aside: Callable[[], AbstractContextManager[object]],
+        is_simulated: bool,
+    ) -> None:
+        self._clock, self._aside, self._is_simulated = clock, aside, is_simulated
         self._tape: Tape | None = None
         self._film: FilmWriter | None = None
         self._filmed: str | None = None
@@ -388,29 +400,14 @@ class TestRecording:
         """Film a test that is still to come."""
         self._film, self._filmed = FilmWriter(pictures.file), pictures.test
 
-    def start(
-        self,
-        is_wanted: bool,
-        test: str,
-        clock: Callable[[], float | None],
-        aside: Callable[[], AbstractContextManager[object]],
-        *,
-        is_simulated: bool,
-    ) -> None:
-        """A test begins.
-
-        Args:
-            test: its node id.
-            clock: tells its simulated time, s, as long as no feed does.
-            aside: what feeds read in this context is none of the program's calls.
-            is_simulated: whether it is known that there is such a time.
-        """
+    def start(self, test: str, *, is_wanted: bool) -> None:
+        """A test begins."""
         tapes.stop()
         film = self._film if test == self._filmed else None
         self._tape = tapes.begin(film) if is_wanted else None
         if self._tape is not None:
-            self._tape.aside = aside
-            self._tape.clock, self._tape.is_simulated = clock, is_simulated
+            self._tape.clock, self._tape.aside = self._clock, self._aside
+            self._tape.is_simulated = self._is_simulated
 
     def stop(self) -> None:
         """The test is over; its world may be taken down."""

@@ -269,11 +269,8 @@ class ProcessWatch:
         elif starts_a_killer(event, arguments):
             self.signalled.add(ANYBODY)
         elif event == "subprocess.Popen":
-            self._note_unseen(_words(*arguments[:2]))
-
-    def _note_unseen(self, words: Sequence[str]) -> None:
-        if words and os.path.basename(words[0]).startswith("python"):
-            options = takewhile(lambda word: word.startswith("-"), words[1:])
-            apart = next((option for option in options if option in _APART), None)
-            if apart is not None:
-                self._tell_unseen(" ".join(words[:3]), f"the option {apart} keeps it apart")
+            words = _words(*arguments[:2])
+            if words and os.path.basename(words[0]).startswith("python"):
+                options = takewhile(lambda word: word.startswith("-"), words[1:])
+                for apart in [option for option in options if option in _APART][:1]:
+                    self._tell_unseen(" ".join(words[:3]), f"the option {apart} keeps it apart")

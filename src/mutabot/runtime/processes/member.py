@@ -146,7 +146,7 @@ class Member:
         session = self.session
         for site in session.sites:
             self.file.send(site)
-        self._told = _copy_of(session.evidence)
+        self._told = session.evidence.copy()
         self._attend()
         session.pipe, session.is_fork = self, False  # it tells its own sites, also below a fork
         if session.text is not None:
@@ -206,7 +206,7 @@ class Member:
         session = self.session
         now, before = session.evidence, self._told
         if now.hits != before.hits or now != before:
-            self._told = _copy_of(now)
+            self._told = now.copy()
             self.file.send(self._did(before, now))
         if not isinstance(session, TextOnly):
             self._tell_found(session)
@@ -344,10 +344,6 @@ def _session(job: Job, pipe: Member) -> Session | TextOnly:
 
     extensions.use(job.extensions)
     return Session(job, pipe, Locator(job.root, job.program, job.oracle))
-
-
-def _copy_of(evidence: Evidence) -> Evidence:
-    return replace(evidence, away=dict(evidence.away))
 
 
 _watched: tuple[str, Session | TextOnly] | None = None

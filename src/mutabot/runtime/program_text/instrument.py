@@ -72,12 +72,6 @@ def instrumented(
     return tree
 
 
-def forms_of(place: TextPlace, original: ast.expr) -> Forms:
-    """The original and the alternatives, for a look ahead; the tree of the original is changed."""
-    others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
-    return Forms(ForeseenForm(original), tuple(map(ForeseenForm, others)))
-
-
 class _Instrumenter(ast.NodeTransformer):
     def __init__(
         self, places: Iterable[TextPlace], record: bool, originals: dict[int, ast.expr] | None
@@ -133,8 +127,13 @@ class _Instrumenter(ast.NodeTransformer):
         return placed(ast.IfExp(_is_chosen(place), tree, node), node)
 
     def _statement(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
+        if self._record and isinstance(node, ast.AugAssign):  # what is added tells the type
+            self.generic_visit(node)
+            node.value = _seen(node.value, place, node.value)
+            return [node]
         if self._record:
-            return self._statement_seen(node, place)
+            self.generic_visit(node)
+            return [placed(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
         others = [_filled(ast.parse(one.template).body[0], place, node) for one in place.alternatives]
         self.generic_visit(node)
         if not others:
@@ -147,13 +146,6 @@ class _Instrumenter(ast.NodeTransformer):
         if raising:
             return [placed(ast.If(_is_chosen(place), chain, []), node), node]
         return [placed(ast.If(_is_chosen(place), [placed(ast.Expr(tells), node), *chain], [node]), node)]
-
-    def _statement_seen(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
-        self.generic_visit(node)
-        if isinstance(node, ast.AugAssign):  # what is added tells the type
-            node.value = _seen(node.value, place, node.value)
-            return [node]
-        return [placed(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
 
 
 def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
@@ -343,9 +335,14 @@ class SessionText:
     def _text_of(self, path: str) -> ProgramText | None:
         return self._texts.get(self._real(path))
 
-    def _forms(self, place: int) -> Forms | None:
-        original = self._originals.get(place)
-        return forms_of(self._places[place], original) if original is not None else None
+    def _forms(self, number: int) -> Forms | None:
+        """The original and the alternatives of a place, for a look ahead."""
+        original = self._originals.get(number)
+        if original is None:
+            return None
+        place = self._places[number]
+        others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
+        return Forms(ForeseenForm(original), tuple(map(ForeseenForm, others)))
 
     def _refuse(self, text: ProgramText, reason: str) -> None:
         self.problems[text.file] = reason

@@ -48,9 +48,9 @@ from mutabot.model.signature import signature_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
+from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.target import Finding, Handler, Where, named_class
+from mutabot.runtime.targets.target import Finding, Handler, Place, Where, named_class
 
 #: calls that are listed in one sentence
 _MOST = 5
@@ -82,7 +82,7 @@ class StandIns:
             place = f"{self.relative(site.path)}:{site.extent[0]}"
             self._alone.setdefault(site.name, {})[place] = what
 
-    def note_elsewhere(self, operation: Operation, place: tuple[Span, Role] | None) -> None:
+    def note_elsewhere(self, operation: Operation, place: Place | None) -> None:
         """This was called where a frame may tell the place, or nothing does."""
         if place is None:
             self._elsewhere.setdefault(operation.target, set()).add(self.test())
@@ -121,11 +121,6 @@ def mock_of(found: Any) -> Any:
     return made if is_mock(made) else None
 
 
-def stands_for_property(mock: Any) -> bool:
-    """Return whether a mock stands for a property: to read the attribute calls it without arguments."""
-    return is_mock(mock, "PropertyMock")
-
-
 def _shown(found: Any, receiver: Any) -> str:
     if mock_of(found) is not None or mock_of(receiver) is not None:
         return "a mock"
@@ -136,10 +131,6 @@ def _shown(found: Any, receiver: Any) -> str:
 
 def _count(number: int, what: str) -> str:
     return f"{number} {what}" if number == 1 else f"{number} {what}s"
-
-
-#: what stands around callables that see their calls themselves
-WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
 
 @dataclass(slots=True)
@@ -223,7 +214,7 @@ class Standing:
             instance, found, args = args[0], partial(found, args[0]), args[1:]
         return one.handler(found, instance, args, kwargs, Where(receiver=given, signature=signature, **where))
 
-    def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
+    def place(self, site: CallSite, frame: FrameType) -> Place:
         """Where a site stands."""
         if site.place is None:
             span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
@@ -236,7 +227,7 @@ class Standing:
 
     def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """The operation that stands at a site, if it does not see its calls itself."""
-        if self._sees_itself(found):
+        if any(handler in self.sees_itself for handler in _handlers(found)):
             return None
         one = self.named(site.name, found, receiver, frame)
         if one is None and self.known:
@@ -251,8 +242,14 @@ class Standing:
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name in whose place something stands."""
         mock = mock_of(found)
-        is_read = stands_for_property(mock)
-        ones = [one for one in self.by_name[name] if self._is_read(one) is is_read]
+        is_read = is_mock(mock, "PropertyMock")  # such are called when the attribute is read
+        kinds = (property, cached_property)  # of attributes, which nobody calls
+        found_as = self.callables.found
+        ones = [
+            one
+            for one in self.by_name[name]
+            if isinstance(found_as.get(one.operation.target), kinds) is is_read
+        ]
         fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
         if fitting:
             return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target].__mro__))
@@ -261,13 +258,6 @@ class Standing:
             fitting += ones if len(ones) == 1 else [one for one in ones if self._is_mocked(one, mock)]
         fitting += [one for one in ones if one.operation.target.startswith(ANY)]
         return fitting[0] if fitting else None
-
-    def _is_read(self, one: Adapter) -> bool:
-        """Whether an operation is an attribute, which nobody calls."""
-        return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
-
-    def _sees_itself(self, found: Any) -> bool:
-        return any(handler in self.sees_itself for handler in _handlers(found))
 
     def _is_of_class(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Whether what is called is an attribute of an object of the operation's class."""
@@ -425,7 +415,7 @@ class Handing:
         given: takes where functions of the robot were handed on; None if nobody knows any more.
     """
 
-    def __init__(self, standing: Standing, given: dict[Adapter, tuple[Span, Role] | None]) -> None:
+    def __init__(self, standing: Standing, given: dict[Adapter, Place | None]) -> None:
         self._standing = standing
         self._given = given
         wrapt.register_post_import_hook(self._watch, "unittest.mock")
@@ -459,9 +449,7 @@ class Handing:
                 return found
         return self._wrapped(one, place, receiver, found, found)
 
-    def _wrapped(
-        self, one: Adapter, place: tuple[Span, Role], receiver: Any, looks: Any, found: Any
-    ) -> Handed:
+    def _wrapped(self, one: Adapter, place: Place, receiver: Any, looks: Any, found: Any) -> Handed:
         """What looks like one callable and calls ``found``, which may be the same, as an operation."""
         calls = partial(self._call, one, place, receiver, found)
         says_it_is_one = mock_of(looks) is looks and isinstance(looks, WRAPPERS)
@@ -473,17 +461,10 @@ class Handing:
         return made
 
     def _call(
-        self,
-        one: Adapter,
-        place: tuple[Span, Role],
-        receiver: Any,
-        found: Any,
-        wrapped: Any,
-        instance: Any,
-        args: tuple[Any, ...],
-        kwargs: dict[str, Any],
+        self, one: Adapter, place: Place, receiver: Any, found: Any, wrapped: Any, instance: Any, *given: Any
     ) -> Any:
         __tracebackhide__ = True
+        args, kwargs = given
         if receiver is NOTHING and instance is not None:  # it was made a method, or is one
             receiver, found = instance, wrapped
         where = {"handed": place, "frame": sys._getframe(1)}
@@ -509,7 +490,7 @@ class Handing:
         own = vars(mock)
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
-        is_written = bool(args) and stands_for_property(mock)
+        is_written = bool(args) and is_mock(mock, "PropertyMock")
         if is_under_way() or is_written or (mark is None and name not in self._standing.by_name):
             return original(mock, *args, **kwargs)
         caller = _caller(frame)

@@ -26,20 +26,11 @@ import math
 import numbers
 import sys
 import threading
+import types
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from types import (
-    BuiltinFunctionType,
-    CodeType,
-    FrameType,
-    FunctionType,
-    MemberDescriptorType,
-    MethodType,
-    ModuleType,
-    SimpleNamespace,
-)
 from typing import Any, NamedTuple, NoReturn
 
 from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice, Sighting
@@ -62,12 +53,8 @@ _CALLABLE = (
 #: functions that hand out the local names
 _LOOKING = frozenset(("locals", "vars", "dir", "eval", "exec", "f_locals"))
 #: descriptors that only hand out what is stored in the object
-_STORED = (MemberDescriptorType, type(vars(NamedTuple("_Sample", [("item", int)]))["item"]))
-_PLAIN_LOOK_UPS: tuple[Any, ...] = (
-    object.__getattribute__,
-    tuple.__getattribute__,
-    ModuleType.__getattribute__,
-)
+_STORED = (types.MemberDescriptorType, type(vars(NamedTuple("_Sample", [("item", int)]))["item"]))
+_PLAIN_LOOK_UPS: list[Any] = [kind.__getattribute__ for kind in (object, tuple, types.ModuleType)]
 
 
 class UnforeseenError(Exception):
@@ -81,7 +68,7 @@ def _fail_if(value: Any, wrong: Any, *told: str) -> Any:
 
 
 #: what templates call (``Alternatives``)
-_HELPERS = SimpleNamespace(absolute=abs, fail_if=_fail_if)
+_HELPERS = types.SimpleNamespace(absolute=abs, fail_if=_fail_if)
 _HELPER_NAMES = frozenset(f"{RUNTIME}[0].{name}" for name in vars(_HELPERS))
 
 
@@ -93,7 +80,7 @@ class ForeseenForm:
 
     def __init__(self, tree: ast.expr) -> None:
         leaves = _Leaves()
-        self._code: CodeType | None = None
+        self._code: types.CodeType | None = None
         with suppress(UnforeseenError):
             tree = leaves.visit(tree)
             self._kinds = _NUMBERS if leaves.calculates else _PLAIN_TYPES
@@ -101,7 +88,7 @@ class ForeseenForm:
             self._code = compile(ast.Expression(tree), "<foreseen>", "eval")
         self._leaves, self._functions = leaves.found, leaves.functions
 
-    def value(self, frame: FrameType) -> Any:
+    def value(self, frame: types.FrameType) -> Any:
         """What it gives in a frame.
 
         Raises UnforeseenError if that cannot be known; and whatever the evaluation itself would raise.
@@ -155,19 +142,18 @@ class _Leaves(ast.NodeTransformer):
             raise UnforeseenError
         told: list[ast.expr] = []
         if ast.unparse(node.func) in _HELPER_NAMES:
-            told = [argument for argument in node.args if _is_text(argument)]
+            told = [one for one in node.args if isinstance(getattr(one, "value", None), str)]
         else:
             node.func = self._stand_in(node.func, self.functions)
         node.args = [argument if argument in told else self._argument(argument) for argument in node.args]
         return node
 
-    def _argument(self, node: ast.expr) -> ast.expr:
+    def _argument(self, node: ast.expr) -> Any:
         """An argument; a tuple of values, such as a point, is one as well, but not the value of anything."""
         if isinstance(node, ast.Tuple):
             node.elts = [self.visit(item) for item in node.elts]
             return node
-        visited: ast.expr = self.visit(node)
-        return visited
+        return self.visit(node)
 
     def _stand_in(self, node: ast.expr, among: dict[str, ast.expr]) -> ast.expr:
         name = f"leaf_{len(self.found) + len(self.functions)}"
@@ -182,7 +168,7 @@ class Forms:
     original: ForeseenForm
     alternatives: tuple[ForeseenForm, ...]
 
-    def differing(self, indexes: frozenset[int], frame: FrameType) -> frozenset[int]:
+    def differing(self, indexes: frozenset[int], frame: types.FrameType) -> frozenset[int]:
         """Of these alternatives, those that would not give what the original gives in a frame, or may not."""
         try:
             given = self.original.value(frame)
@@ -190,7 +176,7 @@ class Forms:
             return indexes
         return frozenset(index for index in indexes if not self._gives(index, given, frame))
 
-    def _gives(self, index: int, given: Any, frame: FrameType) -> bool:
+    def _gives(self, index: int, given: Any, frame: types.FrameType) -> bool:
         try:
             return is_identical(given, self.alternatives[index].value(frame))
         except Exception:  # as above; what raises differs from what did not
@@ -204,7 +190,7 @@ def is_identical(one: Any, other: Any) -> bool:
     return type(one) is not float or math.copysign(1.0, one) == math.copysign(1.0, other)
 
 
-def locals_of(frame: FrameType) -> Mapping[str, Any]:
+def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
     """The local names of a frame.
 
     Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring up to date what it
@@ -237,7 +223,7 @@ def plain_attribute(owner: Any, name: str) -> Any:
     return found
 
 
-def _read(leaf: ast.expr, frame: FrameType) -> Any:
+def _read(leaf: ast.expr, frame: types.FrameType) -> Any:
     if isinstance(leaf, ast.Name):
         return _named(leaf.id, frame)
     if isinstance(leaf, ast.Attribute):
@@ -251,11 +237,7 @@ def _read(leaf: ast.expr, frame: FrameType) -> Any:
     raise UnforeseenError
 
 
-def _is_text(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and isinstance(node.value, str)
-
-
-def _named(name: str, frame: FrameType) -> Any:
+def _named(name: str, frame: types.FrameType) -> Any:
     """What a name stands for in a frame; a function's own without a value yet is no global of that name."""
     local, code = locals_of(frame), frame.f_code
     if name in local:
@@ -293,7 +275,7 @@ class Switch:
     def __init__(self, owner: Alternatives, place: int, index: int | None, watched: frozenset[int]) -> None:
         self._owner, self.place, self.index, self.watched = owner, place, index, watched
         self._before: Any = _UNKNOWN
-        self._code: CodeType | None = None
+        self._code: types.CodeType | None = None
 
     def chosen(self) -> bool:
         """Asked at every evaluation: whether an alternative stands for the original."""
@@ -315,7 +297,7 @@ class Switch:
         self._owner.note(self.place, before, value)
         return value
 
-    def _value_of(self, original: str, frame: FrameType) -> Any:
+    def _value_of(self, original: str, frame: types.FrameType) -> Any:
         try:
             if self._code is None:
                 self._code = compile(original, "<original>", "eval")
@@ -415,7 +397,7 @@ class Alternatives:
         """
         self._set(live)
 
-    def reached(self, switch: Switch, frame: FrameType) -> bool:
+    def reached(self, switch: Switch, frame: types.FrameType) -> bool:
         """A place that is on is evaluated; whether an alternative stands for it."""
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
@@ -429,7 +411,7 @@ class Alternatives:
             return False
         return index is not None
 
-    def _look_ahead(self, switch: Switch, frame: FrameType) -> None:
+    def _look_ahead(self, switch: Switch, frame: types.FrameType) -> None:
         place = switch.place
         due = self._differing(switch, frame)
         switch.watched -= due
@@ -440,7 +422,7 @@ class Alternatives:
         if switch.watched and place != self.place:
             self.idle[place] = self.idle.get(place, 0) + 1
 
-    def foreseen(self, place: int, frame: FrameType) -> Any:
+    def foreseen(self, place: int, frame: types.FrameType) -> Any:
         """What the original gives, if that can be known without letting anything happen."""
         forms = self.forms(place)
         try:
@@ -448,7 +430,7 @@ class Alternatives:
         except Exception:  # it cannot be known; or only the original would have raised this
             return _UNKNOWN
 
-    def _differing(self, switch: Switch, frame: FrameType) -> frozenset[int]:
+    def _differing(self, switch: Switch, frame: types.FrameType) -> frozenset[int]:
         """The watched alternatives that differ from the original, or may."""
         forms = self.forms(switch.place)
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
@@ -523,7 +505,14 @@ _PLAIN: dict[type, str] = {
     set: "set", frozenset: "set", type(None): "none",
 }  # fmt: skip
 #: what stands for something else rather than for a value
-_NO_VARIABLE = (ModuleType, FunctionType, BuiltinFunctionType, MethodType, type, type(None))
+_NO_VARIABLE = (
+    types.ModuleType,
+    types.FunctionType,
+    types.BuiltinFunctionType,
+    types.MethodType,
+    type,
+    type(None),
+)
 _ARRAYS = {"b": "truth", "i": "integer", "u": "integer", "f": "number", "c": "number"}
 
 
@@ -633,7 +622,8 @@ class _Witness:
             self.looks_around = 0
         if self._variable is not None and self.looks_around < LOOKS_AROUND:
             self.looks_around += 1
-            self._look_around(value, sys._getframe(1))
+            names = set(_alike(value, sys._getframe(1))) - {self._variable} if is_variable(value) else set()
+            self._variables = names if self._variables is None else self._variables & names
         return value
 
     def sighting(self) -> Sighting:
@@ -641,12 +631,8 @@ class _Witness:
         kinds, variables = sorted(self._kinds), sorted(self._variables or ())
         return Sighting(self.place, self.hits, tuple(kinds), tuple(variables))
 
-    def _look_around(self, value: Any, frame: FrameType) -> None:
-        names = set(_alike(value, frame)) - {self._variable} if is_variable(value) else set()
-        self._variables = names if self._variables is None else self._variables & names
 
-
-def _alike(value: Any, frame: FrameType) -> Iterator[str]:
+def _alike(value: Any, frame: types.FrameType) -> Iterator[str]:
     """Names around a frame's instruction with a value of exactly this type.
 
     Of the function's own names and the module's: to mention a name of a function further out would make

@@ -99,6 +99,10 @@ class MiddlewareControls:
     end: Callable[[bool], object] | None = None
 
 
+#: where a call stands, and whose text that is
+Place = tuple[Span, Role]
+
+
 @frozen
 class Where:
     """Where a use of a target is, if the frames above it do not tell.
@@ -121,8 +125,8 @@ class Where:
     node: str | None = None
     means: MiddlewareControls | None = None
     is_again: bool = False
-    site: tuple[Span, Role] | None = None
-    handed: tuple[Span, Role] | None = None
+    site: Place | None = None
+    handed: Place | None = None
     receiver: Any = None
     is_awaited: bool = False
     frame: FrameType | None = None
