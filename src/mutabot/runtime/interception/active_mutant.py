@@ -14,11 +14,11 @@ from random import Random
 from typing import Any
 
 from mutabot.errors import OperatorError, PathError
-from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Path, Proceed, Reply, Span
+from mutabot.model import Call, Moment, Mutant, Operation, Path, Proceed, Reply, Span
 from mutabot.model.answer import is_member, member_of, restore
 from mutabot.model.job import Idle, RefusedAt
 from mutabot.model.operation import Form, Refused
-from mutabot.operators import Need, Operator, Subject, operator
+from mutabot.operators import Need, Subject, operator
 from mutabot.operators.command import FatalFault
 from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import CallRecord, Carried, run_middleware
@@ -157,7 +157,7 @@ def _parsed(path: str) -> Path:
     return Path.parse(path, rooted=False)
 
 
-@dataclass(slots=True)
+@dataclass
 class ActiveMutant:
     """A mutant of calls that is at work.
 
@@ -182,23 +182,19 @@ class ActiveMutant:
     on_act: Callable[[], None]
     on_call: Callable[[bool], None]
     time: Callable[[], float | None] = lambda: None
-    evidence: Evidence = field(default_factory=Evidence)
-    rule: Operator = field(init=False)
-    watched: tuple[Refused, ...] = ()
-    usual: frozenset[int] = frozenset()
-    copies: bool = False
-    early: Evidence = field(default_factory=Evidence)
-    _told_by: tuple[Refused, ...] = ()
-    _commands: int = 0
-    _told: int = 0
-    _is_passed: bool = False
-    _middleware: Middleware | None = None
-    _idle: Idle | None = None
-    _moment: Moment | None = None
-    _test: tuple[int, str] = (0, "")
-    _handed: HandedCopies | None = None
-    _due: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
-    _next: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.evidence, self.early = Evidence(), Evidence()
+        self._told_by: tuple[Refused, ...] = ()
+        self._commands, self._told, self._is_passed = 0, 0, False
+        self._forget()
+
+    def _forget(self) -> None:
+        """Forget what is of one test."""
+        self.watched: tuple[Refused, ...] = ()
+        self._handed: HandedCopies | None = None
+        self._due: list[tuple[_MutatedCall, Call]] = []
+        self._next: list[tuple[_MutatedCall, Call]] = []
 
     def start(self, seed: int, round: int, test: str, moment: Moment | None, usual: frozenset[int]) -> None:
         """Begin a new test; the mutant's randomness follows from ``seed`` alone.
@@ -217,9 +213,7 @@ class ActiveMutant:
         self._idle = Idle.of(self.mutant.idle) if Need.IDLE in self.rule.needs else None
         self._test = (round, test)
         self._moment = moment
-        self.watched = ()
-        self._handed = None
-        self._due, self._next = [], []
+        self._forget()
 
     def is_here(self, site: Place, call: Call) -> bool:
         """Whether a call at this place is the mutant's, by its operation and text command."""
@@ -234,7 +228,6 @@ class ActiveMutant:
         Unless the operation is async, nothing here suspends. Returns what the program receives, and the
         robot's last answer.
         """
-        assert self._middleware is not None
         self.look_back()
         self.evidence.hits += 1
         call = replace(made.call, payload=made.call.payload.copied()) if self.copies else made.call

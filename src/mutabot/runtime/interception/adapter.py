@@ -154,7 +154,7 @@ class SiteCall:
     is_direct: bool = False
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(eq=False)
 class Adapter:
     """Translates the calls of one operation.
 
@@ -178,18 +178,15 @@ class Adapter:
     wait: Callable[[float], Awaitable[None]]
     handler: Handler = field(init=False)
     commands: int = 0
-    _message: Path | None = None
-    _declared: Signature | None = None
-    _own: Signature | None = None
-    _parts: dict[str, tuple[tuple[str, ...], tuple[Quantity, ...]]] = field(default_factory=dict)
-    _last_results: dict[str | None, Any] = field(default_factory=dict)
-    _last_written: dict[str | None, dict[str, Value]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         operation = self.operation
         self._message = Path.parse(operation.message, rooted=True) if operation.message is not None else None
         self._declared = parse_signature(operation.signature) if operation.signature is not None else None
         self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
+        self._own: Signature | None = None
+        self._last_results: dict[str | None, Any] = {}
+        self._last_written: dict[str | None, dict[str, Value]] = {}
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""

@@ -11,19 +11,16 @@ from __future__ import annotations
 
 import fcntl
 import os
-import random
 import re
 import shutil
 import stat
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
-from mutabot.runtime.isolation.forkable import descriptors, go_on_running, own_event_loops, running_loop
+from mutabot.runtime.isolation.forkable import descriptors, own_event_loops
 from mutabot.runtime.isolation.namespaces import asks_for_id, call, keeps_ids
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
@@ -350,22 +347,6 @@ def is_below(path: str, folder: str) -> bool:
 _CHUNK = 1 << 16
 #: device, inode, position and flags of an open file: descriptors that agree in them share one opening
 _Shared = tuple[int, int, int, int]
-
-
-class StateBeforeFork:
-    """What a fork changes in the child: the random state and the running event loop."""
-
-    def __init__(self) -> None:
-        # random registers a hook that seeds anew in every child
-        self._random: Any = random.getstate()
-        self._loop = running_loop()
-        sys.stdout.flush()
-        sys.stderr.flush()
-
-    def restore(self) -> None:
-        """In the child: put it back."""
-        random.setstate(self._random)
-        go_on_running(self._loop)
 
 
 def _written() -> Iterator[tuple[str, int]]:

@@ -14,11 +14,13 @@ from __future__ import annotations
 
 import mmap
 import os
+import random
 import select
 import signal
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import monotonic  # tests may replace that of the module
 
 from mutabot.model import Call, Mutant, Span
@@ -26,8 +28,8 @@ from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Un
 from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.isolation.files import PrivateFiles, StateBeforeFork
-from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
+from mutabot.runtime.isolation.files import PrivateFiles
+from mutabot.runtime.isolation.forkable import STARTED, go_on_running, open_now, running_loop, why_not
 from mutabot.runtime.isolation.namespaces import ForkedPids, die_with_parent, end_first, fork, leave_out
 from mutabot.runtime.plugins import alarm_held
 
@@ -89,7 +91,7 @@ class Child:
         return True
 
 
-@dataclass(slots=True)
+@dataclass
 class ForkParent:
     """Forks a child for each mutant.
 
@@ -110,26 +112,17 @@ class ForkParent:
     pipe: EventFile
     files: PrivateFiles
     become: Callable[[Mutant, str], None]
-    has_nodes: bool = False
-    has_started: Callable[[], bool] = lambda: False
+    has_nodes: bool
+    has_started: Callable[[], bool]
     is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
-    _live: dict[Key, list[Mutant]] = field(default_factory=dict)
-    _gone: set[str] = field(default_factory=set)
-    _children: dict[int, Child] = field(default_factory=dict)
-    _slots: dict[str, int] = field(init=False)
-    _finished: memoryview = field(init=False)
-    _tests: memoryview = field(init=False)
-    _known: frozenset[tuple[int, str]] = field(init=False)
-    _test: str = ""
-    _number: int = -1
-    _held: int = 1
-    _pid: int = field(default_factory=os.getpid)
-    _overtaken: bool = False
-    _forking: bool = False
-    _copied: bool = False
-    _places: dict[int, frozenset[int]] | None = None
 
     def __post_init__(self) -> None:
+        self._test, self._number, self._held, self._pid = "", -1, 1, os.getpid()
+        self._overtaken = self._forking = self._copied = False
+        self._live: dict[Key, list[Mutant]] = {}
+        self._gone: set[str] = set()
+        self._children: dict[int, Child] = {}
+        self._places: dict[int, frozenset[int]] | None = None
         os.register_at_fork(before=self._note_copy)
         self._slots = {mutant.id: slot for slot, mutant in enumerate(self.forking.mutants)}
         # the board, which children write: whether each has gone to the end, and the number of its test
@@ -211,10 +204,8 @@ class ForkParent:
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
             own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
-            reason = (
-                STARTED if self._is_overtaken() else self.files.forbids_fork() or why_not(own, self._known)
-            )
-            if reason is not None:
+            reason = STARTED if self._is_overtaken() else self.files.forbids_fork()
+            if (reason := reason or why_not(own, self._known)) is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
                 self._fork_each(due)
@@ -250,7 +241,10 @@ class ForkParent:
         """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
         slot = self._slots[mutant.id]
         self._finished[slot], self._tests[slot] = 0, self._number
-        before = StateBeforeFork()
+        # random registers a hook that seeds anew in every child
+        state, loop = random.getstate(), running_loop()
+        sys.stdout.flush()
+        sys.stderr.flush()
         self.pipe.forks += 1
         reading, writing = os.pipe()
         self._forking = True
@@ -265,7 +259,9 @@ class ForkParent:
         if pids is None:
             os.close(reading)
             die_with_parent(pipe=writing)
-            self._begin_child(mutant, before, began)
+            random.setstate(state)
+            go_on_running(loop)
+            self._begin_child(mutant, began)
             os.close(writing)
             return None
         os.close(writing)
@@ -273,7 +269,7 @@ class ForkParent:
             ready.read()
         return pids
 
-    def _begin_child(self, mutant: Mutant, before: StateBeforeFork, began: float) -> None:
+    def _begin_child(self, mutant: Mutant, began: float) -> None:
         """Let go of what is the parent's, and become the mutant."""
         os.setsid()  # it leads its group and session, as a test process does
         self.pipe.go_on_apart()
@@ -287,7 +283,6 @@ class ForkParent:
                 self._tell_unforked(mutant, error)
             finally:
                 os._exit(STOPPED)
-        before.restore()
         self.become(mutant, folder)
 
     def _tell_unforked(self, mutant: Mutant, error: OSError) -> None:
