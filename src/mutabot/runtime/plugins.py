@@ -45,8 +45,7 @@ class Plugin:
 
 PLUGINS = (
     Plugin(
-        "pytest-xdist",
-        (("xdist", "xdist.plugin"), ("xdist.looponfail", "xdist.looponfail")),
+        "pytest-xdist", (("xdist", "xdist.plugin"), ("xdist.looponfail", "xdist.looponfail")),
         ("xdist_group(name)",),
     ),
     Plugin("pytest-cov", (("pytest_cov", "pytest_cov.plugin"),), ("no_cover",)),
@@ -60,12 +59,9 @@ PLUGINS = (
     Plugin("pytest-forked", (("pytest_forked", "pytest_forked"),), ("forked",)),
     Plugin("pytest-parallel", (("parallel", "pytest_parallel"),)),
     Plugin(
-        "pytest-run-parallel",
-        (("run-parallel", "pytest_run_parallel.plugin"),),
-        (
-            "parallel_threads(n)", "parallel_threads_limit(n)", "force_parallel_threads(n)", "iterations(n)",
-            "thread_unsafe",
-        ),
+        "pytest-run-parallel", (("run-parallel", "pytest_run_parallel.plugin"),),
+        ("parallel_threads(n)", "parallel_threads_limit(n)", "force_parallel_threads(n)", "iterations(n)",
+         "thread_unsafe"),
     ),
     Plugin("pytest-testmon", (("pytest-testmon", "testmon.pytest_testmon"),)),
 )  # fmt: skip

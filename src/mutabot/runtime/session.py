@@ -78,10 +78,9 @@ class Session:
         self.callables = Callables(self.inspection.target_is_wrong)
         self.messages: Messages | None = None
         self.targets: list[Callables | Messages] = [self.callables]
-        self.passing = Dispatcher(
-            locator, self.recorder, self.instances, self.along, self._raised, self._on_end
-        )
+        self.passing = Dispatcher(locator, self.recorder, self.instances, self.along, self._raised)
         self.passing.oracle_nodes = job.oracle_nodes
+        self.passing.on_end = self.inspection.note if job.inspect else None
         self.is_fork = False
         self.text: SessionText | None = None
         self.returns: Returns | None = None
@@ -182,11 +181,6 @@ class Session:
         return adapter.handler
 
     @property
-    def sites(self) -> tuple[SiteSeen, ...]:
-        """All sites that were reached so far."""
-        return tuple(self.recorder.sites)
-
-    @property
     def mutant(self) -> ActiveMutant | None:
         """The mutant of calls that is at work; None for the original, and for other mutants."""
         return self.passing.mutant
@@ -195,11 +189,6 @@ class Session:
     def meter(self) -> Meter | None:
         """What the running test has used; None between tests."""
         return self.passing.meter
-
-    @property
-    def fork_parent(self) -> ForkParent | None:
-        """What forks a process for each mutant, while this process runs the original."""
-        return self.passing.fork_parent
 
     @property
     def evidence(self) -> Evidence:
@@ -237,7 +226,7 @@ class Session:
         self._watch_text()
 
     def _watch_text(self) -> None:
-        parent = self.fork_parent
+        parent = self.passing.fork_parent
         if self.text is not None and parent is not None:
             self.text.watch(parent.fork_at_place, parent.places())
 
@@ -253,7 +242,8 @@ class Session:
     def take_on(self, job: Job, pipe: EventWriter) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
-        self.inspection.is_asked, self.passing.on_end = job.inspect, self._on_end
+        self.inspection.is_asked = job.inspect
+        self.passing.on_end = self.inspection.note if job.inspect else None
         self._tell_standing()
         if self.text is not None:
             self.text.pipe = pipe
@@ -326,8 +316,8 @@ class Session:
         self.passing.meter = None
         self.placed.end_test()
         if self.text is not None:
-            if self.fork_parent is not None:
-                self.fork_parent.tell_undiverged(self.text.alternatives.hits)
+            if self.passing.fork_parent is not None:
+                self.passing.fork_parent.tell_undiverged(self.text.alternatives.hits)
             self.text.end_test()
 
     def take_probes(self) -> Reading:
@@ -363,13 +353,13 @@ class Session:
 
         ``texts`` is what processes below the tests saw of the program text.
         """
-        if self.fork_parent is not None:
-            self.fork_parent.finish()
+        if self.passing.fork_parent is not None:
+            self.passing.fork_parent.finish()
         if self.text is not None:
             self.text.finish(texts)
         if self.job.record and self.job.mutant is None:
             # of sites at which an operation stood in some tests and something unknown in others
-            stood = self.standing.stood | {seen.span: seen.operation for seen in self.sites}
+            stood = self.standing.stood | {seen.span: seen.operation for seen in self.recorder.sites}
             for span in sorted(self.standing.alone & stood.keys()):
                 self._send(KnownLater(span, stood[span]))
         if self.job.inspect:
@@ -397,10 +387,6 @@ class Session:
         if one not in self.noted and self.on_noted is not None:
             self.on_noted(one)
         self.noted[one] = None
-
-    @property
-    def _on_end(self) -> Callable[..., None] | None:
-        return self.inspection.note if self.job.inspect else None
 
     def _refusals(self, operation: Operation) -> frozenset[str]:
         return frozenset((*operation.refusals, *self.job.vocabulary.refusals))

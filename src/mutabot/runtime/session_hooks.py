@@ -125,14 +125,14 @@ class SessionHooks:
 
     def _become(self, mutant: Mutant, folder: str) -> None:
         """In a process that was just forked: go on as this mutant."""
-        assert self.session.fork_parent is not None
+        assert self.session.passing.fork_parent is not None
         self.tests.start_clocks(is_new=True)
         self.tests.left_out = self.job.left_out(mutant.id)
         if self.config is not None:
             # nobody reads a fork's traceback, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
-        fork = ForkedRun(self.session, self.session.fork_parent, mutant, folder)
+        fork = ForkedRun(self.session, self.session.passing.fork_parent, mutant, folder)
         self.tests.fork = fork
         self.session.become(mutant, fork.choices)
 

@@ -30,7 +30,7 @@ from mutabot.model.path import class_name
 from mutabot.model.process_time import TimeUsed
 from mutabot.runtime import FOLDER, seeds
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
-from mutabot.runtime.executed import ExecutedUnits
+from mutabot.runtime.executed import STARTS, ExecutedUnits
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.observation.checks import Looks
@@ -202,9 +202,6 @@ def _is_mismatch(error: Any) -> TypeGuard[doctest.DocTestFailure]:
     return module is not None and isinstance(error, module.DocTestFailure)
 
 
-_PROCESSES = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.forkpty", "os.exec"}
-
-
 class ForkedRun:
     """This process from its fork on.
 
@@ -229,7 +226,7 @@ class ForkedRun:
         self._is_early = not session.test
         self._has_acted = False
         gc.freeze()  # what is never looked at stays shared with the parent
-        listen(_PROCESSES, self._hear)
+        listen(STARTS, self._hear)
 
     def start_test(self) -> None:
         """A test begins, its second at least."""
@@ -358,8 +355,8 @@ class TestHooks:
         if limit is not None:
             session.pipe.send(limit)
         seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
-        if session.fork_parent is not None:
-            session.fork_parent.begin_test(test)
+        if session.passing.fork_parent is not None:
+            session.passing.fork_parent.begin_test(test)
         self.start_clocks()
         members = self.members if self.fork is None else self.fork.members
         if members is not None:
@@ -376,7 +373,7 @@ class TestHooks:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """The fixtures of a test are next."""
-        if self.session.fork_parent is not None:
+        if self.session.passing.fork_parent is not None:
             drop_idle_watchdog(item)
         if self.session.placed.fatal is not None:
             raise self.session.placed.fatal

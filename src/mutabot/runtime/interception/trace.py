@@ -167,14 +167,10 @@ def _can_be_lost(call: Call) -> bool:
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values as they are now: a program may change its lists and arrays later."""
-    return {
-        name: value.tolist()
-        if hasattr(type(value), "tolist")
-        else list(value)
-        if isinstance(value, list)
-        else value
-        for name, value in values.items()
+    found: dict[str, Any] = {
+        name: list(value) if isinstance(value, list) else value for name, value in values.items()
     }
+    return {name: one.tolist() if hasattr(type(one), "tolist") else one for name, one in found.items()}
 
 
 class Locator:

@@ -55,7 +55,10 @@ class ForkServer:
         ``has_started``: whether the program has started processes by now, of which no job would know.
         Returns what to do in a copy; None in the server when it is done.
         """
-        reason = STARTED if has_started else self._why_not()
+        reason = STARTED if has_started else None
+        if reason is None and not (self.is_private and may_be_private()):
+            reason = "its files are not private"
+        reason = reason or why_not((), self._known)
         self.pipe.send(Serving(reason))
         if reason is not None:
             return None
@@ -75,11 +78,6 @@ class ForkServer:
         for pidfd in list(self._copies):
             self._bury(pidfd)
         return None
-
-    def _why_not(self) -> str | None:
-        if not self.is_private or not may_be_private():
-            return "its files are not private"
-        return why_not((), self._known)
 
     def _wait(self, jobs: socket.socket) -> bool:
         """Sleep until there is a job (True) or copies have ended, and look after these."""

@@ -43,11 +43,10 @@ class TextOnly:
         text: the program text, if it is instrumented.
         test: node id of the running test.
         meter: what the running test has used.
-        commands, sites, is_fork: of calls there are none.
+        commands, is_fork: of calls there are none.
     """
 
     commands = 0
-    sites: tuple[events.SiteSeen, ...] = ()
     is_fork = False
 
     def __init__(self, job: Job, pipe: EventWriter) -> None:
@@ -144,7 +143,7 @@ class Member:
     def go_on(self) -> None:
         """In a process that was forked: go on with the session that it has, and tell of it."""
         session = self.session
-        for site in session.sites:
+        for site in () if isinstance(session, TextOnly) else session.recorder.sites:
             self.file.send(site)
         self._told = session.evidence.copy()
         self._attend()

@@ -21,7 +21,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
-from mutabot.model.events import Event, NotInstrumented, PlacesReached, TextsSeen
+from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.job import Job
 from mutabot.model.mutant import (
     RUNTIME,
@@ -32,7 +32,7 @@ from mutabot.model.mutant import (
     TextPlace,
     kept_name,
 )
-from mutabot.runtime.event_file import EventWriter
+from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.switches import Alternatives, ForeseenForm, Forms, Sightings
@@ -280,7 +280,7 @@ class SessionText:
         if instrumentation.record:
             variables = {number: place.text for number, place in self._places.items() if place.variable}
             self.sightings = Sightings(size, variables)
-        self.pipe = pipe
+        self.pipe: EventWriter = pipe or Held()
         self.imported: list[str] = []
         self.problems: dict[str, str] = {}
         self._originals: dict[int, ast.expr] = {}
@@ -346,7 +346,7 @@ class SessionText:
 
     def _refuse(self, text: ProgramText, reason: str) -> None:
         self.problems[text.file] = reason
-        self._send(NotInstrumented(text.file, reason))
+        self.pipe.send(NotInstrumented(text.file, reason))
 
     @property
     def is_mutant(self) -> bool:
@@ -385,7 +385,7 @@ class SessionText:
             others = list(others)
             imported = dict.fromkeys([*self.imported, *(file for one in others for file in one.imported)])
             seen = [*self.sightings.seen(), *(seen for one in others for seen in one.sightings)]
-            self._send(TextsSeen(tuple(imported), tuple(seen)))
+            self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
@@ -410,11 +410,7 @@ class SessionText:
 
     def _tell_reached(self) -> None:
         assert self.sightings is not None
-        self._send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
-
-    def _send(self, event: Event) -> None:
-        if self.pipe is not None:
-            self.pipe.send(event)
+        self.pipe.send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
 
 
 def _file_of(module: Any) -> str:
