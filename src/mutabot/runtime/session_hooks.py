@@ -250,8 +250,8 @@ class SessionHooks:
             return
         members = self.tests.members
         self.session.finish(members.texts_seen() if members is not None else ())
-        if members is not None and members.doubt is not None:
-            self._errors.append(members.doubt)
+        if members is not None and members.children.doubt is not None:
+            self._errors.append(members.children.doubt)
         not_private = self._files.why_not if self.job.private_files else None
         self.session.pipe.send(SessionEnd(int(exitstatus), self._collected, tuple(self._errors), not_private))
 

@@ -465,7 +465,7 @@ class TestHooks:
             exclusive=self._address,
             reading=self._reading.seconds,
             not_along=self._reading.not_along,
-            more_checks=self.looks.more,
+            more_checks=len(self.looks.more),
             recording=session.recording.text(session.recorder.told()),
             executed=self.units.of_test(alone=is_alone),
         )
@@ -476,7 +476,7 @@ class TestHooks:
             trace=tuple(session.recorder.trace),
             returned=tuple(returns.entries) if returns is not None else (),
             moments=tuple(session.along.entries),
-            checks=self.looks.checks,
+            checks=tuple(self.looks.noted.values()),
         )
 
 

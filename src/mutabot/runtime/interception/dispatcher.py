@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
+from types import CodeType, FrameType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any, cast
 
 import wrapt
@@ -62,9 +62,7 @@ class Untracked:
         if self._returns is not None:
             self._was, self._returns.is_on = self._returns.is_on, False
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         _under_way.reset(self._token)
         if self._returns is not None:
             self._returns.is_on = self._was
@@ -186,7 +184,9 @@ class Dispatcher:
                 _under_way.reset(token)
                 token = _under_way.set(False)
                 return await self._leave_alone(invocation, is_async)
-            made = SiteCall(site, call, self._number(site[0], call), is_async, is_direct)
+            key = (site[0], call.operation.target, call.pattern.text if call.pattern is not None else None)
+            self.calls[key] += 1
+            made = SiteCall(site, call, self.calls[key], is_async, is_direct)
             try:
                 # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
                 #    original; a fork comes back from here as its mutant.
@@ -213,12 +213,6 @@ class Dispatcher:
                 _under_way.reset(token)
             except ValueError:  # a coroutine that was given up is closed from elsewhere
                 pass
-
-    def _number(self, span: Span, call: Call) -> int:
-        """Count a call among those of its site in the running test, from 1."""
-        key = (span, call.operation.target, call.pattern.text if call.pattern is not None else None)
-        self.calls[key] += 1
-        return self.calls[key]
 
     async def _leave_alone(self, invocation: Invocation, is_async: bool) -> Any:
         """Make a call as if there were no handler around it."""

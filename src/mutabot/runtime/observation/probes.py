@@ -17,10 +17,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum
 from functools import cached_property
+from itertools import islice
 from time import perf_counter  # tests may replace those of the module
 from types import FunctionType
 from typing import Any
@@ -164,12 +164,7 @@ def _needs_none(found: Callable[..., Any]) -> bool:
 
 def flatten(value: Any, name: str) -> dict[str, Any]:
     """A nested value as flat parts. Raises UnreadableError for what is no plain data."""
-    parts: dict[str, Any] = {}
-    for key, part in _parts(value, name):
-        parts[key] = part
-        if len(parts) >= LIMIT:
-            break
-    return parts
+    return dict(islice(_parts(value, name), LIMIT))
 
 
 def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
@@ -243,17 +238,13 @@ class Along:
     def after(self, call: int) -> None:
         """A command, the test's ``call``-th call, is over."""
         self._commands += 1
-        if not self.step or self._commands % self.step:
+        is_main = threading.current_thread() is threading.main_thread()
+        if not self.step or self._commands % self.step or not is_main:
             return
-        if threading.current_thread() is not threading.main_thread():
-            return
-        values = self.read().values
-        last = self._last
-        if last is not None and last.keys() == values.keys():
-            changed = {key: value for key, value in values.items() if value != last[key]}
-            self.entries.append((call, changed, False))
-        else:
-            self.entries.append((call, values, True))
+        values, last = self.read().values, self._last or {}
+        is_whole = self._last is None or last.keys() != values.keys()
+        changed = {key: value for key, value in values.items() if is_whole or value != last[key]}
+        self.entries.append((call, changed, is_whole))
         self._last = values
         if len(self.entries) >= self._thins_at:
             self._thins_at += NEXT
@@ -386,10 +377,7 @@ class TestRecording:
     __test__ = False
 
     def __init__(
-        self,
-        clock: Callable[[], float | None],
-        aside: Callable[[], AbstractContextManager[object]],
-        is_simulated: bool,
+        self, clock: Callable[[], float | None], aside: Callable[[], Any], is_simulated: bool
     ) -> None:
         self._clock, self._aside, self._is_simulated = clock, aside, is_simulated
         self._tape: Tape | None = None

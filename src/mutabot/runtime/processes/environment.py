@@ -20,7 +20,6 @@ import struct
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from importlib import import_module
 from itertools import takewhile
 from typing import Any
 
@@ -80,12 +79,8 @@ def completed(environment: Sequence[bytes]) -> list[bytes]:
 
 
 def _patch() -> None:
-    """Where ``subprocess`` is not there yet, it will take the function from the module that it is made of."""
-    module: Any = sys.modules.get("subprocess")
-    name = "_fork_exec" if module is not None else "fork_exec"
-    if module is None:  # where nothing is started it is of no use
-        module = import_module("_posixsubprocess")
-    start = getattr(module, name)
+    module: Any = subprocess
+    start = module._fork_exec
 
     def fork_exec(*arguments: Any) -> Any:
         environment = arguments[_ENVIRONMENT]
@@ -93,7 +88,7 @@ def _patch() -> None:
             arguments = (*arguments[:_ENVIRONMENT], completed(environment), *arguments[_ENVIRONMENT + 1 :])
         return start(*arguments)
 
-    setattr(module, name, fork_exec)
+    module._fork_exec = fork_exec
 
 
 def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str]) -> None:
@@ -181,17 +176,8 @@ class Now:
 
 #: programs that end others: with ``timeout`` and the launchers of ROS, which end what they have started
 _KILLERS = {
-    "kill",
-    "pkill",
-    "killall",
-    "skill",
-    "fuser",
-    "timeout",
-    "rosnode",
-    "roslaunch",
-    "rostest",
-    "ros2",
-}
+    "kill", "pkill", "killall", "skill", "fuser", "timeout", "rosnode", "roslaunch", "rostest", "ros2",
+}  # fmt: skip
 #: programs that run a command that they are given
 _RUNNERS = {"sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "nice", "nohup", "setsid", "xargs"}
 _KILLER_IN_TEXT = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(_KILLERS))})(?![\w.-])")
@@ -241,10 +227,7 @@ class ProcessWatch:
         self.codes: dict[int, int] = {}
         self.signalled: set[int] = set()
         self._tell_unseen = tell_unseen
-        self._watch_ends()
         listen(("os.kill", "os.killpg", *STARTS), self._hear)
-
-    def _watch_ends(self) -> None:
         kind: Any = subprocess.Popen
         wait, handle = os.waitpid, kind._handle_exitstatus
 
