@@ -29,8 +29,8 @@ _FOREIGN = {"uname", "git", "ldconfig", "lsb_release", "nvidia-smi"}
 _PLACES = tuple[str, int]
 
 
-class ExecutedUnits:
-    """The record of this process and of its forks. See ``loading.Step``.
+class ExecutedUnits(loading.SourceStep):
+    """The record of this process and of its forks. Of a file that is compiled without marks, all counts.
 
     Args:
         root: absolute path of the project.
@@ -85,9 +85,6 @@ class ExecutedUnits:
             self._places.append((name, node.lineno))
             self._ran.append(0)
             _mark(node, number)  # what is defined in it may be sent to processes that know no marks
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """It is compiled without marks: all of it counts."""
 
     def start_test(self) -> None:
         """A test begins, before its fixtures."""

@@ -22,8 +22,7 @@ from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
-from mutabot.runtime.observation.clock import ClockReader, ProgramTime
-from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.observation.clock import ClockReader, Instances, ProgramTime
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
 from mutabot.runtime.process_fault import PlacedFault
 from mutabot.runtime.program_text.call_sites import CallSites

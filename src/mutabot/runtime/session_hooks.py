@@ -23,8 +23,7 @@ from mutabot.runtime.evidence import limit_memory
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.isolation.files import LOG, PrivateFiles
 from mutabot.runtime.isolation.fork_parent import ForkParent
-from mutabot.runtime.isolation.forkable import track_event_loops
-from mutabot.runtime.isolation.namespaces import die_with_parent
+from mutabot.runtime.isolation.forkable import die_with_parent, track_event_loops
 from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members

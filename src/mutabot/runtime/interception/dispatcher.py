@@ -30,7 +30,7 @@ from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCall
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
 from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.trace import Locator, Recorder
-from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where
 

@@ -29,8 +29,18 @@ from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import PrivateFiles
-from mutabot.runtime.isolation.forkable import STARTED, go_on_running, open_now, running_loop, why_not
-from mutabot.runtime.isolation.namespaces import ForkedPids, die_with_parent, end_first, fork, leave_out
+from mutabot.runtime.isolation.forkable import (
+    STARTED,
+    ForkedPids,
+    die_with_parent,
+    end_first,
+    fork,
+    go_on_running,
+    leave_out,
+    open_now,
+    running_loop,
+    why_not,
+)
 from mutabot.runtime.plugins import alarm_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are

@@ -32,7 +32,7 @@ from mutabot.evidence.tape import FilmWriter, Tape
 from mutabot.model import Probe
 from mutabot.model.job import Pictures
 from mutabot.model.path import class_name
-from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.targets.target import resolve
 
 #: parts reported per probe; a probe is meant to be a handful of numbers

@@ -124,8 +124,10 @@ _ASK: Guards = (({}, "", NOTHING),)
 
 
 @dataclass(slots=True, eq=False)
-class CallSites:
-    """Puts the questions into files, and answers them. See ``loading.Step``.
+class CallSites(loading.SourceStep):
+    """Puts the questions into files, and answers them.
+
+    Of a file that is compiled without, calls are seen by what they call.
 
     Args:
         names: last names that are asked about: those of the operations.
@@ -174,9 +176,6 @@ class CallSites:
         if writer.written:
             declare_global(tree, CALLS)
             self.loaded.add(path)
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """It is compiled without: its calls are seen by what they call."""
 
     def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
         key = (path, extent_of(node), form)

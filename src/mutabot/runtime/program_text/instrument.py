@@ -360,10 +360,7 @@ class SessionText:
                 self._tell_reached()
             self.alternatives.keep()
         self._test, self._refusals, self._unknown = test, (), False
-        if self.sightings is not None:
-            self.sightings.start()
-        else:
-            self.alternatives.start()
+        (self.sightings or self.alternatives).start()
 
     def watch(
         self, on_place: Callable[[int, frozenset[int]], None], live: Mapping[int, frozenset[int]]

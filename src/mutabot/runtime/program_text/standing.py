@@ -242,13 +242,12 @@ class Standing:
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name in whose place something stands."""
         mock = mock_of(found)
-        is_read = is_mock(mock, "PropertyMock")  # such are called when the attribute is read
-        kinds = (property, cached_property)  # of attributes, which nobody calls
-        found_as = self.callables.found
+        is_read = is_mock(
+            mock, "PropertyMock"
+        )  # such are called when the attribute is read, which nobody calls
+        raw, kinds = self.callables.found, (property, cached_property)
         ones = [
-            one
-            for one in self.by_name[name]
-            if isinstance(found_as.get(one.operation.target), kinds) is is_read
+            one for one in self.by_name[name] if isinstance(raw.get(one.operation.target), kinds) is is_read
         ]
         fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
         if fitting:
