@@ -134,11 +134,9 @@ class Session:
 
     def _tell_standing(self) -> None:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
-        mutants = self.job.forking.mutants if self.job.forking is not None else ()
-        own = (self.job.mutant,) if self.job.mutant is not None else ()
-        self.standing.known = dict(self.job.known) | {
-            one.site.span: one.operation for one in (*mutants, *own)
-        }
+        mutants = list(self.job.forking.mutants) if self.job.forking is not None else []
+        mutants += [self.job.mutant] if self.job.mutant is not None else []
+        self.standing.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
         if self.job.inspect:
             self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
 
@@ -399,9 +397,8 @@ class Session:
 
     def _acted(self, mutant: str) -> None:
         """The mutant changed something; what is of the program text has no name."""
-        self.recording.note_fault(
-            len(self.recorder.trace), self.recorder.began if mutant else self.recording.clock()
-        )
+        time = self.recorder.began if mutant else self.recording.clock()
+        self.recording.note_fault(len(self.recorder.trace), time)
         self.pipe.send(Acted(self.test))
 
     def _simulated(self) -> float | None:

@@ -330,13 +330,10 @@ class ActiveMutant:
         found = subject_of(self.rule, self.operation, pattern, mutant.quantity, mutant.variant)
         if mutant.magnitude is None:
             return found
-        return replace(  # a magnitude that is demanded need not be one of the operator's own
-            found,
-            variant=mutant.variant,
-            magnitude=mutant.magnitude,
-            unit=mutant.unit,
-            direction=mutant.direction,
-        )
+        # a magnitude that is demanded need not be one of the operator's own
+        magnitude, unit = mutant.magnitude, mutant.unit
+        found = replace(found, magnitude=magnitude, unit=unit, direction=mutant.direction)
+        return replace(found, variant=mutant.variant)
 
     def _idle_answer(self, idle: Idle, adapter: Adapter, call: Call) -> Reply:
         """Return what the command answers while the robot does nothing: what it answered in the baseline.

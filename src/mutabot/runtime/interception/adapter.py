@@ -19,11 +19,10 @@ from inspect import Parameter, Signature
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Vocabulary
+from mutabot.model import Call, NotToldError, Operation, Path, Pattern, Quantity, Reply, Vocabulary
 from mutabot.model.answer import NotKeptError, is_member, is_of_numpy, keep, name_of, restore
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
-from mutabot.model.path import Path
 from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not

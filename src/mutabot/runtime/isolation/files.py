@@ -394,9 +394,7 @@ def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) 
         if is_deleted and flags & os.O_ACCMODE == os.O_RDONLY:
             return
         opened = (
-            _in_memory(descriptor, position)
-            if is_deleted
-            else _opened_again(descriptor, status, position, flags)
+            _in_memory(descriptor, position) if is_deleted else _opened_again(descriptor, position, flags)
         )
         if opened is None:
             return
@@ -404,7 +402,7 @@ def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) 
     os.dup2(copies[shared], descriptor, inheritable=os.get_inheritable(descriptor))
 
 
-def _opened_again(descriptor: int, status: os.stat_result, position: int, flags: int) -> int | None:
+def _opened_again(descriptor: int, position: int, flags: int) -> int | None:
     """The same file opened once more; None if it is ours, in a folder that tests do not see."""
     path = os.readlink(f"/proc/self/fd/{descriptor}")
     try:

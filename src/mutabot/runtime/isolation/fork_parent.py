@@ -28,19 +28,8 @@ from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Un
 from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
+from mutabot.runtime.isolation import forkable
 from mutabot.runtime.isolation.files import PrivateFiles
-from mutabot.runtime.isolation.forkable import (
-    STARTED,
-    ForkedPids,
-    die_with_parent,
-    end_first,
-    fork,
-    go_on_running,
-    leave_out,
-    open_now,
-    running_loop,
-    why_not,
-)
 from mutabot.runtime.plugins import alarm_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are
@@ -78,7 +67,7 @@ class Child:
 
     mutant: str
     fork: int
-    pids: ForkedPids
+    pids: forkable.ForkedPids
     pidfd: int
     test: int
     limit: float
@@ -139,7 +128,7 @@ class ForkParent:
         count = max(1, len(self._slots))
         board = memoryview(mmap.mmap(-1, 2 * count * _NUMBER_BYTES)).cast("i")
         self._finished, self._tests = board[:count], board[count:]
-        self._known = open_now()
+        self._known = forkable.open_now()
         for mutant in self.forking.mutants:
             keys: list[Key] = [(mutant.site.span, mutant.operation, mutant.pattern)]
             keys += [choice.place for choice in self.forking.choices.get(mutant.id, ())]
@@ -214,8 +203,8 @@ class ForkParent:
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
             own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
-            reason = STARTED if self._is_overtaken() else self.files.forbids_fork()
-            if (reason := reason or why_not(own, self._known)) is not None:
+            reason = forkable.STARTED if self._is_overtaken() else self.files.forbids_fork()
+            if (reason := reason or forkable.why_not(own, self._known)) is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
                 self._fork_each(due)
@@ -245,21 +234,21 @@ class ForkParent:
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
             with suppress(OSError):
-                leave_out(monotonic() - began)
+                forkable.leave_out(monotonic() - began)
 
-    def _fork_one(self, mutant: Mutant, began: float) -> ForkedPids | None:
+    def _fork_one(self, mutant: Mutant, began: float) -> forkable.ForkedPids | None:
         """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
         slot = self._slots[mutant.id]
         self._finished[slot], self._tests[slot] = 0, self._number
         # random registers a hook that seeds anew in every child
-        state, loop = random.getstate(), running_loop()
+        state, loop = random.getstate(), forkable.running_loop()
         sys.stdout.flush()
         sys.stderr.flush()
         self.pipe.forks += 1
         reading, writing = os.pipe()
         self._forking = True
         try:
-            pids = fork()
+            pids = forkable.fork()
         except OSError:
             os.close(reading)
             os.close(writing)
@@ -268,9 +257,9 @@ class ForkParent:
             self._forking = False
         if pids is None:
             os.close(reading)
-            die_with_parent(pipe=writing)
+            forkable.die_with_parent(pipe=writing)
             random.setstate(state)
-            go_on_running(loop)
+            forkable.go_on_running(loop)
             self._begin_child(mutant, began)
             os.close(writing)
             return None
@@ -287,7 +276,7 @@ class ForkParent:
             os.close(descriptor)
         try:
             folder = self.files.enter(self.pipe.name)
-            leave_out(monotonic() - began)
+            forkable.leave_out(monotonic() - began)
         except OSError as error:
             try:
                 self._tell_unforked(mutant, error)
@@ -394,7 +383,7 @@ class ForkParent:
     def _bury(self, child: Child) -> None:
         """Tell how a child has ended."""
         _, status = os.waitpid(child.pids.fork, 0)
-        end_first(child.pids.first)
+        forkable.end_first(child.pids.first)
         os.close(child.pidfd)
         slot, code = self._slots[child.mutant], os.waitstatus_to_exitcode(status)
         # at the end of the session the exit code is the suite's own

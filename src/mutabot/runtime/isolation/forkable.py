@@ -193,10 +193,8 @@ def _shared_memory() -> Iterator[tuple[int, str]]:
     for line in _maps():
         place, rights = line.split(maxsplit=2)[:2]
         if rights[1] == "w" and rights[3] == "s":
-            yield (
-                -int(place.partition("-")[0], 16),
-                f"memory shared with others {line[73:].strip()}".rstrip(),
-            )
+            where = -int(place.partition("-")[0], 16)
+            yield where, f"memory shared with others {line[73:].strip()}".rstrip()
 
 
 def _graphics() -> str | None:

@@ -26,8 +26,7 @@ from typing import Any
 import wrapt
 
 from mutabot.errors import PathError
-from mutabot.model import Clock, Vocabulary
-from mutabot.model.path import Path
+from mutabot.model import Clock, Path, Vocabulary
 from mutabot.model.signature import ANYTHING, signature_of
 from mutabot.model.units import convert
 from mutabot.runtime.evidence import Meter

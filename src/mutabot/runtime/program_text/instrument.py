@@ -21,17 +21,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
+from mutabot.model import Alternative, Instrumentation, ProgramText, TextPlace
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.job import Job
-from mutabot.model.mutant import (
-    RUNTIME,
-    Alternative,
-    Extent,
-    Instrumentation,
-    ProgramText,
-    TextPlace,
-    kept_name,
-)
+from mutabot.model.mutant import RUNTIME, Extent, kept_name
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text import loading

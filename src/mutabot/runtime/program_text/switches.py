@@ -505,14 +505,8 @@ _PLAIN: dict[type, str] = {
     set: "set", frozenset: "set", type(None): "none",
 }  # fmt: skip
 #: what stands for something else rather than for a value
-_NO_VARIABLE = (
-    types.ModuleType,
-    types.FunctionType,
-    types.BuiltinFunctionType,
-    types.MethodType,
-    type,
-    type(None),
-)
+_FUNCTIONS = (types.FunctionType, types.BuiltinFunctionType, types.MethodType)
+_NO_VARIABLE = (*_FUNCTIONS, types.ModuleType, type, type(None))
 _ARRAYS = {"b": "truth", "i": "integer", "u": "integer", "f": "number", "c": "number"}
 
 
