@@ -1,8 +1,7 @@
 """Pytest's hooks around each test of a job: they start its measurements and tell how it ended.
 
-A forked run: a process that was forked in the middle of a test, and goes on to the end as its mutant.
-
-How a test ends, and what ended it: a check, an exception, a limit, a refusal, or a failure of the tool.
+What ends a test is a check, an exception, a limit, a refusal, or a failure of the tool. A process that was
+forked in the middle of a test goes on to the end as its mutant, or leaves when a test decides.
 """
 
 from __future__ import annotations

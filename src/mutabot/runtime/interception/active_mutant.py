@@ -1,7 +1,4 @@
-"""One mutant at work at its site.
-
-Refusals: which calls the robot refuses in the original too, and how data say that it refuses one.
-"""
+"""One mutant at work at its site, and how the robot refuses calls, by exceptions and by data."""
 
 from __future__ import annotations
 

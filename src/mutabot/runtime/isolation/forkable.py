@@ -1,14 +1,12 @@
-"""Whether this process can be forked right now without breaking what it shares with the world.
+"""Fork a process, if it can be forked right now without breaking what it shares with the world.
 
-Event loops of asyncio in a process that was forked: the descriptors by which they wait must be its own.
+The fork has its parent's process id, and its clock can be set back: both keep from a program what it could
+notice of a fork. The id takes a process namespace, whose first process must outlive the others: here one that
+sleeps, and shares the parent's memory and files, so that it costs next to nothing. Clone flags and
+``clone_args``: <linux/sched.h>.
 
-Fork a process that has its parent's process id, and set the clock of a process back.
-
-Both keep what a program can notice of a fork from it. The id takes a process namespace, whose first process
-must outlive the others: here one that sleeps, and shares the parent's memory and files, so that it costs next
-to nothing. Clone flags and ``clone_args``: <linux/sched.h>.
-
-How processes end: none outlives the one it works for, and none takes its memory apart first.
+Event loops of asyncio must wait by descriptors of the fork's own. No process outlives the one it works for,
+and none takes its memory apart when it ends.
 """
 
 from __future__ import annotations

@@ -1,12 +1,11 @@
-"""The program's time: read at every call that advances the simulation, or counted in fixed steps.
+"""The program's time, and which objects of a class the present test uses.
 
-Which objects of a class the present test uses: what a probe on a method or attribute is read from.
-
-Those that are ``self`` of an intercepted call in the running test, in the order of their first call. Where
-there is none, one object: the last that was made in this test, else one that its fixtures hold, else the last
-that was made before any test or while a module was imported. An object that another test made is never taken.
-Objects are noted when they are made, by their class's ``__init__``, and when they are used, by the
-interception.
+The time is read at every call that advances the simulation, or counted in fixed steps. A probe on a method
+or attribute is read from those objects that are ``self`` of an intercepted call in the running test, in the
+order of their first call. Where there is none, one object: the last that was made in this test, else one that
+its fixtures hold, else the last that was made before any test or while a module was imported. An object that
+another test made is never taken. Objects are noted when they are made, by their class's ``__init__``, and
+when they are used, by the interception.
 """
 
 from __future__ import annotations

@@ -4,9 +4,8 @@ The environment goes along also where a process is given one of its own. It lead
 that reads in ``wake`` what is of interest. All processes below a test know at no cost which test is running.
 The test process notes which processes are started out of sight, how each ended, and by whose signals.
 
-Listen to audit events: one hook hands each event to those that asked for it.
-
-Python calls every hook at every event, and ``sys._getframe`` is one, which notes in the program text ask for
+What is done is heard of by audit events: one hook hands each event to those that asked for it, since Python
+calls every hook at every event, and ``sys._getframe`` is one, which notes in the program text ask for
 at each call. A hook cannot be taken back.
 """
 

@@ -5,7 +5,7 @@ around anything, so ``await``, ``yield``, ``:=``, ``super()``, ``locals()``, cla
 keep their meaning. The original is in the code once; alternatives hold plain copies of the parts they keep,
 with the positions these have in the text.
 
-The program text of a session: which alternatives stand in it, what they did, and what was seen of it.
+``SessionText`` is the text of a session: which alternatives stand in it, what they did, what was seen of it.
 """
 
 from __future__ import annotations

@@ -8,12 +8,11 @@ In a baseline the text becomes ``__mutabot__[0](p) or __mutabot__[p](E)``: the f
 is reached, whatever becomes of ``E``. A place is examined a few times per test; from then on the function
 there passes the value through, as cheaply as a call can.
 
-What an expression would give, found out without letting anything happen.
-
-The fork parent looks ahead with it: a mutant of the program text needs no process of its own as long as its
-value is the original's. And a mutant tells by it what the original would have given. Operators on plain
-numbers and texts are computed, and a few functions; what they work on are constants, names, and stored
-attributes and items. All else is left to a real evaluation.
+What an expression would give is found out without letting anything happen. The fork parent looks ahead with
+that: a mutant of the program text needs no process of its own as long as its value is the original's. And a
+mutant tells by it what the original would have given. Operators on plain numbers and texts are computed, and
+a few functions; what they work on are constants, names, and stored attributes and items. All else is left to
+a real evaluation.
 """
 
 from __future__ import annotations
