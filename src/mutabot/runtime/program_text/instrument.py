@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 
 _Key = tuple[str, Extent]
+#: expressions by the numbers of their places
+_Nodes = dict[int, ast.expr]
 _Node = TypeVar("_Node", bound=ast.AST)
 #: expressions without effects; attributes and items may be readings of a robot
 _PURE = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Tuple)
@@ -46,11 +48,7 @@ class MismatchError(ValueError):
 
 
 def instrumented(
-    tree: ast.Module,
-    places: Iterable[TextPlace],
-    *,
-    record: bool = False,
-    originals: dict[int, ast.expr] | None = None,
+    tree: ast.Module, places: Iterable[TextPlace], *, record: bool = False, originals: _Nodes | None = None
 ) -> ast.Module:
     """The tree with all alternatives of its places in it, or with witnesses; the tree itself is changed.
 
@@ -66,9 +64,7 @@ def instrumented(
 
 
 class _Instrumenter(ast.NodeTransformer):
-    def __init__(
-        self, places: Iterable[TextPlace], record: bool, originals: dict[int, ast.expr] | None
-    ) -> None:
+    def __init__(self, places: Iterable[TextPlace], record: bool, originals: _Nodes | None) -> None:
         self._places: dict[_Key, TextPlace] = {(place.node, place.extent): place for place in places}
         self._found: set[_Key] = set()
         self._record = record
@@ -90,10 +86,9 @@ class _Instrumenter(ast.NodeTransformer):
         return self._expression(node, place)
 
     def _place_of(self, node: ast.AST) -> TextPlace | None:
-        if not isinstance(node, ast.expr | ast.stmt) or not isinstance(
-            getattr(node, "ctx", None), ast.Load | None
-        ):
-            return None  # it is not evaluated
+        is_evaluated = isinstance(getattr(node, "ctx", None), ast.Load | None)
+        if not isinstance(node, ast.expr | ast.stmt) or not is_evaluated:
+            return None
         key = (type(node).__name__, extent_of(node))
         place = self._places.get(key)
         if place is not None:
@@ -132,13 +127,16 @@ class _Instrumenter(ast.NodeTransformer):
         if not others:
             return [node]
         raising = all(one.raises for one in place.alternatives)
-        tells = ast.Call(ast.Attribute(_switch(0), "tell", ast.Load()), [], [])
         chain: list[ast.stmt] = [others[-1]]
         for index in reversed(range(len(others) - 1)):
             chain = [placed(ast.If(_is_index(place, index), [others[index]], chain), node)]
         if raising:
             return [placed(ast.If(_is_chosen(place), chain, []), node), node]
-        return [placed(ast.If(_is_chosen(place), [placed(ast.Expr(tells), node), *chain], [node]), node)]
+        return [
+            placed(
+                ast.If(_is_chosen(place), [placed(ast.Expr(_asked(0, "tell")), node), *chain], [node]), node
+            )
+        ]
 
 
 def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
@@ -149,9 +147,8 @@ def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
 
 def _observed(other: ast.expr, place: TextPlace, node: ast.expr) -> ast.expr:
     """Alternatives that say what they became, and how to compute the original where that has no effect."""
-    became = ast.Attribute(_switch(place.number), "became", ast.Load())
     original: list[ast.expr] = [ast.Constant(ast.unparse(node))] if _is_pure(node) else []
-    return placed(ast.Call(became, [other, *original], []), node)
+    return placed(_asked(place.number, "became", other, *original), node)
 
 
 def _is_pure(node: ast.expr) -> bool:
@@ -163,9 +160,12 @@ def _switch(number: int) -> ast.expr:
     return ast.Subscript(ast.Name(RUNTIME, ast.Load()), ast.Constant(number), ast.Load())
 
 
+def _asked(number: int, method: str, *given: ast.expr) -> ast.expr:
+    return ast.Call(ast.Attribute(_switch(number), method, ast.Load()), list(given), [])
+
+
 def _is_chosen(place: TextPlace) -> ast.expr:
-    chosen = ast.Call(ast.Attribute(_switch(place.number), "chosen", ast.Load()), [], [])
-    return ast.BoolOp(ast.And(), [_switch(place.number), chosen])
+    return ast.BoolOp(ast.And(), [_switch(place.number), _asked(place.number, "chosen")])
 
 
 def _is_index(place: TextPlace, index: int) -> ast.expr:
@@ -194,8 +194,7 @@ def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = Tr
         raise MismatchError(f"{place.span.file}: no expression at {min(missing)}")
     filler = _Filler({kept_name(index): parts[extent] for index, extent in enumerate(place.kept)})
     if observed and isinstance(node, ast.expr) and place.extent in parts:
-        was = ast.Attribute(_switch(place.number), "was", ast.Load())
-        whole = placed(ast.Call(was, [parts[place.extent]], []), node)
+        whole = placed(_asked(place.number, "was", parts[place.extent]), node)
         filler.parts[kept_name(place.kept.index(place.extent))] = whole
     result: _Node = filler.visit(_moved(made, node))
     return result
@@ -276,7 +275,7 @@ class SessionText:
         self.pipe: EventWriter = pipe or Held()
         self.imported: list[str] = []
         self.problems: dict[str, str] = {}
-        self._originals: dict[int, ast.expr] = {}
+        self._originals: _Nodes = {}
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._real: Callable[[str], str] = cache(os.path.realpath)
         self._test: str | None = None
