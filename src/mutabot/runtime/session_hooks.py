@@ -131,8 +131,7 @@ class SessionHooks:
             # nobody reads a fork's traceback, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
-        fork = ForkedRun(self.session, self.session.passing.fork_parent, mutant, folder)
-        self.tests.fork = fork
+        fork = ForkedRun(self.tests, self.session.passing.fork_parent, mutant, folder)
         self.session.become(mutant, fork.choices)
 
     def _is_of_tests(self, path: str) -> bool:

@@ -205,21 +205,20 @@ class ForkedRun:
     """This process from its fork on.
 
     Args:
-        session: the job at hand.
+        tests: the hooks for each of its tests.
         parent: what has forked it.
         mutant: its mutant.
         folder: its own folder.
 
     Attributes:
         choices: what its mutant is in the program text.
-        members: the processes below it; None until it starts one.
     """
 
-    def __init__(self, session: Session, parent: ForkParent, mutant: Mutant, folder: str) -> None:
+    def __init__(self, tests: TestHooks, parent: ForkParent, mutant: Mutant, folder: str) -> None:
+        session, tests.fork, tests.members = tests.session, self, None
         self.mutant = mutant
         self.choices = parent.forking.choices.get(mutant.id, ())
-        self.members: Members | None = None
-        self._session, self._parent, self._folder = session, parent, folder
+        self._tests, self._session, self._parent, self._folder = tests, session, parent, folder
         self._pid = os.getpid()
         self._shared = session.meter.simulated if session.meter is not None else None
         self._is_early = not session.test
@@ -256,8 +255,8 @@ class ForkedRun:
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """The program is about to start its first process, which is to be the mutant as well."""
-        if self.members is None and os.getpid() == self._pid:
-            self.members = self._own_processes()
+        if self._tests.members is None and os.getpid() == self._pid:
+            self._tests.members = self._own_processes()
 
     def _own_processes(self) -> Members:
         session, job = self._session, self._session.job
@@ -287,7 +286,7 @@ class TestHooks:
         session: the job at hand.
 
     Attributes:
-        members: processes below the test process; None as long as no job is known. A fork has its own.
+        members: processes below this one; None as long as no job is known, and in a fork until it starts one.
         fork: what this process does if it was forked to be a mutant; None in all others.
         left_out: tests that are not run, since they do not reach the mutant and one before has.
         looks: the checks that the test makes.
@@ -332,9 +331,8 @@ class TestHooks:
         self._start(item, test)
         result = yield
         end = self._test_end(test)
-        members = self.members if self.fork is None else self.fork.members
-        if members is not None:
-            end = members.merged(end)
+        if self.members is not None:
+            end = self.members.merged(end)
         if self.fork is not None:  # which may have begun in this test
             self.fork.end_test(end)
         session.end_test()
@@ -357,9 +355,8 @@ class TestHooks:
         if session.passing.fork_parent is not None:
             session.passing.fork_parent.begin_test(test)
         self.start_clocks()
-        members = self.members if self.fork is None else self.fork.members
-        if members is not None:
-            members.start_test(test)
+        if self.members is not None:
+            self.members.start_test(test)
         session.start_test(test, partial(objects_of_fixtures, item))
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
