@@ -183,11 +183,9 @@ class CallSites(loading.SourceStep):
         if number is None:
             number = self._numbers[key] = len(_entries)
             is_handed = form.startswith("handed")
-            place = (
-                getattr(node, _PLACE, None) if is_handed else None
-            ) or node  # the call that it is given to
-            is_awaited = bool(getattr(node, "is_awaited", False))
-            site = CallSite(path, role, name, extent_of(place), is_handed, is_awaited, place is not node)
+            given_to = getattr(node, _PLACE, None) if is_handed else None
+            is_awaited, extent = bool(getattr(node, "is_awaited", False)), extent_of(given_to or node)
+            site = CallSite(path, role, name, extent, is_handed, is_awaited, given_to is not None)
             _entries.append(getattr(self, f"_{form}")(site))
         return number
 
@@ -348,15 +346,12 @@ def _as_compiled(node: ast.Call, function: ast.Attribute) -> None:
     In a chain over several lines that is from the attribute's name on; for the call only where its method is
     not bound first.
     """
-    if (
-        function.end_lineno is None
-        or function.end_col_offset is None
-        or function.lineno == function.end_lineno
-    ):
+    last, end = function.end_lineno, function.end_col_offset
+    if last is None or end is None or function.lineno == last:
         return
-    start = max(function.end_col_offset - len(function.attr), 0)
+    start = max(end - len(function.attr), 0)
     is_method = len(node.args) + len(node.keywords) + bool(node.keywords) < _MOST_OF_METHOD
     is_plain = not any(isinstance(one, ast.Starred) for one in node.args)
     if is_method and is_plain and all(one.arg is not None for one in node.keywords):
-        node.lineno, node.col_offset = function.end_lineno, start
-    function.lineno, function.col_offset = function.end_lineno, start
+        node.lineno, node.col_offset = last, start
+    function.lineno, function.col_offset = last, start

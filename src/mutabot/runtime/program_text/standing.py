@@ -151,7 +151,7 @@ class Standing:
         by_name: the operations by their last names.
     """
 
-    adapters: Iterable[Adapter]
+    adapters: Collection[Adapter]
     callables: Callables
     locator: Locator
     sees_itself: Collection[Handler]
@@ -221,10 +221,6 @@ class Standing:
             site.place = (span, site.role)
         return site.place
 
-    def candidate_of(self, handler: Handler) -> Adapter | None:
-        """The operation that this handler stands around."""
-        return next((one for ones in self.by_name.values() for one in ones if one.handler is handler), None)
-
     def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """The operation that stands at a site, if it does not see its calls itself."""
         if any(handler in self.sees_itself for handler in _handlers(found)):
@@ -265,7 +261,9 @@ class Standing:
         owner = self._owner(one)
         if owner is None or receiver is NOTHING:
             return False
-        if self._is_of_program(found) and not one.operation.overrides:
+        function = found.__func__ if isinstance(found, MethodType) else found
+        file = function.__code__.co_filename if isinstance(function, FunctionType) else ""
+        if file and self.locator.role(file) is Role.PROGRAM and not one.operation.overrides:
             return False
         return any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame))
 
@@ -294,13 +292,6 @@ class Standing:
         if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
             return True
         return any(handler is one.handler for handler in _handlers(wrapped))
-
-    def _is_of_program(self, found: Any) -> bool:
-        function = found.__func__ if isinstance(found, MethodType) else found
-        return (
-            isinstance(function, FunctionType)
-            and self.locator.role(function.__code__.co_filename) is Role.PROGRAM
-        )
 
     def _names_of(self, names: dict[str, Any]) -> dict[str, Any]:
         """The names of a module that meant an operation when it was seen first, or the class of one.
@@ -425,7 +416,8 @@ class Handing:
             return found
         place = self._standing.place(site, frame)
         if type(found) in WRAPPERS:
-            own = self._standing.candidate_of(found._self_wrapper)
+            adapters, handler = self._standing.adapters, found._self_wrapper
+            own = next((one for one in adapters if one.handler is handler), None)
             if own is None:
                 return found
             self._standing.stood[place[0]] = own.operation.target
