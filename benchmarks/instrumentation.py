@@ -6,6 +6,7 @@ Usage: python benchmarks/instrumentation.py
 from __future__ import annotations
 
 import ast
+import builtins
 import sys
 import tempfile
 import time
@@ -18,6 +19,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Instrumentation, ProgramText
+from mutabot.model.mutant import RUNTIME
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.instrument import SessionText, instrumented
 from mutabot.runtime.program_text.loading import compile_tree
@@ -121,7 +123,7 @@ def _hooked(folder: Path, text: ProgramText, *, record: bool = False) -> Callabl
         run: Callable[[int], Any] = _loaded(folder / text.file).run
     finally:
         loading._steps.remove(hook)
-    (hook.sightings or hook.alternatives).install()
+    setattr(builtins, RUNTIME, (hook.sightings or hook.alternatives).switches)
     if hook.sightings is not None:
         hook.sightings.start()
     return run

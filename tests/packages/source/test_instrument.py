@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import importlib
 import runpy
 import sys
@@ -17,6 +18,7 @@ import pytest
 
 from mutabot.model import Instrumentation
 from mutabot.model.codec import from_data, to_data
+from mutabot.model.mutant import RUNTIME
 from mutabot.runtime.program_text.instrument import SessionText, instrumented
 from mutabot.runtime.program_text.loading import compile_tree
 from mutabot.runtime.program_text.switches import Alternatives, error_of
@@ -51,7 +53,7 @@ def test_every_alternative_does_what_its_text_says(tmp_path: Path) -> None:
     assert len(choices(text)) > 150
     code = compile_tree(instrumented(ast.parse(MISSION), text.places), text.file)
     alternatives = Alternatives(len(text.places))
-    alternatives.install()
+    setattr(builtins, RUNTIME, alternatives.switches)
     for choice, place, alternative in choices(text):
         alternatives.activate(choice)
         assert outcome(code) == outcome(spliced(MISSION, place, alternative)), (place.text, alternative)

@@ -11,6 +11,7 @@ with the positions these have in the text.
 from __future__ import annotations
 
 import ast
+import builtins
 import copy
 import hashlib
 import os
@@ -293,7 +294,7 @@ class SessionText:
 
     def install(self) -> None:
         """Instrument the program's files from now on; files imported before are told as problems."""
-        (self.sightings or self.alternatives).install()
+        setattr(builtins, RUNTIME, (self.sightings or self.alternatives).switches)
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
             if text is not None:

@@ -18,7 +18,6 @@ a real evaluation.
 from __future__ import annotations
 
 import ast
-import builtins
 import enum
 import inspect
 import math
@@ -346,10 +345,6 @@ class Alternatives:
         self.on_first: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
 
-    def install(self) -> None:
-        """Let instrumented program text find its switches."""
-        setattr(builtins, RUNTIME, self.switches)
-
     def keep(self) -> None:
         """Count what was counted so far in every test."""
         self._kept = (self.hits, self.idle, self.example)
@@ -570,10 +565,6 @@ class Sightings:
             self.entered.add(place)
             if self._on_first is not None:
                 self._on_first(place)
-
-    def install(self) -> None:
-        """Let instrumented program text find its switches."""
-        setattr(builtins, RUNTIME, self.switches)
 
     def start(self) -> None:
         """A new test begins: look at every place anew."""
