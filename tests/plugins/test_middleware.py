@@ -52,7 +52,7 @@ SITE = {
         import sys
         from functools import partial
 
-        from mutabot.runtime.targets.messages import deliver
+        from mutabot.runtime.targets.target import deliver
         from mutabot.runtime.targets.target import MiddlewareControls
         from mutabot.runtime.targets.target import Where
         from mutabot.model.operation import Form

@@ -2,7 +2,7 @@
 
 Every call, and every attribute that is read, asks the watch first: see ``program_text.call_sites``. Nothing
 changes that the program can see. What is done under the names of a middleware passes the hooks of a campaign
-(``runtime.targets.messages``).
+(``runtime.targets.target``).
 """
 
 from __future__ import annotations
@@ -28,8 +28,7 @@ from mutabot.runtime.interception.dispatcher import Untracked, is_under_way
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
-from mutabot.runtime.targets.messages import Messages
-from mutabot.runtime.targets.target import NOWHERE, Handler, Where
+from mutabot.runtime.targets.target import NOWHERE, Handler, Messages, Where
 from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
 from mutabot_init.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
 from mutabot_init.watching.values import look, plain

@@ -11,8 +11,7 @@ from importlib import import_module
 from typing import Any
 
 from mutabot.model.operation import Form
-from mutabot.runtime.targets.messages import anew, deliver, wait_for
-from mutabot.runtime.targets.target import Handler, Names
+from mutabot.runtime.targets.target import Handler, Names, anew, deliver, wait_for
 from mutabot_ros._patches import Patches, code_of
 from mutabot_ros.ros2 import _nodes
 
