@@ -8,7 +8,7 @@ since reading entry points is slow.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import field
 from functools import cache
 from importlib import import_module
@@ -275,18 +275,10 @@ def _declared() -> tuple[tuple[str, Extension], ...]:
     found = [(_owner(entry), entry) for entry in metadata.entry_points(group=GROUP)]
     return tuple(
         (owner, _read(owner, entry))
-        for owner, entry in _in_order(found)
-        if owner != GROUP or _is_there(entry)
+        for owner, entry in sorted(found, key=lambda one: (one[0] != GROUP, one[0], one[1].name))
+        # each package of our own can be left out
+        if owner != GROUP or find_spec(entry.module.partition(".")[0]) is not None
     )
-
-
-def _is_there(entry: EntryPoint) -> bool:
-    """Whether a package of our own is installed: each can be left out."""
-    return find_spec(entry.module.partition(".")[0]) is not None
-
-
-def _in_order(found: Iterable[tuple[str, EntryPoint]]) -> list[tuple[str, EntryPoint]]:
-    return sorted(found, key=lambda one: (one[0] != GROUP, one[0], one[1].name))
 
 
 def _owner(entry: EntryPoint) -> str:

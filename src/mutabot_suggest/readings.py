@@ -15,7 +15,6 @@ from typing import Any, TypeGuard
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.tasks import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import as_it_is_now, open_executor
 from mutabot.frozen import frozen
@@ -204,7 +203,7 @@ def _run_survivors(
     trials = [(mutant, round) for mutant, rounds in now for round in rounds]
     progress.stage("survivors", len(trials))
     tasks = (
-        task(campaign, mutant, round, baseline.suite(round))
+        campaign.task(mutant, round, baseline.suite(round))
         for mutant, round in trials
         if baseline.tests_reaching(round, mutant)
     )

@@ -11,8 +11,7 @@ from hashlib import blake2b
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
-from mutabot.evidence.story import diverged
-from mutabot.evidence.tracks import RecordedPaths, noise_between
+from mutabot.evidence.story import RecordedPaths, diverged, noise_between
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import UNFIT
 from mutabot.model import Diverged, Mutant
@@ -79,10 +78,8 @@ class CampaignEvidence:
 
         Recordings that cannot be read or written any more, whoever has spoiled them, cost no outcome.
         """
-        if self.is_lost:
-            return ()
         try:
-            return self._take(mutant, round, ends, survived=survived)
+            return () if self.is_lost else self._take(mutant, round, ends, survived=survived)
         except (JournalError, *UNFIT) as error:
             self.is_lost = True
             self.problems[f"nothing is recorded any more from mutant {mutant} on: {error}"] = None

@@ -122,38 +122,28 @@ def _command(name: str, function: Callable[..., object], help: str | None = None
     return typer.main.get_command(one)
 
 
-class Termination:
-    """The handler of SIGTERM.
-
-    Attributes:
-        has_come: whether there was one.
-    """
-
-    has_come = False
-
-    def __call__(self, number: int, frame: FrameType | None) -> None:
-        """Do what Ctrl-C does at this moment."""
-        self.has_come = True
-        on_interrupt = signal.getsignal(signal.SIGINT)
-        if callable(on_interrupt):
-            on_interrupt(signal.SIGINT, frame)
-
-
 @contextmanager
-def terminated_like_ctrl_c() -> Iterator[Termination]:
-    """Make SIGTERM do what Ctrl-C does.
+def terminated_like_ctrl_c() -> Iterator[list[int]]:
+    """Make SIGTERM do what Ctrl-C does, and give a list that tells whether one came.
 
     Does nothing outside the main thread, which alone receives signals, and where SIGTERM is handled or
     ignored already.
     """
-    termination = Termination()
+    come: list[int] = []
+
+    def end(number: int, frame: FrameType | None) -> None:
+        come.append(number)
+        on_interrupt = signal.getsignal(signal.SIGINT)
+        if callable(on_interrupt):
+            on_interrupt(signal.SIGINT, frame)
+
     is_main = threading.current_thread() is threading.main_thread()
     if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        yield termination
+        yield come
         return
-    signal.signal(signal.SIGTERM, termination)
+    signal.signal(signal.SIGTERM, end)
     try:
-        yield termination
+        yield come
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
@@ -187,12 +177,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a character gets "?", not an error
             stream.reconfigure(errors="replace")
     arguments = sys.argv[1:] if arguments is None else arguments
-    with terminated_like_ctrl_c() as termination:
+    with terminated_like_ctrl_c() as terminated:
         code = _code_of(arguments)
     if code == ExitCode.INTERRUPTED:
-        how = "ended by SIGTERM" if termination.has_come else "interrupted"
+        how = "ended by SIGTERM" if terminated else "interrupted"
         typer.echo(f"{how}; `mutabot results` shows the results so far", err=True)
-    return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and termination.has_come else code
+    return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and terminated else code
 
 
 def _code_of(arguments: Sequence[str]) -> int:

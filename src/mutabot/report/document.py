@@ -127,8 +127,7 @@ def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
 
 
 def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
-    line = "state rounds ladders=all"
-    return {"format": FORMAT, **data_of.facts(found, line)}
+    return {"format": FORMAT, **data_of.facts(found, "state rounds ladders=all")}
 
 
 #: JSON-like data of anything of ours

@@ -204,11 +204,7 @@ class Dependencies:
         common, place, own, files, executed = (*key.split(), *[""] * 5)[:5]  # a journal may hold anything
         found_in = self.tree if files == self._tree else tree(files)
         units = parts(executed)
-        lines = (
-            {}
-            if units is None
-            else {k: v for k, v in units.items() if k == ALL_FILES or k in found_in.digests}
-        )
+        lines = {k: v for k, v in (units or {}).items() if k == ALL_FILES or k in found_in.digests}
         return Was(
             self.common if common == self._common else parts(common),
             parts(place),
@@ -333,11 +329,8 @@ class Dependencies:
     def _differing_units(self, was: Was, mutant: Mutant, round: int) -> list[str]:
         is_all = was.executed is None or ALL_FILES in was.executed
         whole, until = self.asked(was)
-        tests = (
-            self._baseline.tests_reaching(round, mutant)
-            if is_all
-            else self.tests(mutant, round, whole=whole, until=until)
-        )
+        tests = self.tests(mutant, round, whole=whole, until=until)
+        tests = self._baseline.tests_reaching(round, mutant) if is_all else tests
         group = self._groups.setdefault((str(round), *tests), (str(round), *tests))
 
         def differing() -> list[str]:
@@ -371,16 +364,15 @@ class Dependencies:
     def _names_of_all(self, tree: Tree, tests: Iterable[str]) -> dict[str, set[str] | None]:
         """All units that there were or are, bar those of other tests."""
         own = {(self.file_of(test), _function_of(test)) for test in tests}
+
+        def counts(name: str, unit: str) -> bool:
+            is_test = is_test_file(name) and unit.rpartition(".")[2].startswith("test")
+            return not is_test or (name, unit) in own
+
         found: dict[str, set[str] | None] = {}
         for name in {*tree.digests, *self.tree.digests}:
             files = [file for file in (tree.file(name), self.tree.file(name)) if file is not None]
-            units = {unit for file in files for unit in file.said}
-            found[name] = {
-                unit
-                for unit in units
-                if not (is_test_file(name) and unit.rpartition(".")[2].startswith("test"))
-                or (name, unit) in own
-            }
+            found[name] = {unit for file in files for unit in file.said if counts(name, unit)}
         return found
 
     def is_of(self, test: str, tree: Tree) -> bool:
@@ -485,23 +477,13 @@ def _differing(names: Mapping[str, set[str] | None], old: Tree, new: Tree) -> li
 def changes(old: Parts, new: Parts) -> list[str]:
     """What differs, in words, files of the project first."""
     found = []
-    for name in sorted({*old, *new}, key=lambda name: (_is_setting(old, new, name), name)):
+    for name in {*old, *new}:
         before, now = old.get(name), new.get(name)
-        if before == now:
-            continue
-        if before is None:
-            found.append(f"{name} is new")
-        elif now is None:
-            found.append(f"{name} is gone")
-        elif _is_setting(old, new, name):
-            found.append(f"{name} is {now}, was {before}")
-        else:
-            found.append(f"{name} changed")
-    return found
-
-
-def _is_setting(old: Parts, new: Parts, name: str) -> bool:
-    return not any(parts.get(name, "").startswith(_HASH) for parts in (old, new))
+        is_setting = not any(value is not None and value.startswith(_HASH) for value in (before, now))
+        what = f"is {now}, was {before}" if is_setting else "changed"
+        what = "is new" if before is None else "is gone" if now is None else what
+        found += [(is_setting, name, what)] if before != now else []
+    return [f"{name} {what}" for _, name, what in sorted(found)]
 
 
 def _settings(request: Request) -> dict[str, str]:
@@ -560,34 +542,23 @@ def _vocabulary_parts(vocabulary: Vocabulary) -> dict[str, str]:
 
 def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
     """The entry of an operation, and those of the operations that its mutants need."""
-    return {
-        f"{operation.target} in the vocabulary": _HASH + _digest(_meaning(operation))
-        for name in _operations_with(vocabulary, target)
-        if (operation := vocabulary.operation(name)) is not None
-    }
-
-
-def _operations_with(vocabulary: Vocabulary, target: str) -> list[str]:
-    """An operation, and those that its mutants need."""
-    found: dict[str, None] = {}
+    found: dict[str, str] = {}
     waiting = [target]
     while waiting:
         operation = vocabulary.operation(waiting.pop())
-        if operation is not None and operation.target not in found:
-            found[operation.target] = None
+        name = f"{operation.target} in the vocabulary" if operation is not None else ""
+        if operation is not None and name not in found:
+            found[name] = _HASH + _digest(_meaning(operation))
             waiting += [*operation.currents, *operation.opposites]
-    return list(found)
+    return found
 
 
 def _meaning(value: Any) -> Any:
     """What an entry says, without the line it stands in."""
-    return _without_source(to_data(value))
-
-
-def _without_source(data: Any) -> Any:
+    data = to_data(value)
     if isinstance(data, dict):
-        return {key: _without_source(item) for key, item in data.items() if key != "source"}
-    return [_without_source(item) for item in data] if isinstance(data, list) else data
+        return {key: _meaning(item) for key, item in data.items() if key != "source"}
+    return [_meaning(item) for item in data] if isinstance(data, list) else data
 
 
 def versions() -> dict[str, str]:
