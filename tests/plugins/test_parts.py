@@ -280,7 +280,12 @@ def test_a_part_that_is_not_what_it_should_be_is_named(
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder without these packages beside the core."""
     ignored = shutil.ignore_patterns(
-        "mutabot_catalogue", "mutabot_dask", "mutabot_init", "mutabot_live", "mutabot_motion", "mutabot_suggest"
+        "mutabot_catalogue",
+        "mutabot_dask",
+        "mutabot_init",
+        "mutabot_live",
+        "mutabot_motion",
+        "mutabot_suggest",
     )
     source = Path(mutabot.__file__).parents[1]
     return Path(shutil.copytree(source, tmp_path_factory.mktemp("site") / "alone", ignore=ignored))
