@@ -208,8 +208,8 @@ class SessionHooks:
             self._take_on(session, *request)
         if self._server is not None:
             session.items.clear()
-            return (yield)
-        seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
+        else:
+            seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
         result = yield
         # hypothesis's plugin imports all of hypothesis for its summary, even if no test has used it
         manager = session.config.pluginmanager
