@@ -48,9 +48,9 @@ from .engine import replay
 Key = tuple[str, int]
 #: so many kills of a test, or this share of what it judges, could be failures at random
 _FEW, _SHARE = 2, 0.1
-#: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
-SHARE, SECONDS = 0.05, 1.0
-#: the same once a kill has not come out again, and for what is left to chance
+#: repeats of kills in doubt may take this share of the time that the campaign has taken
+SHARE = 0.05
+#: the same once a kill has not come out again, and for what is left to chance; or so many seconds
 MOST_SHARE, MOST_SECONDS = 0.1, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
 RACES = 3
@@ -157,7 +157,7 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
     if count := default if request.verify is None else request.verify:
         reruns.verify(count)
     if request.repeats:
-        reruns.repeat(max(SHARE * spent, SECONDS), max(MOST_SHARE * spent, MOST_SECONDS))
+        reruns.repeat(SHARE * spent, max(MOST_SHARE * spent, MOST_SECONDS))
     journal.set_meta(REPEATS, to_data(reruns.summary()))
 
 
