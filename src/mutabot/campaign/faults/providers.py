@@ -427,8 +427,8 @@ def family_of(mutant: str) -> str:
 def rules_of(families: Collection[str]) -> list[Rule]:
     """The operators of the providers of these families; of other packages nothing is loaded."""
     known = _OWN if set(families) <= set(OF_CALLS) else all_providers()
-    brought = [one for one in known if one not in _OWN and not set(one.families).isdisjoint(families)]
-    return [rule for one in (*_OWN, *brought) for rule in one.rules()]
+    wanted = (one for one in known if one in _OWN or not set(one.families).isdisjoint(families))
+    return [rule for one in wanted for rule in one.rules()]
 
 
 def operators_of_packages() -> dict[str, str]:

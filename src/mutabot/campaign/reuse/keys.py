@@ -446,11 +446,8 @@ def _lines(text: str) -> tuple[int, ...]:
 
 def _names(was: Was) -> dict[str, set[str] | None]:
     """The names of the units that were executed; None for a file of which all counts."""
-    found: dict[str, set[str] | None] = {}
-    for name, lines in (was.executed or {}).items():
-        file = was.found_in.file(name)
-        found[name] = file.names_at(lines) if file is not None else None
-    return found
+    files = {name: (was.found_in.file(name), lines) for name, lines in (was.executed or {}).items()}
+    return {name: None if file is None else file.names_at(lines) for name, (file, lines) in files.items()}
 
 
 def _differing(names: Mapping[str, set[str] | None], old: Tree, new: Tree) -> list[str]:
