@@ -58,7 +58,7 @@ def wait_for_ready_callbacks(
             has_yielded = True
             yield task
         with ExitStack() as in_use:
-            gathered = _Gathered(self, of_nodes)
+            gathered = _Gathered.by(self, of_nodes)
             wait_set = gathered.put_in_use(self._context, in_use)
             knows_all = gathered.is_plain and not has_yielded and not self._tasks
             wait_set.wait_until(end, polls=timeout == 0, known=self._guard.handle if knows_all else None)
@@ -129,28 +129,17 @@ class _Gathered:
             on being looked at once more.
     """
 
-    def __init__(self, executor: Any, nodes: list[Any]) -> None:
+    def __init__(self, executor: Any, nodes: list[Any], entities: list[Any]) -> None:
         rclpy: Any = sys.modules[_MODULE]
         is_ours = type(executor).can_execute is rclpy.Executor.can_execute
         may = _may_be_executed if is_ours else executor.can_execute
-        self.guards: list[Any] = []
-        self.waitables: list[Any] = []
-        subscriptions: list[Any] = []
-        timers: list[Any] = []
-        clients: list[Any] = []
-        services: list[Any] = []
-        for node in nodes:
-            subscriptions += [one.handle for one in node.subscriptions if may(one)]
-            timers += [one.handle for one in node.timers if may(one)]
-            clients += [one.handle for one in node.clients if may(one)]
-            services += [one.handle for one in node.services if may(one)]
-            self.waitables += [one for one in node.waitables if may(one)]
-            for guard in filter(may, node.guards):
-                if guard._executor_triggered:  # it was triggered before, and is not handled yet
-                    guard.trigger()
-                self.guards.append(guard)
-        self.guards += [one for one in (executor._guard, executor._sigint_gc) if one]
-        self._handles = (subscriptions, [one.handle for one in self.guards], timers, clients, services)
+        subscriptions = [one.handle for node in nodes for one in node.subscriptions if may(one)]
+        timers = [one.handle for node in nodes for one in node.timers if may(one)]
+        clients = [one.handle for node in nodes for one in node.clients if may(one)]
+        services = [one.handle for node in nodes for one in node.services if may(one)]
+        self._of_nodes = [one for node in nodes for one in node.guards if may(one)]
+        self.waitables = [one for node in nodes for one in node.waitables if may(one)]
+        self.guards = [*self._of_nodes, *(one for one in (executor._guard, executor._sigint_gc) if one)]
         self._events: list[Any] = []
         self._others: list[Any] = []
         handler = sys.modules["rclpy.event_handler"].EventHandler
@@ -160,21 +149,76 @@ class _Gathered:
         self.is_plain = type(executor) is rclpy.SingleThreadedExecutor and all(
             type(one).__module__.startswith("rclpy.") for one in self._others
         )
+        guards = [one.handle for one in self.guards]
+        self._members = [
+            [handle for handle in handles if not handle.is_destroyed]
+            for handles in (subscriptions, guards, timers, clients, services)
+        ]
+        self._members.append([one._EventHandler__event for one in self._events])
+        self._handles = [handle for of_kind in self._members for handle in of_kind]
+        # what it stands for, if that is everything and in groups whose rule is known
+        self._nodes, self._entities, self._destroyed = nodes, entities, Destroyable.destroyed
+        self._groups = [one.callback_group for one in entities]
+        self._own_guards = (executor._guard, executor._sigint_gc)
+        is_whole = len(self._handles) + len(self._others) == len(entities) + len(self.guards) - len(
+            self._of_nodes
+        )
+        groups: Any = sys.modules["rclpy.callback_groups"]
+        known = (groups.MutuallyExclusiveCallbackGroup, groups.ReentrantCallbackGroup)
+        self._may_be_kept = is_ours and is_whole and all(type(one) in known for one in self._groups)
+
+    @classmethod
+    def by(cls, executor: Any, nodes: list[Any]) -> _Gathered:
+        """Gather it, or take what was gathered last if all is as it was then."""
+        entities: list[Any] = []
+        for node in nodes:
+            entities += node.subscriptions
+            entities += node.timers
+            entities += node.clients
+            entities += node.services
+            entities += node.guards
+            entities += node.waitables
+        found: _Gathered | None = executor.__dict__.get("_mutabot_gathered")
+        if found is None or not found._still_holds(executor, nodes, entities):
+            found = executor._mutabot_gathered = cls(executor, nodes, entities)
+        for guard in found._of_nodes:
+            if guard._executor_triggered:  # it was triggered before, and is not handled yet
+                guard.trigger()
+        return found
+
+    def _still_holds(self, executor: Any, nodes: list[Any], entities: list[Any]) -> bool:
+        """Whether it would be the same if it was gathered now."""
+        return (
+            self._may_be_kept
+            and self._destroyed == Destroyable.destroyed
+            and self._nodes == nodes
+            and self._entities == entities
+            and self._own_guards == (executor._guard, executor._sigint_gc)
+            and all(
+                not one._executor_event
+                and one.callback_group is group
+                and getattr(group, "_active_entity", None) is None
+                for one, group in zip(entities, self._groups, strict=True)
+            )
+        )
 
     def put_in_use(self, context: Any, in_use: ExitStack) -> WaitSet:
         """The wait set of all of it, none of which is destroyed before the end of ``in_use``."""
-        members = [[one for one in handles if not one.is_destroyed] for handles in self._handles]
-        members.append([one._EventHandler__event for one in self._events])
-        for index, event in enumerate(self._events):
-            event._event_index = index
-        handles = [handle for of_kind in members for handle in of_kind]
-        for handle in handles:
-            handle.uses += 1
-        in_use.callback(_let_go, handles)
         if context.handle is None:
             raise RuntimeError("Cannot enter context if context is None")
+        for index, event in enumerate(self._events):
+            event._event_index = index
+        for handle in self._handles:
+            handle.uses += 1
+        in_use.callback(_let_go, self._handles)
         in_use.enter_context(context.handle)
-        wait_set = WaitSet.of(members, context.handle)
+        wait_set = WaitSet.of(self._members, context.handle)
+        if self._others:
+            self._add_others(wait_set, in_use)
+        return wait_set
+
+    def _add_others(self, wait_set: WaitSet, in_use: ExitStack) -> None:
+        """Let waitables that are no event handlers add themselves."""
         for one in self._others:
             try:
                 in_use.enter_context(one)
@@ -183,7 +227,6 @@ class _Gathered:
                 pass
         for one in self._others:
             one.add_to_wait_set(wait_set)
-        return wait_set
 
     def ready_waitables(self, nodes: list[Any], wait_set: WaitSet) -> Iterator[tuple[Any, Any]]:
         """Waitables that have something, as they see it after the wait, and their nodes."""
@@ -200,9 +243,9 @@ def _may_be_executed(entity: Any) -> bool:
     """As `Executor.can_execute`; nothing can come between, so no lock is taken."""
     if entity._executor_event:
         return False
-    group = entity.callback_group
+    group: Any = entity.callback_group
     if type(group) is sys.modules["rclpy.callback_groups"].MutuallyExclusiveCallbackGroup:
-        return group._active_entity is None
+        return bool(group._active_entity is None)
     return group is not None and bool(group.can_execute(entity))
 
 

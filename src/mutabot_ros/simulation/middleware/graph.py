@@ -29,8 +29,11 @@ class Destroyable:
     """A handle that is destroyed once nobody uses it any more.
 
     Attributes:
+        destroyed: how many handles have been destroyed so far.
         uses: how many use it now.
     """
+
+    destroyed = 0
 
     def __init__(self) -> None:
         self.number = next(_numbers)
@@ -55,6 +58,7 @@ class Destroyable:
         if self.is_destroyed:
             return
         self.is_destroyed = True
+        Destroyable.destroyed += 1
         if not self.uses:
             self._release()
 

@@ -65,9 +65,9 @@ class WaitSet(Destroyable):
 
     @classmethod
     def of(cls, members: Sequence[list[Any]], context: Participant) -> WaitSet:
-        """A wait set of these members, by kind; the lists are its own from now on."""
+        """A wait set of these members, by kind."""
         wait_set = cls(*map(len, members), context)
-        wait_set._members = dict(zip(KINDS, members, strict=True))
+        wait_set._members = {kind: [*of_kind] for kind, of_kind in zip(KINDS, members, strict=True)}
         return wait_set
 
     def make_room(self, counts: Any) -> None:
