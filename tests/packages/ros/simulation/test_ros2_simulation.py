@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -203,11 +205,19 @@ def test_runs_are_equal_whatever_the_hash_seed() -> None:
 
 
 def test_a_race_is_found_by_random_orders_and_replayed_by_its_seed() -> None:
-    def end(*schedule: str) -> int:
-        return simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", "race_cases.py", *schedule).returncode
+    def run(*options: str) -> subprocess.CompletedProcess[str]:
+        return simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", "-v", *options)
 
-    assert end() == 0
-    ends = {str(seed): end("--ros-schedule=random", f"--ros-seed={seed}") for seed in range(8)}
-    failing = [seed for seed, code in ends.items() if code]
-    assert failing, "no order shows the race"
-    assert end("--ros-schedule=random", f"--ros-seed={failing[0]}") == 1
+    assert run("race_cases.py").returncode == 0
+    for seed in range(8):
+        found = run("race_cases.py", "--ros-schedule=random", f"--ros-seed={seed}")
+        if found.returncode:
+            break
+    assert found.returncode == 1, "no order shows the race"
+    order = re.search(r"simulated ROS: (.+)", found.stdout)
+    failed = re.search(r"FAILED (\S+) - (.+)", found.stdout)
+    assert order is not None
+    assert failed is not None
+    again = run(failed[1], *shlex.split(order[1]))
+    assert again.returncode == 1
+    assert failed[0] in again.stdout
