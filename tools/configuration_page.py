@@ -19,9 +19,9 @@ HEAD = """\
 
 <!-- Written by tools/make_docs.py from src/mutabot/config/configuration.py and others. Do not edit. -->
 
-The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml` without that
-heading; `mutabot init` proposes one. Paths are relative to the project's folder and must stay in it. For one
-command: `mutabot run -o rounds=5 -o when=once`.
+The settings stand in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml` without that heading;
+`mutabot init` proposes them. Paths are relative to the project's folder and must stay in it. For one command:
+`mutabot run -o rounds=5 -o when=once`.
 
 ```toml
 [tool.mutabot]
@@ -118,21 +118,21 @@ def values_of(schema: Mapping[str, Any], whole: Mapping[str, Any]) -> str:
         case "boolean":
             return "`true` or `false`"
         case "integer":
-            return f"whole number{_bounds(schema)}"
+            return _bounds(schema, "whole number")
         case "number":
-            return f"number{_bounds(schema)}"
+            return _bounds(schema, "number")
     raise ValueError(f"no words for {schema}")
 
 
-def _bounds(schema: Mapping[str, Any]) -> str:
+def _bounds(schema: Mapping[str, Any], name: str) -> str:
     low, over, high = (schema.get(key) for key in ("minimum", "exclusiveMinimum", "maximum"))
     if over is not None:
-        return f" above {over:g}{f', at most {high:,}' if high is not None else ''}"
+        return f"above {over:g}{f', at most {high:,}' if high is not None else ''}"
     if low is not None and high is not None:
-        return f" from {low:,} to {high:,}"
+        return f"{low:,} to {high:,}"
     if high is not None:
-        return f", at most {high:,}"
-    return f" from {low:g}" if low is not None else ""
+        return f"at most {high:,}"
+    return f"from {low:g}" if low is not None else name
 
 
 def _default(model: type[Table], key: str) -> str:

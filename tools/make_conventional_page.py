@@ -22,38 +22,30 @@ HEAD = """\
 <!-- Written by tools/make_conventional_page.py from the operators' own examples. Do not edit. -->
 
 The operators of textbooks change program text and know nothing of robots. Use them to compare with the
-[robot operators](operators.md): `--family conventional`, `text` or `robot,conventional,text`, or `families`
-in the [configuration](configuration.md#families). Engines, verdicts and reports are the same; scores are
-separate.
+[robot operators](operators.md): `--family conventional`, `text` or `robot,conventional,text`.
 
-No file is changed. While the program is imported, each place is compiled as *the original, unless an
-alternative is chosen*: tracebacks and `inspect.getsource` show your text, and short circuits, `await`,
-`yield`, `:=`, `super()` and `locals()` keep their meaning. Values computed during import (constants, taught
-points, defaults of functions) have mutants too; all tests judge them.
+No file is changed: while the program is imported, each place is compiled as *the original, unless an
+alternative is chosen*. Tracebacks and `inspect.getsource` show your text. Values computed during import
+(constants, taught points, defaults of functions) have mutants too; all tests judge them.
 
 An alternative with the original's value has not acted. mutabot knows this where the original is a part of the
-alternative, or consists of names, constants, operators, plain attributes and items, or mathematical
-functions; any other alternative counts as having acted when it is reached.
+alternative, or can be [evaluated beforehand](engines.md#mutants-of-the-program-text); any other alternative
+counts as having acted when it is reached.
 
 ## What is left out
 
 - Annotations, patterns of `match`, docstrings, imports, definitions; blocks under `if TYPE_CHECKING` and
   `if __name__ == "__main__"`.
 - Alternatives of a type that the value never had in the baseline, listed with the reason.
-- Expressions of more than 1000 characters, and, before Python 3.12, expressions that stand twice in one
-  f-string.
-- What is another operator's (a literal's sign is UOI's, not ABS's) or changes nothing: plus signs, equal
-  neighbouring characters.
+- Expressions of more than 1000 characters, and, before Python 3.12, those that stand twice in one f-string.
+- What is another operator's (a literal's sign is UOI's, not ABS's) or changes nothing.
 - Plain assignments for ASR: the name may have no value yet.
 - Text arguments that do not stand in the call, or are formatted, for the operators on characters.
 
-`python benchmarks/instrumentation.py` measures what it costs; `python benchmarks/stdlib_corpus.py` runs
-modules of the standard library, with all alternatives in them, through their own tests.
-
 ## The operators
 """
-#: so many mutants of an example after the first stand on the page
-_SHOWN = 2
+#: so many mutants of an example stand on the page
+_SHOWN = 3
 
 
 def page() -> str:
@@ -73,7 +65,7 @@ def _section(each: ConventionalOperator) -> Iterator[str]:
             continue
         before, *mutants = _without_target([example.before, *example.after])
         after = [_code(text) for text in mutants]
-        if place and len(after) > _SHOWN + 1:
+        if len(after) > _SHOWN + 1:
             after[_SHOWN:] = ["…"]
         yield f"- {_code(before)} → {', '.join(after)}{f' ({note})' if note else ''}"
 

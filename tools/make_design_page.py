@@ -17,6 +17,8 @@ PAGE = Path(__file__).parents[1] / "docs" / "design.md"
 BEGIN, END = "<!-- rooms: written by tools/make_design_page.py from the imports -->", "<!-- end of rooms -->"
 #: files that belong to no room: plug-ins and `python -m mutabot` begin there
 _DOORS = ("__init__", "__main__")
+#: so few words before a colon say nothing alone
+_BARE = 2
 
 
 def picture() -> str:
@@ -54,12 +56,13 @@ def _short(room: str) -> str:
 
 
 def _summary(room: str) -> str:
-    """The first sentence that the room says of itself, without what follows a colon."""
+    """The first sentence that the room says of itself, up to a colon unless little stands before it."""
     folder = SOURCE / room
     file = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
     text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     sentence = text.partition("\n\n")[0].replace("\n", " ").replace("`", "").partition(". ")[0]
-    return sentence.rstrip(".")
+    short = sentence.partition(":")[0]
+    return (short if len(short.split()) > _BARE else sentence).rstrip(".")
 
 
 def with_picture(text: str) -> str:

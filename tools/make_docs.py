@@ -24,33 +24,27 @@ HEAD = """\
 
 <!-- Written by tools/make_docs.py from the operators' docstrings. Do not edit. -->
 
-An *operator* makes one kind of small fault in what the program tells the robot or hears from it, on the
-operations and quantities that the [vocabulary](vocabulary.md) describes. A call is left alone if the fault
-would change nothing or would leave the allowed range or values; `mutabot list --all` gives the reason.
-`mutabot operators` prints where each operator acts, and which bugs it stands for. Faults of messages on their
-way: [middleware](middleware.md).
-
-*Idle* operators [answer the program](vocabulary.md#answers-to-doing-nothing) in the place of the robot.
+An *operator* makes one kind of small fault, on the operations and quantities that the
+[vocabulary](vocabulary.md) describes. A call is left alone if the fault would change nothing or would leave
+the allowed range or values. `mutabot operators` prints where each operator acts, and which bugs it stands
+for. *Idle* ones [answer the program](vocabulary.md#answers-to-doing-nothing) in the place of the robot.
+Faults of messages on their way: [middleware](middleware.md).
 
 ## Published operators
 
-Family `robot`, the default, has all 13 published operators for robot programs: translate or rotate to the
-other side (*reverse*), *to* instead of *by* (*by-to*), no command, twice, or the opposite (*skip*, *repeat*,
-*opposite*), a wrong or noisy distance (*negate*, *noise*), a wrong colour (*misread*).
+Family `robot`, the default, has all 13 published operators for robot programs.
 """
 
 CATALOGUE_HEAD = """\
 ## The catalogue
 
-`--family catalogue` adds faults that are common in robot programs. Bugs on commands and readings of each
-class in studies of ROS and PX4/ArduPilot software: {studies}. Not covered: a lost blend radius, since no kind
-of quantity marks one.
+`--family catalogue` adds common faults of robot programs. Bugs on commands and readings of each class in
+studies of ROS and PX4/ArduPilot software: {studies}. Not covered: a lost blend radius.
 """
 GRADED_HEAD = """\
 ## Graded faults
 
-`--family graded` makes the same fault at rising magnitudes, to find the smallest that the tests notice:
-[thresholds](thresholds.md).
+`--family graded` makes the same fault at rising magnitudes: [thresholds](thresholds.md).
 """
 #: what the groups of the catalogue are called, by the first operator of each
 GROUPS = {
@@ -65,18 +59,10 @@ GROUPS = {
 TAIL = """\
 ## Your own operators
 
-An operator is a class with a name, a docstring (summary, `Where:`), examples and three methods; contract:
-`src/mutabot/operators/operator.py`. Put it into a file of `src/mutabot/operators/kinds` (copy a short one of
-`commands.py`) or into a [package](packages.md). Most are a `ValueOperator` (`operators/value.py`:
-`change(value, context)` changes one value, `magnitudes(quantity)` gives the sizes, one mutant each) or a
-`CommandOperator` (`operators/command.py`: acts on the whole call).
-
-`needs` is a set of `Need`s (`operators.operator.Need` describes them), such as `frozenset({Need.IDLE})`;
-`needs_of(subject)` gives needs that differ by subject. Where a need is not met, mutants are skipped with the
-reason.
-
-With `does_nothing = True` no call reaches the robot; one that does is an error, never a verdict.
-`family = "…"` makes a family of its own.
+Write a class in a file of `src/mutabot/operators/kinds` or in a [package](packages.md), whose page has a
+short one; the contract is `src/mutabot/operators/operator.py`. Most are a `ValueOperator`
+(`operators/value.py`) or a `CommandOperator` (`operators/command.py`: acts on the whole call). Where one of
+its `needs` is not met, mutants are skipped with the reason. `family = "…"` makes a family of its own.
 """
 
 

@@ -44,20 +44,20 @@ TEXT = """\
 <!-- Written by tools/make_scaling_page.py from benchmarks/scaling.json. Do not edit. -->
 
 A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with
-measured costs (nobody has run one yet). At 100 workers the efficiency, the time on one worker divided by
-that on so many and by their number, is {replay} with replay and {fork} with fork.
+measured costs (nobody has run one yet). Efficiency is the speed-up per worker: at 100 workers {replay} with
+replay, {fork} with fork.
 
 ![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
 
-Time is lost to *the original's own runs* (each part of a fork parent runs its tests again), *shipping*
-(folder, job and answer of a unit), *the controller* (a worker whose answer waits is idle), *stragglers* (idle
-time at the end that equal units and no deaths would avoid) and *the last unit* (the rest of it).
+Time is lost to *the original's own runs* (each part of a fork parent runs its tests again), *shipping*, *the
+controller* (a worker whose answer waits is idle), *stragglers* (idle time at the end that equal units and no
+deaths would avoid) and *the last unit*.
 
 {curve}
 
 The controller is the limit: one process that takes {replay_ms} ms or {fork_ms} ms per outcome. Mutants that
 take longer than here (a few seconds with replay, a quarter of a second with fork) keep as many more workers
-busy. One worker with fork: if it dies in an uncut fork parent, it loses half a round.
+busy. With one worker, a death in the uncut fork parent loses half a round.
 
 ## How large should a unit be?
 
@@ -66,27 +66,24 @@ Replay: a mutant in a round. A fork parent is cut; with 100 workers, shares of t
 {sizes}
 
 The executor cuts 16 parts per worker, at least ten mutants each, mutants of the same tests together,
-longest first. Smaller parts end more evenly and lose less with a dead worker, but run tests of the original
-more often.
+longest first.
 
 ## The baseline
 
-It runs first on the controller's machine, with `jobs` tests side by side, and is not in these numbers: two
-runs in each of ten rounds take {baselines}.
+Not in these numbers: it runs first on the controller's machine. Two runs in each of ten rounds take
+{baselines} processes side by side.
 
 ## What was measured, and what is assumed
 
 - Program: {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), each with its
   own tests: {own} mutants of family `robot`, a suite of {suite} s.
 - {sessions} sessions of replay took {session_range} s, {forks} forks {fork_range} s; equal runs of a test
-  {quickest} to {slowest} times their mean on a machine with other work.
-- Controller: {replay_ms} ms per outcome of replay, {fork_ms} ms of fork, with recordings, and 3 ms per unit.
-  Worker: 28 ms per unit, 4 s to start, 0.2 s for the project.
-- Assumed: a worker dies once in 24 hours, is missed after 5 s, and its unit runs again; all workers are
-  equally fast.
+  {quickest} to {slowest} times their mean on a busy machine.
+- Controller, beside the outcomes: 3 ms per unit. Worker: 28 ms per unit, 4 s to start, 0.2 s for the project.
+- Assumed: a worker dies once in 24 hours, is missed after 5 s; all are equally fast.
 
 `python benchmarks/cluster_simulation.py` simulates and stores `benchmarks/scaling.json`, which says how the
-costs were measured; `python tools/make_scaling_page.py` writes this page.
+costs were measured.
 """
 
 
@@ -247,7 +244,7 @@ def _size_table(found: Mapping[str, Any]) -> str:
 
 
 def _baselines(found: Mapping[str, Any]) -> str:
-    return ", ".join(f"{one['hours']:,.1f} h with {one['places']} side by side" for one in found["baseline"])
+    return ", ".join(f"{one['hours']:,.1f} h with {one['places']}" for one in found["baseline"])
 
 
 def _range(numbers: Sequence[float]) -> str:

@@ -151,40 +151,40 @@ def _uninformative(data: Data, robot: Family, other: Family) -> Finding:
 
 def _beside(share: Mapping[str, Any], ours: Mapping[str, Any]) -> str:
     """Two shares and their difference in words."""
-    told = (f"{one['count']}/{one['of']} ({percent(one['share'])})" for one in (share, ours))
+    told = (f"{one['count']}/{one['of']}" for one in (share, ours))
     return f"{', robot '.join(told)}: {difference_text(share, ours)}"
 
 
 CLAIMS: Sequence[Claim] = (
     Claim(
         "too few places",
-        "Conventional operators find fewer places than robot operators.",
+        "Fewer places than the robot family's.",
         _places,
         of_outcomes=False,
     ),
     Claim(
         "broken commands",
-        "Conventional mutants are broken: invalid, or they raise before any command reaches the robot.",
+        "Invalid, or raising before any command reaches the robot.",
         _weakness("broken"),
     ),
     Claim(
         "impossible motions",
-        "Conventional mutants ask for what the robot refuses.",
+        "The robot refuses what they ask for.",
         _weakness("impossible"),
     ),
     Claim(
         "no difference",
-        "Conventional mutants change nothing that could be told from the original.",
+        "Nothing compared differs.",
         _weakness("no_difference"),
     ),
     Claim(
         "any of the three",
-        "All in all, more conventional mutants are invalid, infeasible or equivalent.",
+        "Invalid, infeasible or equivalent.",
         _weakness("any"),
     ),
     Claim(
         "uninformative",
-        "Fewer conventional mutants are informative: valid, not trivial, not indistinguishable.",
+        "Fewer are valid, not trivial and not indistinguishable.",
         _uninformative,
     ),
 )

@@ -40,22 +40,20 @@ HEAD = """\
 <!-- Written by benchmarks/comparison/page.py from docs/data/*.json. Do not edit. -->
 
 The study "Mutation Testing for Industrial Robotic Systems" says, without figures, that conventional
-mutation operators suit robot programs badly. `make comparison` measured it on the examples of this
-repository; `docs/data` has all numbers. [Comparing families](compare.md) explains the terms.
+mutation operators suit robot programs badly. `make comparison` measured it on the examples.
+[Comparing families](compare.md) explains the terms.
 
-A share speaks *for* a claim if the 95 % interval of its difference from the robot family's lies wholly
-above zero, *against* it if wholly below, else *undecided*; of places the larger number decides. *Not
-measured*: the family has no mutants there, or a sample does not tell the number of places.
-Differences are in percentage points, with 95 % intervals.
+A share speaks *for* a claim if its difference from the robot family's, in percentage points with a 95 %
+interval, lies wholly above zero, *against* it if wholly below, else *undecided*; of places the larger number
+decides. *Not measured*: no mutants there, or a sample does not tell the number of places.
 """
 TAIL = """\
 ## Limits of this comparison
 
-- The programs are small examples. How often a conventional operator hits a calculation depends on how much a
-  program calculates.
+- The programs are small, and calculate little.
 - *Refused* and *indistinguishable* are as good as each example's refusals and probes.
-- Mutants that would change nothing in the baseline were left out beforehand, in all families.
-- *Informative* counts mutants that no test reaches: they tell of one missing test many times.
+- Mutants that would change nothing in the baseline were left out.
+- *Informative* counts mutants that no test reaches: one missing test, many times.
 - A mutant that tells suites apart need not be like a fault that engineers make.
 """
 
@@ -163,16 +161,16 @@ def _cells(family: Mapping[str, Any], together: Mapping[str, Any]) -> Iterator[s
 
 def _circumstances(data: Data) -> str:
     meta = data["meta"]
-    parts = [f"{meta['rounds']} rounds", f"seed {meta['seed']}", f"engine {meta['engine']}"]
-    parts += [f"{meta['jobs']} processes at a time"] if meta.get("jobs") else []
+    parts = [f"{meta['rounds']} rounds", f"seed {meta['seed']}", meta["engine"]]
+    parts += [f"{meta['jobs']} processes"] if meta.get("jobs") else []
     if meta.get("seconds"):
-        parts.append(f"{meta['seconds']:.0f} s in all")
+        parts.append(f"{meta['seconds']:.0f} s")
     parts += [f"mutabot {meta['mutabot']}", f"Python {meta['python']}"]
     if data["sample"] is not None:
         size = data["sample"]["size"]
         parts.append(f"a sample ({size}) of {data['sample']['selected']} mutants")
     if meta.get("started"):
-        parts.append(f"measured on {datetime.fromtimestamp(meta['started'], UTC):%Y-%m-%d}")
+        parts.append(f"{datetime.fromtimestamp(meta['started'], UTC):%Y-%m-%d}")
     return f"{', '.join(parts)}."
 
 

@@ -74,12 +74,11 @@ class Index:
         index._walk_all(tree.body, Scope())
         return index
 
-    def expression(self, extent: Extent) -> ScopedNode | None:
-        """The expression of exactly this extent, if it is read and there is only one."""
-        found = self.expressions.get(extent)
-        if found is None or isinstance(getattr(found.node, "ctx", None), ast.Store | ast.Del):
-            return None
-        return found
+    def read(self) -> Iterator[ScopedNode]:
+        """The expressions that are read."""
+        for found in self.expressions.values():
+            if found is not None and not isinstance(getattr(found.node, "ctx", None), ast.Store | ast.Del):
+                yield found
 
     def _walk_all(self, nodes: list[ast.stmt] | list[ast.expr] | list[ast.AST], scope: Scope) -> None:
         for node in nodes:

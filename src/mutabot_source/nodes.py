@@ -1,4 +1,4 @@
-"""Nodes of the concrete syntax tree: where they stand, and alternatives to them as text.
+"""Nodes of a syntax tree: where they stand, and alternatives to them as text.
 
 Alternatives are text for the compiler with what is kept named, and for people as it would read.
 """
@@ -7,114 +7,127 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
-import libcst as cst
-from libcst.metadata import CodeRange
-
+from mutabot.languages.python import extent_of
 from mutabot.model.mutant import Extent, kept_name
 
-from .operator import Surroundings
+from .operator import Node, Parts, Surroundings
 
 _LINE_ENDS = re.compile(r"\r\n|\r|\n")
+_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
-class Extents:
-    """Extents of nodes in one module.
+class Tree:
+    """The syntax tree of a module and its text.
 
-    Columns of the concrete tree count characters, those of ``ast`` bytes of UTF-8; a tuple's parentheses
-    belong to the tuple in ``ast``, other parentheses to nothing.
+    Args:
+        text: the program text.
+        tree: its tree.
     """
 
-    def __init__(self, text: str, ranges: Mapping[cst.CSTNode, CodeRange]) -> None:
-        self._lines = _LINE_ENDS.split(text)
-        self._ranges = ranges
-
-    def of(self, node: cst.CSTNode) -> Extent:
-        """Where a node stands."""
-        first = last = node
-        if isinstance(node, cst.Tuple | cst.GeneratorExp) and node.lpar:
-            first, last = node.lpar[-1], node.rpar[0]
-        start, end = self._ranges[first].start, self._ranges[last].end
-        return (
-            start.line,
-            self._column(start.line, start.column),
-            end.line,
-            self._column(end.line, end.column),
-        )
+    def __init__(self, text: str, tree: ast.Module) -> None:
+        self._lines = [line.encode() for line in _LINE_ENDS.split(text)]
+        self._parents: dict[ast.AST, ast.AST] = {}
+        self._formatted: set[ast.AST] = set()
+        for node in ast.walk(tree):  # from the outside in
+            is_formatted = isinstance(node, ast.JoinedStr) or node in self._formatted
+            for child in ast.iter_child_nodes(node):
+                self._parents[child] = node
+                if is_formatted:
+                    self._formatted.add(child)
 
     def segment(self, extent: Extent) -> str:
-        """The program text at an extent."""
+        """The program text at an extent; columns count bytes of UTF-8."""
         first, start, last, end = extent
-        lines = [line.encode() for line in self._lines[first - 1 : last]]
+        lines = self._lines[first - 1 : last]
         lines[-1] = lines[-1][:end]
         lines[0] = lines[0][start:]
         return b"\n".join(lines).decode()
 
-    def _column(self, line: int, column: int) -> int:
-        text = self._lines[line - 1]
-        return column if text.isascii() else len(text[:column].encode())
+    def stands_there(self, node: Node) -> bool:
+        """Whether a node stands where it says. Before Python 3.12 those within formatted texts may not."""
+        if node not in self._formatted:
+            return True
+        try:
+            there = ast.parse(f"({self.segment(extent_of(node))})", mode="eval").body
+        except (SyntaxError, UnicodeDecodeError, IndexError):
+            return False
+        return ast.dump(there) == ast.dump(node)
+
+    def is_elif(self, node: Node) -> bool:
+        """Whether a statement begins with ``elif``."""
+        return isinstance(node, ast.If) and self._lines[node.lineno - 1][node.col_offset :].startswith(b"el")
+
+    def surroundings(self, node: Node) -> Surroundings:
+        """Where a node stands."""
+        parent = self._parents[node]
+        is_callee = _is_decorator(node, parent) or (isinstance(parent, ast.Call) and node is parent.func)
+        return Surroundings(
+            is_value=not is_callee and not _is_looked_into(node, parent),
+            is_condition=self._is_condition(node),
+            is_operand_of_unary=isinstance(parent, ast.UnaryOp),
+            is_callee=is_callee,
+            is_argument=self._is_argument(node),
+        )
+
+    def _is_argument(self, node: ast.AST) -> bool:
+        parent = self._parents[node]
+        if isinstance(parent, ast.keyword | ast.Starred):
+            return self._is_argument(parent)
+        return isinstance(parent, ast.Call) and node is not parent.func
+
+    def _is_condition(self, node: Node) -> bool:
+        """Whether only the truth of a value matters."""
+        match self._parents[node]:
+            case ast.If() | ast.While() | ast.IfExp() | ast.Assert() as parent:
+                return node is parent.test
+            case ast.comprehension() as parent:
+                return node in parent.ifs
+            case ast.match_case() as parent:
+                return node is parent.guard
+            case ast.UnaryOp() as parent:
+                return isinstance(parent.op, ast.Not)
+            case ast.BoolOp() as parent:
+                return self._is_condition(parent)
+        return False
 
 
-Parent = Callable[[cst.CSTNode], cst.CSTNode | None]
-
-
-def surroundings(node: cst.CSTNode, parent_of: Parent) -> Surroundings:
-    """Where a node stands."""
-    parent = parent_of(node)
-    if parent is None:
-        return Surroundings()
-    return Surroundings(
-        is_value=not _is_looked_into(node, parent),
-        is_condition=_is_condition(node, parent_of),
-        is_operand_of_unary=isinstance(parent, cst.UnaryOperation),
-        is_callee=isinstance(parent, cst.Decorator) or (isinstance(parent, cst.Call) and node is parent.func),
-        is_argument=isinstance(parent, cst.Arg) and isinstance(parent_of(parent), cst.Call),
-    )
-
-
-def is_variable(node: cst.CSTNode, around: Surroundings) -> bool:
+def is_variable(node: Node, around: Surroundings) -> bool:
     """Whether a node is a name that stands for a value, rather than for what is called."""
-    return isinstance(node, cst.Name) and not around.is_callee and node.value not in ("None", "True", "False")
+    return isinstance(node, ast.Name) and not around.is_callee
 
 
-def _is_looked_into(node: cst.CSTNode, parent: cst.CSTNode) -> bool:
-    if isinstance(parent, cst.Call):
-        return node is parent.func
-    if isinstance(parent, cst.Attribute | cst.Subscript):
+def _is_decorator(node: Node, parent: ast.AST) -> bool:
+    return isinstance(parent, _Function) and node in parent.decorator_list
+
+
+def _is_looked_into(node: Node, parent: ast.AST) -> bool:
+    if isinstance(parent, ast.Attribute | ast.Subscript):
         return node is parent.value
-    return isinstance(parent, cst.Decorator | cst.Expr)
-
-
-def _is_condition(node: cst.CSTNode, parent_of: Parent) -> bool:
-    """Whether only the truth of a value matters."""
-    parent = parent_of(node)
-    if isinstance(parent, cst.If | cst.While | cst.IfExp | cst.Assert | cst.CompIf):
-        return node is parent.test
-    if isinstance(parent, cst.MatchCase):
-        return node is parent.guard
-    if isinstance(parent, cst.UnaryOperation):
-        return isinstance(parent.operator, cst.Not)
-    return isinstance(parent, cst.BooleanOperation) and _is_condition(parent, parent_of)
+    return isinstance(parent, ast.Expr)
 
 
 #: longer texts are cut in ids and descriptions
 TEXT_LIMIT = 60
-Parts = tuple[str | cst.CSTNode, ...]
+#: what needs no parentheses wherever it stands
+_ATOMS = ast.Name | ast.Attribute | ast.Subscript | ast.Call | ast.Constant
 
 
-def template(parts: Parts, number_of: Callable[[cst.CSTNode], int]) -> str:
+def template(parts: Parts, number_of: Callable[[ast.expr], int]) -> str:
     """The parts with a name for each node that is kept."""
     return "".join(part if isinstance(part, str) else kept_name(number_of(part)) for part in parts)
 
 
-def shown(parts: Parts, text_of: Callable[[cst.CSTNode], str]) -> str:
+def shown(parts: Parts, text_of: Callable[[ast.expr], str]) -> str:
     """The parts as program text, with parentheses only where they are needed."""
     bare = _joined(parts, text_of)
-    if len(parts) == 1:
+    if len(parts) == 1 or all(isinstance(part, str | _ATOMS) for part in parts):
         return bare
     wrapped = _joined(parts, lambda node: f"({text_of(node)})")
-    return bare if same_program(bare, wrapped) else _joined(parts, lambda node: _wrapped(node, text_of))
+    if same_program(bare, wrapped):
+        return bare
+    return _joined(parts, lambda node: text_of(node) if isinstance(node, _ATOMS) else f"({text_of(node)})")
 
 
 def same_program(one: str, other: str) -> bool:
@@ -131,10 +144,5 @@ def shortened(text: str) -> str:
     return text if len(text) <= TEXT_LIMIT else text[: TEXT_LIMIT - 1] + "…"
 
 
-def _joined(parts: Parts, text_of: Callable[[cst.CSTNode], str]) -> str:
+def _joined(parts: Parts, text_of: Callable[[ast.expr], str]) -> str:
     return "".join(part if isinstance(part, str) else text_of(part) for part in parts)
-
-
-def _wrapped(node: cst.CSTNode, text_of: Callable[[cst.CSTNode], str]) -> str:
-    atoms = cst.Name | cst.Attribute | cst.Subscript | cst.Call | cst.Integer | cst.Float | cst.SimpleString
-    return text_of(node) if isinstance(node, atoms) else f"({text_of(node)})"

@@ -1,6 +1,6 @@
 """The contract of an operator on program text.
 
-An operator looks at one node of the concrete syntax tree and says what could stand there instead. What it
+An operator looks at one node of the syntax tree and says what could stand there instead. What it
 keeps of the original it hands on as nodes, so that these keep their place, their line and their meaning.
 What it shares with operators on calls, and where its file belongs, stands in
 ``mutabot/operators/operator.py``.
@@ -8,12 +8,12 @@ What it shares with operators on calls, and where its file belongs, stands in
 
 from __future__ import annotations
 
+import ast
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
-
-import libcst as cst
+from types import EllipsisType
+from typing import ClassVar, TypeGuard
 
 from mutabot.model.mutant import Alternative
 from mutabot.operators.operator import Rule
@@ -24,6 +24,11 @@ from .extension import CONVENTIONAL
 #: ``absolute(value)``, whatever the program calls ``abs``; ``fail(name, text)``, which raises; and
 #: ``fail_if(value, wrong, name, text)``, which is the value or raises (``switches.py``)
 HELPER = "__mutabot__[0]"
+
+
+Node = ast.expr | ast.stmt
+#: a text in pieces: as it stands here, and expressions of the original
+Parts = tuple[str | ast.expr, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +44,9 @@ class Draft:
     """
 
     variant: str
-    parts: tuple[str | cst.CSTNode, ...]
+    parts: Parts
     needs: str = ""
-    shown: tuple[str | cst.CSTNode, ...] | None = None
+    shown: Parts | None = None
     raises: bool = False
 
 
@@ -103,7 +108,7 @@ class ConventionalOperator(Rule):
     asks_variables: ClassVar[bool] = False
 
     @abstractmethod
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
         """What could stand in this node's place; nothing for nodes that are none of its business."""
 
     def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
@@ -111,9 +116,23 @@ class ConventionalOperator(Rule):
         return ()
 
 
-def is_scalar(node: cst.CSTNode, around: Surroundings) -> bool:
+def is_scalar(node: Node, around: Surroundings) -> TypeGuard[ast.expr]:
     """Whether a node may have a number or a truth value that the program goes on with."""
-    kinds = cst.Name | cst.Attribute | cst.Subscript | cst.Call | cst.BinaryOperation
-    if not isinstance(node, kinds) or not around.is_value:
-        return False
-    return not (isinstance(node, cst.Name) and node.value in ("None", "True", "False"))
+    kinds = ast.Name | ast.Attribute | ast.Subscript | ast.Call | ast.BinOp
+    return isinstance(node, kinds) and around.is_value
+
+
+def is_named_constant(node: ast.expr) -> bool:
+    """Whether a node is ``None``, ``True`` or ``False``."""
+    return isinstance(node, ast.Constant) and (node.value is None or isinstance(node.value, bool))
+
+
+def is_text(node: ast.expr) -> bool:
+    """Whether a node is a text or bytes that stand there."""
+    is_plain = isinstance(node, ast.Constant) and isinstance(node.value, str | bytes)
+    return is_plain or isinstance(node, ast.JoinedStr)
+
+
+def is_idle(node: ast.expr) -> bool:
+    """Whether a node does nothing where it stands alone: a text, or ``...``."""
+    return isinstance(node, ast.Constant) and isinstance(node.value, str | bytes | EllipsisType)

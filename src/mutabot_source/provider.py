@@ -45,9 +45,7 @@ class SourceFaults(FaultProvider):
         for file in program_files(project.root, project.program):
             try:
                 (text,) = find_texts(project.root, [file], wanted, first=first)
-            except (
-                Exception
-            ) as error:  # two parsers look at it, and each says in its own way what it cannot read
+            except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
                 notes.append(
                     f"no mutants of the text of {file}: it cannot be read: {str(error).splitlines()[0]}"
                 )

@@ -5,14 +5,12 @@ from __future__ import annotations
 import ast
 import io
 import tokenize
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
+from itertools import chain
 from pathlib import Path
-from typing import cast
-
-import libcst as cst
-from libcst.metadata import MetadataWrapper, ParentNodeProvider, PositionProvider
 
 from mutabot.languages.front_end import front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
@@ -22,7 +20,7 @@ from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPla
 from . import registry
 from .extension import CONVENTIONAL
 from .index import Index, ScopedNode
-from .nodes import Extents, is_variable, shortened, shown, surroundings, template
+from .nodes import Tree, is_variable, shortened, shown, template
 from .operator import ConventionalOperator, Draft
 
 #: characters of the longest expression that is worth an alternative; tables are longer
@@ -45,27 +43,27 @@ def find_texts(
         if front_end_of(file) is not PYTHON:
             raise SyntaxError("it is no Python, the only language that has operators on its text")
         source = (root / file).read_bytes()
-        index = Index.of(ast.parse(source, file))
-        places = list(find_places(source, file, rules, index, first=number + 1))
+        places, index = find_places(source, file, rules, first=number + 1)
         number += len(places)
         texts.append(ProgramText(file, sha256(source).hexdigest(), tuple(places), index.declared))
     return tuple(texts)
 
 
 def find_places(
-    source: bytes, file: str, rules: Iterable[ConventionalOperator], index: Index, *, first: int = 1
-) -> Iterator[TextPlace]:
-    """The places of one file that any of the rules has to do with, in the order of the text."""
-    finder = _Finder(_decoded(source), file, list(rules), index)
-    finder.wrapper.visit(finder)
-    counts: dict[tuple[str, str, str], int] = {}
-    number = first
-    for seed in sorted(finder.seeds, key=_order):
-        place = seed.place(number, file, finder.extents)
+    source: bytes, file: str, rules: Iterable[ConventionalOperator], *, first: int = 1
+) -> tuple[list[TextPlace], Index]:
+    """The places of one file that the rules have to do with, in the order of the text, and its index."""
+    tree = ast.parse(source, file)
+    index = Index.of(tree)
+    finder = _Finder(Tree(_decoded(source), tree), list(rules), index)
+    counts: Counter[tuple[str, str, str]] = Counter()
+    places: list[TextPlace] = []
+    for number, seed in enumerate(sorted(finder.seeds(), key=_order), first):
+        place = seed.place(number, file, finder.tree)
         key = (place.span.function, place.node, place.text)
-        counts[key] = counts.get(key, 0) + 1
-        yield replace(place, occurrence=counts[key])
-        number += 1
+        counts[key] += 1
+        places.append(replace(place, occurrence=counts[key]))
+    return places, index
 
 
 @dataclass(slots=True)
@@ -78,8 +76,8 @@ class _Seed:
     kept: list[Extent] = field(default_factory=list)
     alternatives: list[Alternative] = field(default_factory=list)
 
-    def place(self, number: int, file: str, extents: Extents) -> TextPlace:
-        text = extents.segment(self.extent)
+    def place(self, number: int, file: str, tree: Tree) -> TextPlace:
+        text = tree.segment(self.extent)
         statement = isinstance(self.found.node, ast.stmt)
         scope = self.found.scope
         return TextPlace(
@@ -101,66 +99,42 @@ def _order(seed: _Seed) -> tuple[int, int, int, int]:
     return (line, column, -end_line, -end_column)  # what is around something comes first
 
 
-class _Finder(cst.CSTVisitor):
-    METADATA_DEPENDENCIES = (PositionProvider, ParentNodeProvider)
-
-    def __init__(self, text: str, file: str, rules: list[ConventionalOperator], index: Index) -> None:
-        super().__init__()
-        self.wrapper = MetadataWrapper(cst.parse_module(text), unsafe_skip_copy=True)
-        ranges = self.wrapper.resolve(PositionProvider)
-        # positions are simple code ranges unless asked for lazily
-        self.extents = Extents(text, cast("dict[cst.CSTNode, cst.metadata.CodeRange]", ranges))
-        self.seeds: list[_Seed] = []
+class _Finder:
+    def __init__(self, tree: Tree, rules: list[ConventionalOperator], index: Index) -> None:
+        self.tree = tree
         self._rules = rules
         self._index = index
         self._variables = any(rule.asks_variables for rule in rules)
-        self._elifs: set[cst.CSTNode] = set()
 
-    def on_visit(self, node: cst.CSTNode) -> bool:
-        if isinstance(node, cst.Annotation):
-            return False
-        if isinstance(node, cst.If) and isinstance(node.orelse, cst.If):
-            self._elifs.add(node.orelse)
-        if isinstance(node, cst.BaseExpression | cst.BaseStatement | cst.BaseSmallStatement):
-            self._look_at(node)
-        return True
+    def seeds(self) -> Iterator[_Seed]:
+        """A statement comes before the expression that is all of it."""
+        for found in chain(self._index.statements.values(), self._index.read()):
+            seed = self._seed(found)
+            if seed is not None:
+                yield seed
 
-    def _look_at(self, node: cst.CSTNode) -> None:
-        around = surroundings(node, self._parent)
+    def _seed(self, found: ScopedNode) -> _Seed | None:
+        node = found.node
+        around = self.tree.surroundings(node)
         drafts = [(rule, draft) for rule in self._rules for draft in rule.drafts(node, around)]
         variable = self._variables and is_variable(node, around)
-        if (not drafts and not variable) or node in self._elifs:
-            return
-        found = self._found(node)
-        if found is None:
-            return
-        extent = extent_of(found.node)
-        if isinstance(found.node, ast.expr) and len(self.extents.segment(extent)) > LONGEST:
-            return
-        seed = _Seed(found, extent, variable and isinstance(found.node, ast.Name))
+        if (not drafts and not variable) or self.tree.is_elif(node) or not self.tree.stands_there(node):
+            return None
+        extent = extent_of(node)
+        if isinstance(node, ast.expr) and len(self.tree.segment(extent)) > LONGEST:
+            return None
+        seed = _Seed(found, extent, variable)
         for rule, draft in drafts:
             self._add(seed, rule, draft)
-        if seed.alternatives or seed.variable:
-            self.seeds.append(seed)
-
-    def _parent(self, node: cst.CSTNode) -> cst.CSTNode | None:
-        return self.get_metadata(ParentNodeProvider, node, None)
-
-    def _found(self, node: cst.CSTNode) -> ScopedNode | None:
-        """The same in ``ast``; None if it is not evaluated."""
-        extent = self.extents.of(node)
-        if isinstance(node, cst.BaseExpression):
-            return self._index.expression(extent)
-        return self._index.statements.get(extent[:2])
+        return seed if seed.alternatives or seed.variable else None
 
     def _add(self, seed: _Seed, rule: ConventionalOperator, draft: Draft) -> None:
-        nodes = [part for part in draft.parts if not isinstance(part, str)]
-        extents = [self.extents.of(node) for node in nodes]
+        extents = [extent_of(part) for part in draft.parts if not isinstance(part, str)]
         if any(self._index.expressions.get(extent) is None for extent in extents):
             return
         seed.kept += [extent for extent in extents if extent not in seed.kept]
-        made = template(draft.parts, lambda node: seed.kept.index(self.extents.of(node)))
-        text = shown(draft.shown or draft.parts, lambda node: self.extents.segment(self.extents.of(node)))
+        made = template(draft.parts, lambda node: seed.kept.index(extent_of(node)))
+        text = shown(draft.shown or draft.parts, lambda node: self.tree.segment(extent_of(node)))
         seed.alternatives.append(
             Alternative(rule.name, draft.variant, made, text, draft.needs, rule.family, draft.raises)
         )

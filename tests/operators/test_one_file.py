@@ -57,7 +57,7 @@ TOO_MUCH = """
     """
 #: acts on program text
 ZERO = """
-    import libcst as cst
+    import ast
 
     from mutabot_source.operator import ConventionalOperator, Draft, TextExample
 
@@ -68,7 +68,7 @@ ZERO = """
         examples = (TextExample("x = 2\\n", ("x = 0\\n",)), TextExample("x = y\\n"))
 
         def drafts(self, node, around):
-            if isinstance(node, cst.Float):
+            if isinstance(node, ast.Constant) and isinstance(node.value, float):
                 yield Draft("", ("0.0",))
     """
 MISSION = """

@@ -108,14 +108,13 @@ class Settings(Table):
         program = ["mission.py", "cell/*.py"]
     """
     oracle: _Texts = ()
-    """The same for code of the tests that takes readings for their own checks: role `oracle`, scored apart.
-    No file can be both.
+    """The same for code of the tests that takes readings for their own checks: role `oracle`.
 
         oracle = ["tests/sensors.py"]
     """
     oracle_nodes: Annotated[tuple[_NodeName, ...], Field(strict=False)] = ()
-    """The tests' own nodes, by resolved names; `*` stands for any text. What is done in them under a name (a
-    topic received, a service called) has the role `oracle`, in whichever file it stands.
+    """The tests' own nodes, by resolved names; `*` stands for any text. What is done in them under a name has
+    the role `oracle`.
 
         oracle_nodes = ["/checker*"]
     """
@@ -140,12 +139,12 @@ class Settings(Table):
         seed = 42
     """
     jobs: Annotated[int, Field(ge=1, le=limits.JOBS)] | None = None
-    """Runs at a time (`--jobs`). Without it, one per core that may be used.
+    """Runs at a time (`--jobs`); by default one per core.
 
         jobs = 1
     """
     selection: str | None = None
-    """File with the ids of the mutants to run, one per line. Without it, all are run.
+    """File with the ids of the mutants to run, one per line.
 
         selection = "published.txt"
     """
@@ -211,8 +210,8 @@ class Settings(Table):
         families = ["robot", "conventional"]
     """
     baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
-    """How often the original is run per round; without it, as often as the engine needs. More runs find more
-    flaky tests.
+    """How often the original is run per round, to [find flaky tests](verdicts.md#a-second-look); by default
+    as often as the engine needs.
 
         baseline_repetitions = 10
     """

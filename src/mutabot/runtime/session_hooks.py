@@ -230,8 +230,8 @@ class SessionHooks:
             self._take_on(session, *request)
         if self._server is not None:
             session.items.clear()
-            return (yield)
-        seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
+        else:
+            seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
         result = yield
         drop_idle_plugins(session.config)
         return result

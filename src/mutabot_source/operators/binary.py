@@ -2,37 +2,46 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
-import libcst as cst
+from mutabot_source.operator import (
+    ConventionalOperator,
+    Draft,
+    Node,
+    Surroundings,
+    TextExample,
+    each,
+    is_text,
+)
 
-from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample, each
+_DISPLAYS = ast.List | ast.Tuple | ast.Dict | ast.Set | ast.ListComp | ast.SetComp | ast.DictComp
 
-_TEXTS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
-_DISPLAYS = cst.List | cst.Tuple | cst.Dict | cst.Set | cst.ListComp | cst.SetComp | cst.DictComp
+#: variant and sign of each operator of a group
+_Signs = Mapping[type[ast.operator], tuple[str, str]]
 
 
 class _BinaryOperator(ConventionalOperator):
     """Replaces a binary operator by each other of its group, and the operation by its operands.
 
     Class attributes:
-        signs: variant and sign by class of the node.
+        signs: the operators that stand for each other.
         needs: kind of value of the operation.
         keeps_right: whether the right operand may stand for the operation as the left one may.
     """
 
-    signs: ClassVar[Mapping[type[cst.CSTNode], tuple[str, str]]]
+    signs: ClassVar[_Signs]
     needs: ClassVar[str]
     keeps_right: ClassVar[bool] = True
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
-        if not isinstance(node, cst.BinaryOperation) or type(node.operator) not in self.signs:
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, ast.BinOp) or type(node.op) not in self.signs:
             return
-        if any(isinstance(operand, _TEXTS | _DISPLAYS) for operand in (node.left, node.right)):
+        if any(isinstance(operand, _DISPLAYS) or is_text(operand) for operand in (node.left, node.right)):
             return
         for kind, (variant, sign) in self.signs.items():
-            if kind is not type(node.operator):
+            if kind is not type(node.op):
                 yield Draft(variant, (node.left, f" {sign} ", node.right), self.needs)
         yield Draft("leftOp", (node.left,), self.needs)
         if self.keeps_right:
@@ -46,13 +55,13 @@ class ArithmeticReplacement(_BinaryOperator):
     rank = 20
     summary = "An arithmetic operator becomes each of the others, or the operation one of its operands."
     signs: ClassVar = {
-        cst.Add: ("add", "+"),
-        cst.Subtract: ("sub", "-"),
-        cst.Multiply: ("mul", "*"),
-        cst.Divide: ("div", "/"),
-        cst.FloorDivide: ("floordiv", "//"),
-        cst.Modulo: ("mod", "%"),
-        cst.Power: ("pow", "**"),
+        ast.Add: ("add", "+"),
+        ast.Sub: ("sub", "-"),
+        ast.Mult: ("mul", "*"),
+        ast.Div: ("div", "/"),
+        ast.FloorDiv: ("floordiv", "//"),
+        ast.Mod: ("mod", "%"),
+        ast.Pow: ("pow", "**"),
     }
     needs = "number"
     examples: ClassVar[tuple[TextExample, ...]] = (
@@ -77,7 +86,7 @@ class LogicalReplacement(_BinaryOperator):
     name = "LOR"
     rank = 60
     summary = "A bitwise operator becomes each of the others, or the operation one of its operands."
-    signs: ClassVar = {cst.BitAnd: ("and", "&"), cst.BitOr: ("or", "|"), cst.BitXor: ("xor", "^")}
+    signs: ClassVar = {ast.BitAnd: ("and", "&"), ast.BitOr: ("or", "|"), ast.BitXor: ("xor", "^")}
     needs = "bits"
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample(
@@ -103,7 +112,7 @@ class ShiftReplacement(_BinaryOperator):
     name = "SOR"
     rank = 50
     summary = "A shift goes the other way, or is left out."
-    signs: ClassVar = {cst.LeftShift: ("left", "<<"), cst.RightShift: ("right", ">>")}
+    signs: ClassVar = {ast.LShift: ("left", "<<"), ast.RShift: ("right", ">>")}
     needs = "integer"
     keeps_right = False
     examples: ClassVar[tuple[TextExample, ...]] = (
@@ -113,22 +122,21 @@ class ShiftReplacement(_BinaryOperator):
     )
 
 
-_Signs = dict[type[cst.CSTNode], tuple[str, str]]
 _ARITHMETIC: _Signs = {
-    cst.AddAssign: ("add", "+="),
-    cst.SubtractAssign: ("sub", "-="),
-    cst.MultiplyAssign: ("mul", "*="),
-    cst.DivideAssign: ("div", "/="),
-    cst.FloorDivideAssign: ("floordiv", "//="),
-    cst.ModuloAssign: ("mod", "%="),
-    cst.PowerAssign: ("pow", "**="),
+    ast.Add: ("add", "+="),
+    ast.Sub: ("sub", "-="),
+    ast.Mult: ("mul", "*="),
+    ast.Div: ("div", "/="),
+    ast.FloorDiv: ("floordiv", "//="),
+    ast.Mod: ("mod", "%="),
+    ast.Pow: ("pow", "**="),
 }
 _BITS: _Signs = {
-    cst.BitAndAssign: ("and", "&="),
-    cst.BitOrAssign: ("or", "|="),
-    cst.BitXorAssign: ("xor", "^="),
+    ast.BitAnd: ("and", "&="),
+    ast.BitOr: ("or", "|="),
+    ast.BitXor: ("xor", "^="),
 }
-_SHIFTS: _Signs = {cst.LeftShiftAssign: ("left", "<<="), cst.RightShiftAssign: ("right", ">>=")}
+_SHIFTS: _Signs = {ast.LShift: ("left", "<<="), ast.RShift: ("right", ">>=")}
 
 
 class AssignmentReplacement(ConventionalOperator):
@@ -145,10 +153,10 @@ class AssignmentReplacement(ConventionalOperator):
         TextExample("x = y\n", note="a name may not have a value before its plain assignment"),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
-        if not isinstance(node, cst.AugAssign):
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, ast.AugAssign):
             return
-        kind = type(node.operator)
+        kind = type(node.op)
         for group, needs in ((_ARITHMETIC, "number"), (_BITS, "bits"), (_SHIFTS, "integer")):
             if kind not in group:
                 continue

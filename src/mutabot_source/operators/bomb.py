@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable
 from typing import ClassVar
 
-import libcst as cst
-
-from mutabot_source.operator import HELPER, ConventionalOperator, Draft, Surroundings, TextExample
-
-_SIMPLE = (
-    cst.Assign
-    | cst.AnnAssign
-    | cst.AugAssign
-    | cst.Assert
-    | cst.Break
-    | cst.Continue
-    | cst.Del
-    | cst.Expr
-    | cst.Raise
-    | cst.Return
+from mutabot_source.operator import (
+    HELPER,
+    ConventionalOperator,
+    Draft,
+    Node,
+    Surroundings,
+    TextExample,
+    is_idle,
 )
-_COMPOUND = cst.If | cst.For | cst.While | cst.Try | cst.TryStar | cst.With | cst.Match
+
+_STATEMENTS = (
+    ast.Assign | ast.AnnAssign | ast.AugAssign | ast.Assert | ast.Break | ast.Continue | ast.Delete | ast.Expr
+    | ast.Raise | ast.Return | ast.If | ast.For | ast.AsyncFor | ast.While | ast.Try | ast.TryStar | ast.With
+    | ast.AsyncWith | ast.Match
+)  # fmt: skip
 
 
 class Bomb(ConventionalOperator):
@@ -38,14 +37,12 @@ class Bomb(ConventionalOperator):
         TextExample("def f():\n    global x\n    pass\n", note="nothing happens there"),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
-        if not isinstance(node, _SIMPLE | _COMPOUND):
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, _STATEMENTS):
             return
-        if isinstance(node, cst.AnnAssign) and node.value is None:
+        if isinstance(node, ast.AnnAssign) and node.value is None:
             return
-        if isinstance(node, cst.Expr) and isinstance(
-            node.value, cst.SimpleString | cst.ConcatenatedString | cst.Ellipsis
-        ):
+        if isinstance(node, ast.Expr) and is_idle(node.value):
             return
         bomb = f"{HELPER}.fail('Bomb', 'the mutant\\'s bomb went off')"
         yield Draft("", (bomb,), shown=("Bomb()",), raises=True)

@@ -5,6 +5,7 @@ The naive operator: it knows nothing of the command that the text is. Made to be
 
 from __future__ import annotations
 
+import ast
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator
 from hashlib import sha256
@@ -12,10 +13,8 @@ from itertools import pairwise
 from random import Random
 from typing import ClassVar
 
-import libcst as cst
-
 from mutabot_source.extension import TEXT
-from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample
+from mutabot_source.operator import ConventionalOperator, Draft, Node, Surroundings, TextExample
 
 #: alternatives per text and operator
 LIMIT = 4
@@ -28,10 +27,10 @@ class _Characters(ConventionalOperator):
 
     family = TEXT
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
-        if not isinstance(node, cst.SimpleString) or not around.is_argument:
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, ast.Constant) or not around.is_argument:
             return
-        text = node.evaluated_value
+        text = node.value
         if not isinstance(text, str):
             return
         random = Random(int.from_bytes(sha256(f"{self.name}:{text}".encode()).digest()[:8]))

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import ast
+from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar
 
-import libcst as cst
-
-from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample, each
+from mutabot_source.operator import (
+    ConventionalOperator,
+    Draft,
+    Node,
+    Parts,
+    Surroundings,
+    TextExample,
+    each,
+    is_named_constant,
+)
 
 
 class ConditionalReplacement(ConventionalOperator):
@@ -25,11 +33,11 @@ class ConditionalReplacement(ConventionalOperator):
         TextExample("z = x & y\n", note="bitwise operators are LOR's"),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
-        if not isinstance(node, cst.BooleanOperation):
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, ast.BoolOp):
             return
-        values = operands(node)
-        own, other = ("and", "or") if isinstance(node.operator, cst.And) else ("or", "and")
+        values = node.values
+        own, other = ("and", "or") if isinstance(node.op, ast.And) else ("or", "and")
         if len(values) == 2:
             left, right = values
             yield Draft(other, (left, f" {other} ", right))
@@ -49,42 +57,32 @@ class ConditionalReplacement(ConventionalOperator):
         yield Draft("trueOp", ("True",))
 
 
-def operands(node: cst.BooleanOperation) -> list[cst.BaseExpression]:
-    """The values of ``a and b and c``, which is one expression although the tree has two."""
-    left = node.left
-    if not isinstance(left, cst.BooleanOperation) or left.lpar:
-        return [left, node.right]
-    same = type(left.operator) is type(node.operator)
-    return [*operands(left), node.right] if same else [left, node.right]
-
-
-def _joined(values: list[cst.BaseExpression], words: list[str]) -> tuple[str | cst.CSTNode, ...]:
-    parts: list[str | cst.CSTNode] = [values[0]]
+def _joined(values: Sequence[ast.expr], words: Iterable[str]) -> Parts:
+    parts: list[str | ast.expr] = [values[0]]
     for word, value in zip(words, values[1:], strict=True):
         parts += [f" {word} ", value]
     return tuple(parts)
 
 
-_Signs = dict[type[cst.CSTNode], tuple[str, str]]
+_Signs = Mapping[type[ast.cmpop], tuple[str, str]]
 _ORDERS: _Signs = {
-    cst.LessThan: ("lt", "<"),
-    cst.LessThanEqual: ("le", "<="),
-    cst.GreaterThan: ("gt", ">"),
-    cst.GreaterThanEqual: ("ge", ">="),
-    cst.Equal: ("eq", "=="),
-    cst.NotEqual: ("ne", "!="),
+    ast.Lt: ("lt", "<"),
+    ast.LtE: ("le", "<="),
+    ast.Gt: ("gt", ">"),
+    ast.GtE: ("ge", ">="),
+    ast.Eq: ("eq", "=="),
+    ast.NotEq: ("ne", "!="),
 }
-_EQUALITIES: _Signs = {kind: _ORDERS[kind] for kind in (cst.Equal, cst.NotEqual)}
+_EQUALITIES: _Signs = {kind: _ORDERS[kind] for kind in (ast.Eq, ast.NotEq)}
 _IDENTITIES: _Signs = {
-    cst.Is: ("is", "is"),
-    cst.IsNot: ("isNot", "is not"),
+    ast.Is: ("is", "is"),
+    ast.IsNot: ("isNot", "is not"),
 }
 _MEMBERSHIPS: _Signs = {
-    cst.In: ("in", "in"),
-    cst.NotIn: ("notIn", "not in"),
+    ast.In: ("in", "in"),
+    ast.NotIn: ("notIn", "not in"),
 }
-_SIGNS = _ORDERS | _IDENTITIES | _MEMBERSHIPS
-_WITHOUT_ORDER = ("None", "True", "False")
+_SIGNS = {**_ORDERS, **_IDENTITIES, **_MEMBERSHIPS}
 
 
 class RelationalReplacement(ConventionalOperator):
@@ -109,37 +107,28 @@ class RelationalReplacement(ConventionalOperator):
         TextExample("if __name__ == '__main__': main()\n", note="what is not run by a test is no place"),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
-        if not isinstance(node, cst.Comparison):
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, ast.Compare):
             return
-        values = [node.left, *(target.comparator for target in node.comparisons)]
-        signs = [type(target.operator) for target in node.comparisons]
+        values = [node.left, *node.comparators]
+        signs = [type(sign) for sign in node.ops]
         for index, kind in enumerate(signs):
             group = _group(kind, values[index : index + 2])
             for other, (variant, _) in group.items():
                 if other is not kind:
                     number = str(index + 1) if len(signs) > 1 else ""
                     changed = [*signs[:index], other, *signs[index + 1 :]]
-                    yield Draft(f"{variant}{number}", _chain(values, changed))
+                    yield Draft(f"{variant}{number}", _joined(values, [_SIGNS[one][1] for one in changed]))
         yield Draft("falseOp", ("False",))
         yield Draft("trueOp", ("True",))
 
 
-def _group(kind: type[cst.CSTNode], operands: list[cst.BaseExpression]) -> _Signs:
+def _group(kind: type[ast.cmpop], operands: Iterable[ast.expr]) -> _Signs:
     for group in (_IDENTITIES, _MEMBERSHIPS):
         if kind in group:
             return group
     return _EQUALITIES if any(_has_no_order(operand) for operand in operands) else _ORDERS
 
 
-def _has_no_order(operand: cst.BaseExpression) -> bool:
-    return isinstance(operand, cst.Dict) or (
-        isinstance(operand, cst.Name) and operand.value in _WITHOUT_ORDER
-    )
-
-
-def _chain(values: list[cst.BaseExpression], signs: list[type[cst.CSTNode]]) -> tuple[str | cst.CSTNode, ...]:
-    parts: list[str | cst.CSTNode] = [values[0]]
-    for sign, value in zip(signs, values[1:], strict=True):
-        parts += [f" {_SIGNS[sign][1]} ", value]
-    return tuple(parts)
+def _has_no_order(operand: ast.expr) -> bool:
+    return isinstance(operand, ast.Dict) or is_named_constant(operand)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable
 from typing import ClassVar
 
-import libcst as cst
-
-from mutabot_source.operator import HELPER, ConventionalOperator, Draft, Surroundings, TextExample, is_scalar
+from mutabot_source.operator import (
+    HELPER,
+    ConventionalOperator,
+    Draft,
+    Node,
+    Surroundings,
+    TextExample,
+    is_scalar,
+)
 
 
 class Absolute(ConventionalOperator):
@@ -29,7 +36,7 @@ class Absolute(ConventionalOperator):
         ),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
         if not is_scalar(node, around) or around.is_condition:
             return
         absolute = f"{HELPER}.absolute("
@@ -39,7 +46,7 @@ class Absolute(ConventionalOperator):
         yield Draft("failOnZero", not_zero, "number", ("failOnZero(", node, ")"))
 
 
-_CONDITIONS = cst.Comparison | cst.BooleanOperation
+_CONDITIONS = ast.Compare | ast.BoolOp
 
 
 class UnaryInsertion(ConventionalOperator):
@@ -62,16 +69,16 @@ class UnaryInsertion(ConventionalOperator):
         TextExample("y = 'red'\n", note="a text has no sign"),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
         if around.is_operand_of_unary or not around.is_value:
             return
         if isinstance(node, _CONDITIONS):
             yield Draft("not", ("not ", node))
-        elif isinstance(node, cst.Integer | cst.Float | cst.Imaginary):
-            if float(abs(node.evaluated_value)) != 0.0:
+        elif isinstance(node, ast.Constant):
+            if isinstance(node.value, bool):
+                yield Draft("not", ("not ", node))
+            elif isinstance(node.value, int | float | complex) and node.value:
                 yield Draft("neg", ("-", node))
-        elif isinstance(node, cst.Name) and node.value in ("True", "False"):
-            yield Draft("not", ("not ", node))
         elif is_scalar(node, around):
             if around.is_condition:
                 yield Draft("not", ("not ", node))
@@ -95,6 +102,6 @@ class UnaryDeletion(ConventionalOperator):
         TextExample("z = x not in y\n", note="part of a comparison: ROR's"),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
-        if isinstance(node, cst.UnaryOperation):
-            yield Draft("", (node.expression,))
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+        if isinstance(node, ast.UnaryOp):
+            yield Draft("", (node.operand,))

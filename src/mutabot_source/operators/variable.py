@@ -9,10 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import ClassVar
 
-import libcst as cst
-
 from mutabot.model.mutant import Alternative
-from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, TextExample
+from mutabot_source.operator import ConventionalOperator, Draft, Node, Surroundings, TextExample
 
 
 class VariableReplacement(ConventionalOperator):
@@ -34,7 +32,7 @@ class VariableReplacement(ConventionalOperator):
         TextExample("x = 1\n", variables={"x": ("y",)}, note="only where a variable is read"),
     )
 
-    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
         return ()
 
     def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
