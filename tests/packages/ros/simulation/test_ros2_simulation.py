@@ -204,6 +204,29 @@ def test_runs_are_equal_whatever_the_hash_seed() -> None:
     assert next(iter(logs)).count("\n") > 300
 
 
+def test_executors_do_with_less_work_what_the_known_text_of_rclpy_does(tmp_path: Path) -> None:
+    (tmp_path / "rclpys_own.py").write_text(
+        "from mutabot_ros.simulation.middleware import executors\nexecutors.KNOWN = 'no text'\n"
+    )
+    (tmp_path / "told.py").write_text(
+        "def pytest_runtest_teardown():\n"
+        "    from rclpy.executors import Executor\n"
+        "    print('waits by', Executor._wait_for_ready_callbacks.__module__)\n"
+    )
+    path = os.pathsep.join([str(tmp_path), *sys.path])
+
+    def log(*plugins: str) -> str:
+        options = [word for name in ("told", *plugins) for word in ("-p", name)]
+        cases = ("-s", "-c", os.devnull, f"--rootdir={HERE}", "logged_cases.py")
+        return simulated(HERE, *options, *cases, PYTHONPATH=path).stdout.partition("warnings summary")[0]
+
+    ours, rclpys = log(), log("rclpys_own")
+    assert ours.count("waits by mutabot_ros.simulation.middleware.executors\n") == 1
+    assert rclpys.count("waits by rclpy.executors\n") == 1
+    assert ours.count("\n") > 300
+    assert ours.replace("mutabot_ros.simulation.middleware.executors", "rclpy.executors") == rclpys
+
+
 def test_a_race_is_found_by_random_orders_and_replayed_by_its_seed() -> None:
     def run(*options: str) -> subprocess.CompletedProcess[str]:
         return simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", "-v", *options)
