@@ -88,8 +88,7 @@ class WaitSet(Destroyable):
 
     def wait(self, timeout: int) -> None:
         """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
-        if not any(self._members.values()):
-            raise RCLError("failed to wait on wait set: wait set is empty")
+        self._require_members()
         self.wait_until(None if timeout < 0 else SCHEDULER.now + timeout, polls=timeout == 0)
 
     def wait_until(
@@ -99,6 +98,8 @@ class WaitSet(Destroyable):
 
         ``known``: a guard condition that tells nothing new now: alone it is no reason to end the wait.
         """
+        if polls or end is None:  # rclpy's executors have a timer among the members for any other time
+            self._require_members()
         if polls:
             SCHEDULER.poll()
         self._look(end)
@@ -114,6 +115,10 @@ class WaitSet(Destroyable):
             self._keep_some()
         for guard in self._members["guard_condition"]:
             guard.is_ready = False
+
+    def _require_members(self) -> None:
+        if not any(self._members.values()):
+            raise RCLError("failed to wait on wait set: wait set is empty")
 
     def _look(self, end: int | None) -> None:
         """Note which members are ready, and whether time is up."""
