@@ -1,10 +1,12 @@
-"""Do both engines find the same? Every mutant of every example by ``fork`` and by ``replay``, side by side.
+"""Do both engines find the same? Mutants of the examples by ``fork`` and by ``replay``, side by side.
+
+Every mutant, but of tracking and palletising a random sample: a suite that takes minutes takes replay hours.
 
 Compared of each (mutant, round): verdict, what noticed it, the test, the message, and all else that an
 outcome says but what it cost. The tests of a mutant run one after the other until one decides, so two equal
 outcomes stand for as many equal (mutant, test, round) outcomes as tests were run.
 
-Use: ``python benchmarks/differential.py [--examples paper …] [--rounds N]
+Use: ``python benchmarks/differential.py [--examples paper …] [--rounds N] [--sample N]
 [--families conventional …] [--json]``. Each example runs in a copy. The exit code is 1 if the engines
 disagree anywhere, or if there is nothing to compare.
 """
@@ -29,6 +31,7 @@ from rich.table import Table
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
+from mutabot.config.options import Sample
 from mutabot.config.vocabulary import load
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
@@ -36,7 +39,9 @@ from mutabot.model.codec import to_data
 
 ROOT = Path(__file__).resolve().parent.parent
 #: example to its rounds; one round of pick_and_place takes replay minutes
-EXAMPLES = {"paper": 5, "pick_and_place": 1, "scales": 1}
+EXAMPLES = {"paper": 5, "pick_and_place": 1, "scales": 1, "tracking": 1, "palletising": 1}
+#: example to the number of mutants drawn by the campaign's seed; all of the others
+SAMPLES = {"tracking": 40, "palletising": 20}
 FAMILIES = ("robot", "conventional", "text")
 ENGINES = ("fork", "replay")
 #: what two engines may differ in: what an outcome cost, and who found it
@@ -93,8 +98,10 @@ class Silent:
         """Ignore it."""
 
 
-def compare(example: str, rounds: int, families: tuple[str, ...] = ("robot",)) -> Row:
-    """Run one example with both engines in the same copy of it."""
+def compare(
+    example: str, rounds: int, families: tuple[str, ...] = ("robot",), sample: int | None = None
+) -> Row:
+    """Run one example, or so many of its mutants, with both engines in the same copy of it."""
     found: dict[str, dict[Key, Outcome]] = {}
     seconds: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as name:
@@ -103,9 +110,8 @@ def compare(example: str, rounds: int, families: tuple[str, ...] = ("robot",)) -
         shutil.copytree(ROOT / "examples" / example, folder, ignore=ignored)
         for engine in ENGINES:
             began = time.monotonic()
-            with Journal.open(
-                run_campaign(request_for(folder, engine, rounds, families), Silent())
-            ) as journal:
+            request = request_for(folder, engine, rounds, families, sample)
+            with Journal.open(run_campaign(request, Silent())) as journal:
                 found[engine] = {(one.mutant, one.round): one for one in journal.outcomes()}
             seconds[engine] = round(time.monotonic() - began, 1)
     forked = found["fork"].values()  # some of them may have fallen back to replay
@@ -121,14 +127,17 @@ def compare(example: str, rounds: int, families: tuple[str, ...] = ("robot",)) -
     )
 
 
-def request_for(folder: Path, engine: str, rounds: int, families: tuple[str, ...] = ("robot",)) -> Request:
-    """The campaign: all mutants, and nothing taken over from the other engine."""
+def request_for(
+    folder: Path, engine: str, rounds: int, families: tuple[str, ...] = ("robot",), sample: int | None = None
+) -> Request:
+    """The campaign: all mutants or so many of them, and nothing taken over from the other engine."""
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
     jobs = len(os.sched_getaffinity(0))
     return Request(
         configuration, vocabulary, rounds, configuration.seed, jobs,
         engine="auto" if engine == "fork" else engine, fresh=True, families=families,
+        sample=None if sample is None else Sample.parse(str(sample)),
     )  # fmt: skip
 
 
@@ -180,11 +189,15 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--examples", nargs="+", default=list(EXAMPLES), choices=list(EXAMPLES))
-    parser.add_argument("--rounds", type=int, help="the same for all examples; by default 5, 1 and 1")
+    parser.add_argument("--rounds", type=int, help="of all examples; by default 5 of paper, 1 of the others")
+    parser.add_argument("--sample", type=int, help="mutants of each example, instead of its own number")
     parser.add_argument("--families", nargs="+", default=["robot"], choices=FAMILIES)
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
     given = parser.parse_args()
-    rows = [compare(one, given.rounds or EXAMPLES[one], tuple(given.families)) for one in given.examples]
+    rows = [
+        compare(one, given.rounds or EXAMPLES[one], tuple(given.families), given.sample or SAMPLES.get(one))
+        for one in given.examples
+    ]
     if given.json:
         print(json.dumps([asdict(row) for row in rows], indent=2))
     else:

@@ -47,6 +47,7 @@ from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected
 from mutabot.config.configuration import load_configuration
+from mutabot.config.options import Sample
 from mutabot.config.vocabulary import load
 from mutabot.execution.workers import Workers
 from mutabot.model import Outcome
@@ -56,6 +57,9 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "paper": {"selection": "published.txt", "rounds": 5},
     "pick_and_place": {"selection": None, "rounds": 1},
     "scales": {"selection": None, "rounds": 1},
+    # random samples: with all mutants, fresh would take hours
+    "tracking": {"selection": None, "rounds": 1, "sample": "20"},
+    "palletising": {"selection": None, "rounds": 1, "sample": "10"},
 }
 HEADINGS = (
     "example", "engine", "mutants × rounds", "wall s", "CPU s", "steps", "per second", "peak MB",
@@ -215,13 +219,14 @@ def run_pairs(engine: str, campaign: Campaign, trials: list[MutantRun]) -> Itera
     yield from replay(campaign, trials)
 
 
-def request_for(folder: Path, *, selection: str | None, rounds: int) -> Request:
+def request_for(folder: Path, *, selection: str | None, rounds: int, sample: str | None = None) -> Request:
     """The campaign to measure."""
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
     jobs = len(os.sched_getaffinity(0))
     file = folder / selection if selection is not None else None
-    return Request(configuration, vocabulary, rounds, 1, jobs, selection=file)
+    drawn = None if sample is None else Sample.parse(sample)
+    return Request(configuration, vocabulary, rounds, 1, jobs, selection=file, sample=drawn)
 
 
 def as_plain_pytest(request: Request) -> Request:

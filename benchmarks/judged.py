@@ -33,6 +33,8 @@ EXAMPLES = {
     "paper": {"conventional": 40, "graded": 80, "catalogue": 20},
     "scales": {"conventional": 15, "text": 45, "graded": 60, "catalogue": 20},
     "pick_and_place": {"robot": 40, "graded": 120, "conventional": 40, "catalogue": 60},
+    "tracking": {"robot": 40},
+    "palletising": {"robot": 40},
     "ros1": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2_docking": {"robot": 23, "conventional": 10},

@@ -165,7 +165,8 @@ def compare(
         engines: which engines.
         jobs: processes at a time.
         cache: folder that keeps what plain pytest said, or None.
-        limit: seconds after which a plain run counts as hanging.
+        limit: seconds after which a plain run counts as hanging, or three times what the original takes, if
+            that is more; the original may take ten times as long.
         rounds: rounds of the campaign; each is held against plain pytest with its own seeds.
     """
     found = Found(folder.name)
@@ -192,20 +193,22 @@ def compare(
     for which in range(1, rounds + 1):
         ends = [(engine, one) for engine, data in results.items() for one in _ended(data, which)]
         judge = Judge(folder, limit, seeds_of(results, which), cache)
-        original = judge.original()
+        original = replace(judge, limit=10 * limit).original()
         if original.state != "passes":
             found.failed.append(
                 f"{folder.name}: plain pytest {original.state} on the original\n{original.text}"
             )
             return found
+        judge = replace(judge, limit=max(limit, 3 * original.seconds))
         refused = {one.id for _, one in ends if one.is_or_could_be_refused(refusals)}
-        plain = _judged(judge, mutants, refused, jobs)
+        noticed = {one.id: one.test for _, one in ends}
+        plain = _judged(judge, mutants, refused, noticed, jobs)
         for _, one in ends:
             # what few draws say may be chance
             explained = ("unwritable", *EXPECTED.get(one.verdict, ()))
             rests_on_chance = is_drawn(mutants[one.id]) or is_raced(mutants[one.id])
             if rests_on_chance and plain[one.id].state not in explained:
-                plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS)
+                plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS, first=one.test)
         found.verdicts += [
             verdict(folder.name, engine, mutants[one.id], one, plain[one.id], which) for engine, one in ends
         ]
@@ -213,12 +216,20 @@ def compare(
 
 
 def _judged(
-    judge: Judge, mutants: Mapping[str, Mapping[str, Any]], refused: set[str], jobs: int
+    judge: Judge,
+    mutants: Mapping[str, Mapping[str, Any]],
+    refused: set[str],
+    noticed: Mapping[str, str | None],
+    jobs: int,
 ) -> dict[str, Judgement]:
-    """What plain pytest says of each mutant; ``refused`` are those of which an engine speaks of refusals."""
+    """What plain pytest says of each mutant.
+
+    ``refused`` are those of which an engine speaks of refusals, ``noticed`` tells which tests noticed them.
+    """
 
     def judged(mutant: Mapping[str, Any]) -> Judgement:
-        return judge.mutant(mutant, look_for_refusals=mutant["id"] in refused)
+        id = mutant["id"]
+        return judge.mutant(mutant, look_for_refusals=id in refused, first=noticed.get(id))
 
     with ThreadPoolExecutor(jobs) as pool:
         return dict(zip(mutants, pool.map(judged, mutants.values()), strict=True))

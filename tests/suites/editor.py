@@ -194,6 +194,9 @@ class CallEditor:
         )
         if mutant["pattern"] is not None and self.pattern is None:
             raise CannotWriteError("an unknown pattern")
+        meant = facts.hints.get("meant", {})
+        #: whether a call of one thing or another is one of this operation, as the text of an expression
+        self.meant = next((meant[site] for site in meant if mutant["id"].startswith(f"{site}:")), None)
 
     def edit(self) -> Edit:
         """The edit."""
@@ -332,7 +335,7 @@ class CallEditor:
 
     def _is_simple(self) -> bool:
         """Whether the call can stand twice, or not at all, without a change of anything else."""
-        if self.is_handed:
+        if self.is_handed or self.meant is not None:
             return False
         parts = [self.call.func, *self.call.args, *self.call.keywords]
         if self.is_async and self.awaited is None:
@@ -357,6 +360,8 @@ class CallEditor:
         if self.pattern is not None:
             message, text = self.operation["message"], self.pattern["text"]
             planted = f"{PLANTED}.only_for({self._callee()}, {planted}, {message!r}, {text!r})"
+        if self.meant is not None:
+            planted = f"({planted} if {self.meant} else {self._callee()})"
         return self._replace(self.callee, planted)
 
     def _parameters(self) -> list[str]:
@@ -412,7 +417,7 @@ class CallEditor:
     def _result(self, change: str, *, minus: bool = False) -> Edit:
         name = self.mutant["quantity"]
         path = "" if name == "result" else name
-        is_elsewhere = self.is_handed or (self.is_async and self.awaited is None)
+        is_elsewhere = self.is_handed or self.meant is not None or (self.is_async and self.awaited is None)
         if self.pattern is not None or is_elsewhere:
             planted = f"{PLANTED}.answering({self._callee()}, {path!r}, {change})"
             return self._with_callee(planted)

@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
@@ -40,6 +41,10 @@ import json, os, pytest
 @pytest.fixture
 def mutabot_seed(request):
     return json.loads(os.environ["JUDGE_SEEDS"]).get(request.node.nodeid, 0)
+
+def pytest_collection_modifyitems(items):
+    first = os.environ.get("JUDGE_FIRST")
+    items.sort(key=lambda item: item.nodeid != first)
 """
 NOTING = """
 
@@ -77,17 +82,22 @@ class Judgement:
         refused: whether the robot refused the mutated call more often than on the original; with a mutant of
             the program text, any call.
         text: the end of pytest's output.
+        seconds: what it took.
     """
 
     state: str
     tests: tuple[str, ...] = ()
     refused: bool = False
     text: str = ""
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
 class Judge:
     """Judges the mutants of one project.
+
+    Where ``judge.toml`` says ``independent = true``, a run ends at the first test that fails, and begins with
+    the one that is told.
 
     Attributes:
         folder: the project.
@@ -106,17 +116,24 @@ class Judge:
         return self._run([])
 
     def mutant(
-        self, mutant: Mapping[str, Any], *, look_for_refusals: bool = False, draws: int = DRAWS
+        self,
+        mutant: Mapping[str, Any],
+        *,
+        look_for_refusals: bool = False,
+        draws: int = DRAWS,
+        first: str | None = None,
     ) -> Judgement:
-        """One mutant; with noise, only if several draws say the same."""
+        """One mutant; with noise, only if several draws say the same. ``first``: a test that may fail."""
         try:
             edits = edits_of(Facts.of(self.folder), mutant)
         except CannotWriteError as error:
             return Judgement("unwritable", text=str(error))
         if is_drawn(mutant):
-            drawn = [self._run(edits, noise=draw) for draw in range(1, draws + 1)]
-            if len({one.state for one in drawn}) > 1:
-                return Judgement("unwritable", text="draws end differently")
+            drawn = []
+            for draw in range(1, draws + 1):
+                drawn.append(self._run(edits, noise=draw, first=first))
+                if drawn[-1].state != drawn[0].state:
+                    return Judgement("unwritable", text="draws end differently")
             return drawn[0]
         if is_named(mutant):
             noting = [*edits, *noting_refusals(Facts.of(self.folder))]
@@ -124,7 +141,7 @@ class Judge:
             if len({one.state for one in runs}) > 1:
                 return Judgement("unwritable", text="equal runs end differently")
             return runs[0]
-        found = self._run(edits)
+        found = self._run(edits, first=first)
         if not look_for_refusals:
             return found
         span = mutant["span"]
@@ -165,14 +182,16 @@ class Judge:
             self._pytest(copy, {"JUDGE_NOTES": str(notes), "JUDGE_PLACE": place})
             return notes.read_text().count("refused")
 
-    def _run(self, edits: Sequence[Edit], noise: int = 1) -> Judgement:
-        kept = self._kept(edits, noise)
+    def _run(self, edits: Sequence[Edit], noise: int = 1, first: str | None = None) -> Judgement:
+        is_independent = Facts.of(self.folder).hints.get("independent", False)
+        first = first if is_independent else None
+        kept = self._kept((edits, noise, first, dict(self.seeds or {})))
         if kept is not None and kept.is_file():
             data = json.loads(kept.read_text())
-            return Judgement(data["state"], tuple(data["tests"]), data["refused"], data["text"])
+            return Judgement(**{**data, "tests": tuple(data["tests"])})
         with tempfile.TemporaryDirectory() as name:
             notes = Path(name) / "notes"
-            told = {"JUDGE_NOISE": str(noise), "JUDGE_NOTES": str(notes)}
+            told = {"JUDGE_NOISE": str(noise), "JUDGE_NOTES": str(notes), "JUDGE_FIRST": first or ""}
             found = self._pytest(self._copied(Path(name), edits), told)
             found = replace(found, refused=notes.exists())
         if kept is not None:
@@ -215,6 +234,7 @@ class Judge:
         words = [
             *(sys.executable, "-m", "pytest", "-q", "-rfE", "--tb=short"),
             *(word for plugin in plugins for word in ("-p", plugin)),
+            *(["-x"] if facts.hints.get("independent") else []),
             *settings.get("pytest_args", []),
             *settings.get("tests", ["tests"]),
         ]
@@ -224,6 +244,7 @@ class Judge:
             return self._ended(words, copy, environment)
 
     def _ended(self, words: Sequence[str], copy: Path, environment: Mapping[str, str]) -> Judgement:
+        began = time.monotonic()
         process = subprocess.Popen(
             words, cwd=copy, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,
@@ -236,9 +257,9 @@ class Judge:
             return Judgement("hangs")
         tests = dict.fromkeys(found[1] for line in output.splitlines() if (found := _SUMMARY.match(line)))
         state = "passes" if process.returncode == 0 else "fails"
-        return Judgement(state, tuple(tests), text=output[-20000:])
+        return Judgement(state, tuple(tests), text=output[-20000:], seconds=time.monotonic() - began)
 
-    def _kept(self, edits: Sequence[Edit], noise: int) -> Path | None:
+    def _kept(self, given: tuple[Any, ...]) -> Path | None:
         if self.cache is None:
             return None
         digest = hashlib.sha256()
@@ -246,7 +267,7 @@ class Judge:
         for file in sorted(files):
             if file.is_file() and not {".mutabot", "__pycache__", ".pytest_cache"} & set(file.parts):
                 digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
-        digest.update(repr((edits, noise, dict(self.seeds or {}))).encode())
+        digest.update(repr(given).encode())
         return self.cache / f"{digest.hexdigest()}.json"
 
 

@@ -228,6 +228,17 @@ def test_a_mutant_that_cannot_be_written_is_said_to_be_so(tmp_path: Path, descri
         edits_for(facts, found)
 
 
+def test_a_call_of_one_thing_or_another_is_edited_where_it_is_one_of_the_operation(tmp_path: Path) -> None:
+    source = "x = [call() for call in (arm.where, arm.open)]\n"
+    project(tmp_path, source)
+    with (tmp_path / "judge.toml").open("a") as hints:
+        hints.write('\n[meant]\n"mission.py:x#1" = "call == arm.where"\n')
+    found = mutant("call()", source, operator="negate", operation="robot:Arm.where", quantity="result")
+    (edit,) = edits_for(Facts.of(tmp_path), found)
+    text = edit.applied(source.encode()).decode()
+    assert f"({P}.answering(call, '', {P}.negative) if call == arm.where else call)() for call" in text
+
+
 TESTS = """
     import sys
 
@@ -273,6 +284,34 @@ def test_the_judge_sees_a_program_that_hangs(tmp_path: Path) -> None:
     found = mutant("arm.move(1.0)", source.splitlines()[1], operation="robot:Arm.move", operator="skip")
     found["span"] |= {"line": 2, "end_line": 2}
     assert Judge(project(tmp_path, mission, TESTS), limit=3).mutant(found).state == "hangs"
+
+
+@pytest.mark.parametrize(
+    ("independent", "failing"), [(True, ["test_two"]), (False, ["test_one", "test_two"])]
+)
+def test_where_tests_are_independent_the_judge_begins_with_the_one_that_noticed_and_ends_there(
+    tmp_path: Path, independent: bool, failing: list[str]
+) -> None:
+    tests = """
+        import mission
+        from robot import Arm
+
+        def test_one():
+            arm = Arm()
+            mission.run(arm)
+            assert arm.x == 2.0
+
+        def test_two():
+            test_one()
+    """
+    project(tmp_path, MOVES, tests)
+    hints = tmp_path / "judge.toml"
+    hints.write_text(f"independent = {str(independent).lower()}\n{hints.read_text()}")
+    call = "arm.move(2.0)"
+    found = mutant(call, MOVES.splitlines()[1], operation="robot:Arm.move", operator="skip")
+    found["span"] |= {"line": 2, "end_line": 2}
+    judgement = Judge(tmp_path, limit=20).mutant(found, first="test_it.py::test_two")
+    assert judgement.tests == tuple(f"test_it.py::{name}" for name in failing)
 
 
 def test_the_judge_imports_nothing_of_mutabot() -> None:

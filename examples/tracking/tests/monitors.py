@@ -31,12 +31,14 @@ LARGEST_TILT = 3.0
 CARRYING_HEIGHT, PUSHING_SPEED = 0.1, 0.15
 """Nearer to a surface than this a box may only be pushed by closing fingers: 0.05 each, and a little more
 at the moment they touch it."""
+AISLE = 0.0
+"""Behind the robot, on the side where no table stands (x and y below this), people pass."""
 PAST = 0.4
 """No box of the batch goes further along the belt than this (y): it would be beyond the arm's reach."""
 
 
 def watch_gripper(cell: Cell) -> None:
-    """For every test case: no finger touches what boxes lie on, and the arm waits for the fingers."""
+    """For every test case: the fingers touch nothing, the arm waits for them and keeps to its side."""
     place = once_per_tick(cell, cell.truth.tool_position)
     motion = Motion(cell, place)
 
@@ -45,6 +47,7 @@ def watch_gripper(cell: Cell) -> None:
         return tool.z + BASE_HEIGHT - FINGERS - _top(tool.x)
 
     cell.always(lambda: clearance() > FINGER_CLEARANCE, "the fingers keep clear of belt and table")
+    cell.always(lambda: place().x > AISLE or place().y > AISLE, "the arm keeps out of the aisle")
     cell.always(
         lambda: motion.speed() < STANDING or clearance() > NEAR or not LOOSE < cell.truth.opening() < OPEN,
         "the arm waits for the fingers",

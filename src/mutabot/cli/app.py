@@ -31,14 +31,12 @@ from .options import Version, with_options
 _LONGEST = 400
 #: mutabot's own commands: their module in this folder, and what ``--help`` says of them
 _OWN = {
-    "init": ("campaign:init", "Draft a configuration and a vocabulary."),
     "check": ("campaign:check", "Try the set-up without running mutants."),
     "list": ("campaign:list_", "List the mutants that would run."),
     "operators": ("campaign:operators", "List the operators and the bugs they stand for."),
     "run": ("campaign:run", "Run the campaign, or continue it."),
     "merge": ("campaign:merge", "Merge the journals of shards."),
     "replay": ("campaign:replay", "Re-run one mutant in fresh processes."),
-    "suggest": ("campaign:suggest", "Suggest checks that kill survivors."),
     "results": ("results:results", "List mutants, scores and survivors."),
     "show": ("results:show", "Show the details of one mutant."),
     "thresholds": ("results:thresholds", "Show how large a fault the tests miss."),
@@ -88,8 +86,11 @@ class Commands(TyperGroup):
     """
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Return all names."""
-        return [*_OWN, *brought("commands", _OWN)]
+        """Return all names, in the order in which ``--help`` lists them."""
+        names = [*_OWN]
+        for part in brought("commands", _OWN).values():
+            names.insert(names.index(part.before) if part.before in names else len(names), part.name)
+        return names
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return the help of a command; None if there is no such command."""

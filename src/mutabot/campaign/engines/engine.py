@@ -175,8 +175,8 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)
     for reason, names in tests.items():
-        where = f"in {in_short(names, 1)}" if names[0] else "while the program is imported"
-        campaign.progress.note(f"no forks {where}: {reason}; mutants there run in processes of their own")
+        where = f"no forks in {in_short(names, 1)}" if names[0] else "no forks while the program is imported"
+        campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
     if left.apart:
         text = "each is in place from the start of each test, in a process of its own"
         campaign.progress.note(f"{len(left.apart)} mutants: {text}")
