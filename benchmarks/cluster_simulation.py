@@ -316,7 +316,7 @@ def measure(replay: Path, fork: Path, controllers: Sequence[Path], how: str) -> 
         "made_by": how,
         "mutabot": meta["mutabot"],
         "costs": {
-            "mutants": meta[DRAWING]["selected"] if DRAWING in meta else len(Counter(sessions)),
+            "mutants": meta[DRAWING].selected if DRAWING in meta else len(Counter(sessions)),
             "suite": round(sum(sum(each) / len(each) for each in walls.values()) / rounds, 3),
             "replay": [round(one, 3) for one in sorted(sessions)],
             "fork": [round(one, 4) for one in sorted(forks)],

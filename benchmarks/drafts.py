@@ -21,9 +21,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import mutabot_init.propose
 from mutabot.config.vocabulary import load
-from mutabot.init import propose
 from mutabot.model import Vocabulary
+from mutabot_init.propose import propose
 
 FOLDER = Path(__file__).parent / "drafts"
 #: wrong among all proposed lines, at most
@@ -38,7 +39,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", help="libraries; without any, all")
     parser.add_argument("--show", action="store_true", help="print the drafts and what differs")
     given = parser.parse_args()
-    sys.modules["mutabot.init.propose"].shipped = lambda: []  # type: ignore[attr-defined]
+    mutabot_init.propose.shipped = lambda: []  # type: ignore[attr-defined]
     names = given.names or sorted(path.stem for path in FOLDER.glob("*.toml"))
     title = "operations: right | wrong | missing | quantities: right | wrong | asked | missing"
     print(f"| library | {title} | edits |\n|{'---|' * 9}")

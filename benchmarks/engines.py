@@ -41,9 +41,8 @@ from rich.console import Console
 from rich.table import Table
 
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.engine import ForkParents, Unhandled, replay
-from mutabot.campaign.engines.tasks import MutantRun
+from mutabot.campaign.campaign import Campaign, MutantRun
+from mutabot.campaign.engines.engine import Unhandled, replay, run_forks
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected
@@ -210,7 +209,7 @@ def run_pairs(engine: str, campaign: Campaign, trials: list[MutantRun]) -> Itera
     """All outcomes; what a fork parent could not do is replayed, as in a campaign."""
     if engine == "fork":
         left = Unhandled()
-        yield from ForkParents(campaign, left).run(trials)
+        yield from run_forks(campaign, trials, left)
         yield from replay(campaign, left.runs)
         return
     if engine == "fresh":

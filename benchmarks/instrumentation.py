@@ -6,6 +6,7 @@ Usage: python benchmarks/instrumentation.py
 from __future__ import annotations
 
 import ast
+import builtins
 import sys
 import tempfile
 import time
@@ -18,10 +19,10 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Instrumentation, ProgramText
+from mutabot.model.mutant import RUNTIME
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text.instrument import instrumented
+from mutabot.runtime.program_text.instrument import SessionText, instrumented
 from mutabot.runtime.program_text.loading import compile_tree
-from mutabot.runtime.program_text.session_text import SessionText
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
 
@@ -122,7 +123,7 @@ def _hooked(folder: Path, text: ProgramText, *, record: bool = False) -> Callabl
         run: Callable[[int], Any] = _loaded(folder / text.file).run
     finally:
         loading._steps.remove(hook)
-    (hook.sightings or hook.alternatives).install()
+    setattr(builtins, RUNTIME, (hook.sightings or hook.alternatives).switches)
     if hook.sightings is not None:
         hook.sightings.start()
     return run

@@ -169,7 +169,7 @@ def _inside(job: dict[str, Any]) -> None:
     answer = Path.cwd() / "answer.json"
     hook = None
     if job["instrumentation"] is not None:
-        from mutabot.runtime.program_text.session_text import SessionText  # noqa: PLC0415  # only where it is needed
+        from mutabot.runtime.program_text.instrument import SessionText  # noqa: PLC0415  # only where it is needed
 
         hook = SessionText(job["root"], from_data(Instrumentation, job["instrumentation"]))
     for name in list(sys.modules):

@@ -80,7 +80,7 @@ def rows_of(request: Request, *, whole: bool = False) -> tuple[Rows, float]:
     ``whole``: run every magnitude of a ladder in every round, instead of searching.
     """
     began = time.monotonic()
-    splits = patch("mutabot.campaign.budget.split_ladders", lambda mutants: (mutants, []))
+    splits = patch("mutabot.campaign.schedule.split_ladders", lambda mutants: (mutants, {}))
     with splits if whole else nullcontext():
         path = run_campaign(request, Silent())
     seconds = time.monotonic() - began

@@ -14,8 +14,7 @@ from pathlib import Path
 
 import configuration_page
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE
-from mutabot.operators import Need, Operator, operator
-from mutabot.operators.registry import built_in
+from mutabot.operators import Need, Operator, names, operator
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -101,7 +100,7 @@ def page_of_middleware() -> str:
 
 
 def _operators(*, of_middleware: bool) -> list[Operator]:
-    found = (operator(name) for name in built_in())
+    found = (operator(name) for name in names())
     return [one for one in found if (one.family == MIDDLEWARE) is of_middleware]
 
 

@@ -22,8 +22,8 @@ def files() -> list[Path]:
 
 
 def imports(file: Path) -> Iterator[str]:
-    """Absolute names of the modules a file imports."""
-    package = ["mutabot", *file.relative_to(SOURCE).parent.parts]
+    """Absolute names of the modules that a file of the package, or of one beside it, imports."""
+    package = [*file.relative_to(SOURCE.parent).parent.parts]
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -36,12 +36,12 @@ def imports(file: Path) -> Iterator[str]:
 
 @cache
 def _modules() -> frozenset[str]:
-    return frozenset(map(name_of, files()))
+    return frozenset(map(name_of, SOURCE.parent.rglob("*.py")))
 
 
 def name_of(file: Path) -> str:
     """The name a module is imported under."""
-    names = ["mutabot", *file.relative_to(SOURCE).with_suffix("").parts]
+    names = [*file.relative_to(SOURCE.parent).with_suffix("").parts]
     return ".".join(names[:-1] if names[-1] == "__init__" else names)
 
 

@@ -8,7 +8,7 @@ since reading entry points is slow.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import field
 from functools import cache
 from importlib import import_module
@@ -27,7 +27,17 @@ if TYPE_CHECKING:
 INTERFACE = 1
 GROUP = "mutabot"
 #: what comes with mutabot's own packages: who asks for it is told which one is not installed
-_OF_OWN_PACKAGES = {"cluster": "mutabot_dask", "live": "mutabot_live", "motion": "mutabot_motion"}
+_OF_OWN_PACKAGES = {
+    "commands": {
+        "init": "mutabot_init",
+        "live": "mutabot_live",
+        "motion": "mutabot_motion",
+        "suggest": "mutabot_suggest",
+    },
+    "executors": {"cluster": "mutabot_dask"},
+    "tables": {"cluster": "mutabot_dask"},
+    "operators": dict.fromkeys(("catalogue", "middleware"), "mutabot_catalogue"),
+}
 #: kinds of parts that processes of the tests need
 _OF_PROCESSES = ("operators", "middlewares", "environments", "futures")
 #: those that are modules of the packages themselves
@@ -45,11 +55,13 @@ class Described:
         reference: ``module:attribute``.
         help: what it does, in one sentence.
         metavar: what stands for the value of an option.
+        before: the command before which ``--help`` lists a command; it stands last without.
     """
 
     reference: str
     help: str
     metavar: str = "TEXT"
+    before: str = ""
 
 
 @frozen
@@ -110,7 +122,7 @@ class ExtensionPart:
         name: its name among those of its kind.
         reference: ``module:attribute`` or ``module``; of a file ``package:file``.
         owner: the distribution that brings it.
-        help, metavar: as in ``Described``; empty for what is not.
+        help, metavar, before: as in ``Described``; empty for what is not.
     """
 
     name: str
@@ -118,6 +130,7 @@ class ExtensionPart:
     owner: str
     help: str = ""
     metavar: str = ""
+    before: str = ""
 
     def load(self) -> Any:
         """Import it. Raises ExtensionError, naming the part and its package, if that fails."""
@@ -207,13 +220,15 @@ def versions() -> tuple[str, ...]:
 def _part(name: str, declared: str | Described, owner: str) -> ExtensionPart:
     if isinstance(declared, str):
         return ExtensionPart(name, declared, owner)
-    return ExtensionPart(name, declared.reference, owner, declared.help, declared.metavar)
+    return ExtensionPart(name, declared.reference, owner, declared.help, declared.metavar, declared.before)
 
 
 def not_installed(name: str, kind: str) -> str | None:
     """What to say of a part that one of mutabot's own packages brings, and is missing; else None."""
-    package = _OF_OWN_PACKAGES.get(name)
-    if package is None or name in brought(kind):
+    package = _OF_OWN_PACKAGES.get(kind, {}).get(name)
+    if package is None or name in (found := brought(kind)):
+        return None
+    if any(package == _package(part.reference) for part in found.values()):  # a family of its operators
         return None
     return f"comes with the package {package}, which is not installed"
 
@@ -260,18 +275,10 @@ def _declared() -> tuple[tuple[str, Extension], ...]:
     found = [(_owner(entry), entry) for entry in metadata.entry_points(group=GROUP)]
     return tuple(
         (owner, _read(owner, entry))
-        for owner, entry in _in_order(found)
-        if owner != GROUP or _is_there(entry)
+        for owner, entry in sorted(found, key=lambda one: (one[0] != GROUP, one[0], one[1].name))
+        # each package of our own can be left out
+        if owner != GROUP or find_spec(entry.module.partition(".")[0]) is not None
     )
-
-
-def _is_there(entry: EntryPoint) -> bool:
-    """Whether a package of our own is installed: each can be left out."""
-    return find_spec(entry.module.partition(".")[0]) is not None
-
-
-def _in_order(found: Iterable[tuple[str, EntryPoint]]) -> list[tuple[str, EntryPoint]]:
-    return sorted(found, key=lambda one: (one[0] != GROUP, one[0], one[1].name))
 
 
 def _owner(entry: EntryPoint) -> str:

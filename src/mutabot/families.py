@@ -1,4 +1,4 @@
-"""Families of the core's own mutants, and the providers that make them: their names, said once.
+"""Families of mutabot's own mutants of calls, and the providers that make them: their names, said once.
 
 A family is what a user asks for by ``--family`` or ``families``, and what has a score of its own. Operators
 name the one they belong to. Families of packages are those of their providers (``mutabot.faults``), and an
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 ROBOT = "robot"
 GRADED = "graded"
+#: their operators are those of ``mutabot_catalogue``
 CATALOGUE = "catalogue"
 MIDDLEWARE = "middleware"
 #: mutabot's own mutants, which nobody asks for

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from mutabot.errors import UsageError, unknown_name_text
-from mutabot.extensions import brought
+from mutabot.extensions import brought, not_installed
 from mutabot.families import OF_CALLS
 from mutabot.frozen import frozen
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
@@ -212,7 +212,10 @@ def need_vocabulary(families: Iterable[str]) -> bool:
 
 def why_unknown(name: str) -> str | None:
     """Why there is no family of this name, with the nearest that is there; None if there is one."""
-    if name in OF_CALLS or name in families_brought() or name in known_families():
+    if name in OF_CALLS:
+        why = not_installed(name, "operators")
+        return why and f"the family {name} {why}"
+    if name in families_brought() or name in known_families():
         return None
     return unknown_name_text("family", name, known_families())
 

@@ -12,8 +12,6 @@ SEED = 2**53 - 1
 BASELINES = 1_000
 #: outcomes to look at again: all that there are
 VERIFIED = 1_000_000_000
-#: fresh seeds of suggested checks: each is run
-SEEDS = 10_000
 #: seconds, 11 days: what a system can wait for at once is no more than twice of it
 SECONDS = 1_000_000
 #: times the time of the original

@@ -21,7 +21,7 @@ from mutabot.cli import options
 from mutabot.cli.campaign import show_end
 from mutabot.cli.output import tell
 from mutabot.cli.request import request_of
-from mutabot.report.terminal.progress import Pace
+from mutabot.report.terminal.console import Pace
 from mutabot.report.texts import legible
 
 from .pages import Pages

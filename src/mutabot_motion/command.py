@@ -26,7 +26,6 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.journal import JournalReader
 from mutabot.journal.records import REACHING, Reaching
 from mutabot.model import Diverged, Mutant, Outcome
-from mutabot.model.codec import from_data
 from mutabot.results.results import MutantResult, Results, find_mutant, read_results
 from mutabot.results.stored import StoredEvidence
 
@@ -107,10 +106,10 @@ def _tells(outcome: Outcome) -> tuple[bool, float, int]:
 
 
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
-    found = results.meta.get(REACHING)
+    found: Reaching | None = results.meta.get(REACHING)
     if found is None:  # an older journal does not say it
         return tuple(dict.fromkeys(one.test.test for one in results.baseline))
-    return from_data(Reaching, found).at(result.mutant.site.id)
+    return found.at(result.mutant.site.id)
 
 
 def _telling(outcome: Outcome | None) -> list[str]:

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.tasks import task
 from mutabot.errors import SelectionError
 from mutabot.evidence.recording import Recording, bytes_of, from_bytes
 from mutabot.execution.task import Result, Task, death
@@ -90,7 +89,7 @@ def _leading_to(campaign: Campaign, mutant: Mutant, round: int, test: str) -> tu
 def _tasks(
     campaign: Campaign, mutant: Mutant, round: int, tests: tuple[str, ...], folder: Path
 ) -> Iterator[Task]:
-    planned = task(campaign, mutant, round, tests, stop=False)
+    planned = campaign.task(mutant, round, tests, stop=False)
     for name, whose in (("original", None), ("mutant", mutant)):
         job: Job = replace(
             planned.job,

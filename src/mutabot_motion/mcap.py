@@ -13,7 +13,7 @@ import foxglove
 from foxglove import channels, messages
 
 from mutabot.evidence.recording import Block
-from mutabot.evidence.tracks import TrackPath as Way
+from mutabot.evidence.story import TrackPath as Way
 
 from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
 

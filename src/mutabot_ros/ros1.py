@@ -18,8 +18,7 @@ from mutabot.model import Operation
 from mutabot.model.operation import Form
 from mutabot.runtime.interception.dispatcher import is_under_way
 from mutabot.runtime.processes.member import note_node
-from mutabot.runtime.targets.messages import anew, deliver, wait_for
-from mutabot.runtime.targets.target import Finding, Names
+from mutabot.runtime.targets.target import Finding, Names, anew, deliver, wait_for
 
 from . import _ros1_node as node
 from ._patches import Patches, code_of

@@ -11,8 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mutabot.model.operation import Form
-from mutabot.runtime.targets.messages import deliver
-from mutabot.runtime.targets.target import Names
+from mutabot.runtime.targets.target import Names, deliver
 
 from . import _ros1_node as node
 from ._patches import Patches, code_of

@@ -18,7 +18,7 @@ _LINE_ENDS = re.compile(r"\r\n|\r|\n")
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
-class Tree:
+class ModuleTree:
     """The syntax tree of a module and its text.
 
     Args:

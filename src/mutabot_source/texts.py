@@ -20,7 +20,7 @@ from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPla
 from . import registry
 from .extension import CONVENTIONAL
 from .index import Index, ScopedNode
-from .nodes import Tree, is_variable, shortened, shown, template
+from .nodes import ModuleTree, is_variable, shortened, shown, template
 from .operator import ConventionalOperator, Draft
 
 #: characters of the longest expression that is worth an alternative; tables are longer
@@ -55,7 +55,7 @@ def find_places(
     """The places of one file that the rules have to do with, in the order of the text, and its index."""
     tree = ast.parse(source, file)
     index = Index.of(tree)
-    finder = _Finder(Tree(_decoded(source), tree), list(rules), index)
+    finder = _Finder(ModuleTree(_decoded(source), tree), list(rules), index)
     counts: Counter[tuple[str, str, str]] = Counter()
     places: list[TextPlace] = []
     for number, seed in enumerate(sorted(finder.seeds(), key=_order), first):
@@ -76,7 +76,7 @@ class _Seed:
     kept: list[Extent] = field(default_factory=list)
     alternatives: list[Alternative] = field(default_factory=list)
 
-    def place(self, number: int, file: str, tree: Tree) -> TextPlace:
+    def place(self, number: int, file: str, tree: ModuleTree) -> TextPlace:
         text = tree.segment(self.extent)
         statement = isinstance(self.found.node, ast.stmt)
         scope = self.found.scope
@@ -100,7 +100,7 @@ def _order(seed: _Seed) -> tuple[int, int, int, int]:
 
 
 class _Finder:
-    def __init__(self, tree: Tree, rules: list[ConventionalOperator], index: Index) -> None:
+    def __init__(self, tree: ModuleTree, rules: list[ConventionalOperator], index: Index) -> None:
         self.tree = tree
         self._rules = rules
         self._index = index

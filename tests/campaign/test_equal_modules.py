@@ -60,7 +60,7 @@ def by_file(mutants: list[Mutant]) -> dict[str, set[str]]:
 @pytest.mark.parametrize(
     "families",
     [
-        ("robot", "graded", "catalogue"),
+        pytest.param(("robot", "graded", "catalogue"), marks=pytest.mark.needs("catalogue")),
         pytest.param(("conventional",), marks=pytest.mark.needs("source")),
         pytest.param(("robot", "conventional"), marks=pytest.mark.needs("source")),
     ],

@@ -10,6 +10,8 @@ from mutabot.campaign.run import plan_only
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import Quiet, by_forks, request_for, write_project
 
+pytestmark = pytest.mark.needs("catalogue")
+
 ROBOT = """
     import numpy as np
 

@@ -22,7 +22,7 @@ from mutabot.model import Outcome, Verdict
 from results import samples
 from tests.processor_time import used
 
-COMMANDS = ("init", "check", "list", "run", "results", "show", "report", "replay")
+COMMANDS = ("check", "list", "run", "results", "show", "report", "replay")
 
 
 @pytest.fixture
@@ -73,6 +73,28 @@ def test_help_works_in_any_folder_and_names_every_command(
     for command in COMMANDS:
         assert command in text
         assert main([command, "--help"]) == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.needs("init", "suggest", "live", "motion")
+def test_help_lists_commands_in_the_order_in_which_they_are_used(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    listed = capsys.readouterr().out.partition("Commands:\n")[2].splitlines()
+    assert [line.split()[0] for line in listed] == [
+        "init", "check", "list", "operators", "run", "merge", "replay", "suggest", "results", "show",
+        "thresholds", "report", "live", "motion",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "command", [pytest.param(one, marks=pytest.mark.needs(one)) for one in ("init", "suggest")]
+)
+def test_help_of_a_command_of_a_package_writes_nothing(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([command, "--help"]) == 0
+    assert f"Usage: mutabot {command} [OPTIONS]" in capsys.readouterr().out
     assert list(tmp_path.iterdir()) == []
 
 

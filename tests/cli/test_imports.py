@@ -15,11 +15,13 @@ from results.thresholds import journals
 #: what runs a campaign, and what that needs
 NOT_FOR_LOOKING = (
     "mutabot.model.job", "mutabot.campaign", "mutabot_source", "mutabot.runtime",
-    "mutabot.operators", "mutabot.init", "mutabot.config", "mutabot.config.vocabulary", "libcst", "numpy",
-    "scipy", "tomllib", "wrapt",
+    "mutabot.operators", "mutabot.config", "mutabot.config.vocabulary", "mutabot_init", "mutabot_suggest",
+    "libcst", "numpy", "scipy", "tomllib", "wrapt",
 )  # fmt: skip
 #: what says what a package brings, which may be a section of the results
-DECLARING = {"mutabot_source", "mutabot_source.extension"}
+DECLARING = {
+    f"mutabot_{package}{module}" for package in ("init", "source", "suggest") for module in ("", ".extension")
+}
 CODE = """
 import sys
 from mutabot.cli.app import main

@@ -27,6 +27,7 @@ def test_all_operators_are_there_family_by_family(capsys: pytest.CaptureFixture[
     )
 
 
+@pytest.mark.needs("catalogue")
 def test_one_family_says_what_each_stands_for_and_where(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["operators", "--family", "catalogue"]) == 0
     text = " ".join(capsys.readouterr().out.split())

@@ -83,7 +83,7 @@ def test_a_campaign_that_is_terminated_ends_cleanly_and_goes_on_later(
 def test_it_is_ctrl_c_to_whoever_listens_and_gone_afterwards() -> None:
     with terminated_like_ctrl_c() as termination, pytest.raises(KeyboardInterrupt):
         signal.raise_signal(signal.SIGTERM)
-    assert termination.has_come
+    assert termination
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
@@ -92,6 +92,6 @@ def test_who_handles_or_ignores_it_already_goes_on_to_do_so() -> None:
     try:
         with terminated_like_ctrl_c() as termination:
             signal.raise_signal(signal.SIGTERM)
-        assert not termination.has_come
+        assert not termination
     finally:
         signal.signal(signal.SIGTERM, before)

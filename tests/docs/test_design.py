@@ -82,7 +82,7 @@ CONFIGURED = """
     vocabulary = ["robot.toml"]
     pytest_args = ["-p", "telling", "-o", "pythonpath=."]
 """
-REPORT, PLAN = "runtime.isolation.forked_run.ForkedRun._report", "journal.journal.Journal.set_plan"
+REPORT, PLAN = "runtime.test_hooks.ForkedRun._report", "journal.journal.Journal.set_plan"
 #: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
     "A call through a mutant": ("replay", ["runtime.interception.active_mutant.ActiveMutant.apply"]),

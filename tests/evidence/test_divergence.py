@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mutabot.evidence.recording import RecordedCall, Recording
-from mutabot.evidence.story import diverged
-from mutabot.evidence.tracks import RecordedPaths, noise_between
+from mutabot.evidence.story import RecordedPaths, diverged, noise_between
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
 
 #: up from the shelf, over to the table, down, and away

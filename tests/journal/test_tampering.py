@@ -113,7 +113,7 @@ def test_what_others_change_while_a_campaign_runs_is_written_again_and_named(
         assert tuple(reader.mutants()) == samples.MUTANTS
         assert reader.finished == "complete"
         assert reader.meta()["rounds"] == 2
-        assert reader.meta()["altered"] == journal.altered
+        assert list(reader.meta()["altered"]) == journal.altered
         assert not reader.set_aside
 
 

@@ -143,7 +143,8 @@ def test_the_attack_would_succeed_with_a_journal_that_is_believed(
 @pytest.mark.parametrize(
     "words",
     [
-        ["results"], ["show", "1"], ["thresholds"], ["check"], ["suggest"],
+        ["results"], ["show", "1"], ["thresholds"], ["check"],
+        pytest.param(["suggest"], marks=pytest.mark.needs("suggest")),
         ["report", "--format", "markdown"],
         ["merge", ".mutabot"], ["run"],
     ],

@@ -15,21 +15,28 @@ from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.operators.command import CONTROLS
 
 SOURCE = Path(mutabot.__file__).parent
+#: packages beside the core, where they are installed: they draft vocabularies and checks for any operator
+BESIDE = ("mutabot_init", "mutabot_suggest")
 ROOMS = {"operators"}
 NAMES = {*operators.names(), *operators_of_packages(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
-    "opposite": {"init", "config/vocabulary"},
+    "opposite": {"mutabot_init", "config/vocabulary"},
     "noise": {"config/vocabulary"},
     "skip": {"cli"},
     "reverse": {"campaign/baseline/writes.py"},  # a method of lists
-    "drop": {"init"},
-    "delay": {"init"},
-    "offset": {"init", "model"},  # what a demand means that names none
+    "drop": {"mutabot_init"},
+    "delay": {"mutabot_init"},
+    "offset": {"mutabot_init", "model"},  # what a demand means that names none
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)
-FILES = [file for file in sorted(SOURCE.rglob("*.py")) if file.relative_to(SOURCE).parts[0] not in ROOMS]
+FILES = {
+    file.relative_to(home).as_posix(): file
+    for home, folder in [(SOURCE, SOURCE), *((SOURCE.parent, SOURCE.parent / name) for name in BESIDE)]
+    for file in sorted(folder.rglob("*.py"))
+    if file.relative_to(home).parts[0] not in ROOMS
+}
 
 
 def literals(tree: ast.AST) -> Iterator[ast.Constant]:
@@ -58,8 +65,7 @@ def is_otherwise(name: str, file: str) -> bool:
 
 def test_no_operator_is_named() -> None:
     assert len(FILES) > 100
-    for file in FILES:
-        name = file.relative_to(SOURCE).as_posix()
+    for name, file in FILES.items():
         assert not knows(ast.parse(file.read_text(encoding="utf-8")), name), name
 
 

@@ -12,7 +12,8 @@ import pytest
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.units import distance, inverse
 from mutabot.operators import operator
-from mutabot.operators.value import disturbed, the_other_way
+from mutabot.operators.kinds.readings import disturbed
+from mutabot.operators.value import the_other_way
 
 KINDS = {
     "rotation_vector": (Quantity("o", Path("o"), Kind.ROTATION_VECTOR, unit="deg"), [10.0, -20.0, 30.0]),

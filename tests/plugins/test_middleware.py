@@ -52,7 +52,7 @@ SITE = {
         import sys
         from functools import partial
 
-        from mutabot.runtime.targets.messages import deliver
+        from mutabot.runtime.targets.target import deliver
         from mutabot.runtime.targets.target import MiddlewareControls
         from mutabot.runtime.targets.target import Where
         from mutabot.model.operation import Form
@@ -183,6 +183,7 @@ def verdicts(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
     return {name: (end["verdict"], end["by"]) for name, end in ends.items()}
 
 
+@pytest.mark.needs("catalogue")
 @pytest.mark.parametrize(
     ("tests", "operators"),
     [
@@ -207,6 +208,7 @@ def test_its_messages_are_mutated(tests: str, operators: tuple[str, ...], site: 
     }
 
 
+@pytest.mark.needs("init")
 def test_init_proposes_its_topics(site: Path, project: Path) -> None:
     for name in ("mutabot.toml", "robot.toml"):
         (project / name).unlink()

@@ -34,7 +34,7 @@ EXTENSION = """
         interface=1,
         executors={"toy": Described("toy.parts:Choice", "Run it on toys.", "HOW")},
         tables={"toy": "toy.parts:ToyTable"},
-        commands={"play": Described("toy.parts:play", "Play with the campaign.")},
+        commands={"play": Described("toy.parts:play", "Play with the campaign.", before="list")},
         formats={"toys": "toy.parts:toys"},
         sections={"toys": "toy.parts:count"},
     )
@@ -210,6 +210,16 @@ def test_a_command_of_a_package_has_the_options_that_it_asks_for(site: Path, pro
     assert "did you mean 'play'" in mutabot_with(site, project, "plai").stderr.lower()
 
 
+@pytest.mark.parametrize(("before", "follows"), [("list", "list"), ("lst", "")])
+def test_help_lists_a_command_before_the_one_that_its_package_names_else_last(
+    before: str, follows: str, tmp_path: Path
+) -> None:
+    site = package(tmp_path, EXTENSION.replace('before="list"', f'before="{before}"'), PARTS)
+    listed = mutabot_with(site, tmp_path, "--help").stdout.partition("Commands:\n")[2].splitlines()
+    names = [line.split()[0] for line in listed]
+    assert [*names, ""][names.index("play") + 1] == follows
+
+
 def test_help_tells_of_packages_and_imports_none_of_them(site: Path) -> None:
     code = (
         "import sys; from mutabot.cli.app import main\n"
@@ -218,7 +228,9 @@ def test_help_tells_of_packages_and_imports_none_of_them(site: Path) -> None:
     for words in (["--help"], ["run", "--help"]):
         done = python(site, "-c", code, *words)
         assert ("Play with the campaign." if len(words) == 1 else "--toy HOW") in done.stdout
-        packages = ("toy.", "mutabot_dask.", "mutabot_live.", "mutabot_motion.")
+        packages = (
+            "toy.", "mutabot_dask.", "mutabot_init.", "mutabot_live.", "mutabot_motion.", "mutabot_suggest.",
+        )  # fmt: skip
         loaded = {name for name in done.stderr.split() if name.startswith(packages)}
         assert {name for name in loaded if not name.endswith(".extension")} == set()
 
@@ -267,7 +279,14 @@ def test_a_part_that_is_not_what_it_should_be_is_named(
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder without these packages beside the core."""
-    ignored = shutil.ignore_patterns("mutabot_dask", "mutabot_live", "mutabot_motion")
+    ignored = shutil.ignore_patterns(
+        "mutabot_catalogue",
+        "mutabot_dask",
+        "mutabot_init",
+        "mutabot_live",
+        "mutabot_motion",
+        "mutabot_suggest",
+    )
     source = Path(mutabot.__file__).parents[1]
     return Path(shutil.copytree(source, tmp_path_factory.mktemp("site") / "alone", ignore=ignored))
 
@@ -285,9 +304,12 @@ sys.exit(main(sys.argv[1:]))
 @pytest.mark.parametrize(
     ("words", "told"),
     [
+        (["init"], "the command init comes with the package mutabot_init, which is not installed"),
+        (["suggest"], "the command suggest comes with the package mutabot_suggest, which is not installed"),
         (["live"], "the command live comes with the package mutabot_live, which is not installed"),
         (["motion", "3"], "the command motion comes with the package mutabot_motion, which is not installed"),
         (["run", "--cluster", "local:2"], "--cluster comes with the package mutabot_dask, which is not"),
+        (["list", "--family", "catalogue"], "the family catalogue comes with the package mutabot_catalogue"),
         (["list"], "pyproject.toml:5 · tool.mutabot.cluster: comes with the package mutabot_dask, which"),
     ],
 )
@@ -299,3 +321,13 @@ def test_what_a_package_of_ours_brings_that_is_not_installed_is_named(
     done = python(alone, "-c", ALONE, "-C", str(project), *words)
     assert done.returncode == USAGE, done.stdout
     assert f"mutabot: {told}" in done.stderr
+
+
+@pytest.mark.parametrize("option", ["--live", "--init"])
+def test_a_command_that_is_not_installed_is_no_missing_option(
+    option: str, alone: Path, project: Path
+) -> None:
+    done = python(alone, "-c", ALONE, "-C", str(project), "run", option)
+    assert done.returncode == USAGE
+    assert f"No such option: {option}" in done.stderr
+    assert "which is not installed" not in done.stderr

@@ -23,8 +23,7 @@ from mutabot.model.operation import Form
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
-from mutabot.runtime.targets.messages import Messages, deliver, wait_for
-from mutabot.runtime.targets.target import MiddlewareControls, Where
+from mutabot.runtime.targets.target import Messages, MiddlewareControls, Where, deliver, wait_for
 from tests.runtime.stage import take_away
 
 from .stage import ListPipe
@@ -262,4 +261,5 @@ class ClientStage:
         assert session.meter is not None
         self.counted = session.meter.operations
         take_away(session)
-        return result, client, session.activations[0]
+        assert session.mutant is not None
+        return result, client, session.mutant

@@ -141,7 +141,8 @@ class Stage:
         )
         session = self.session(mutant)
         result = self.run(session)
-        return result, session.activations[0]
+        assert session.mutant is not None
+        return result, session.mutant
 
 
 def _site(span: Span) -> Site:
@@ -158,7 +159,7 @@ def take_away(session: Session) -> None:
     """Let nothing of a session act any more: only tests have several in one process."""
     session.passing.meter = None
     sites: Any = session.call_sites
-    sites._stands, sites._hands = (lambda site, found, receiver, frame: found), None
+    sites.stands, sites.hands = (lambda site, found, receiver, frame: found), None
     for step in (sites, session.text, session.returns):
         forget(step)
     for target, original in session.callables.found.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from mutabot.runtime.audit import FRAMES, listen
+from mutabot.runtime.processes.environment import FRAMES, listen
 
 
 def test_a_listener_hears_what_it_asked_for_and_nothing_else() -> None:

@@ -20,8 +20,8 @@ def endless() -> dict[str, Any]:
 
 @pytest.mark.parametrize("value", [{(1, 2): 3}, endless()], ids=["keys that are no texts", "in a circle"])
 def test_values_that_cannot_be_written_cost_the_calls_alone(value: Any) -> None:
-    recording = TestRecording()
-    recording.start(True, "tests/test_it.py::test_it", lambda: 1.0, nullcontext, is_simulated=True)
+    recording = TestRecording(lambda: 1.0, nullcontext, True)
+    recording.start("tests/test_it.py::test_it", is_wanted=True)
     recording.note_fault(1, 0.5)
     recording.stop()
     text = recording.text(

@@ -131,9 +131,9 @@ def test_noise_is_the_same_for_the_same_seed_and_differs_between_hits(make_stage
     first = make_stage(ROBOT, program, VOCABULARY)
     readings, activation = first.mutated("noise", "result")
     assert len(set(readings)) == 3
-    activation.start(7)
+    activation.start(7, 0, "", None, frozenset())
     again = first.run(first.sessions[-1])
-    activation.start(7)
+    activation.start(7, 0, "", None, frozenset())
     assert first.run(first.sessions[-1]) == again
     assert activation.evidence.acted == 3
 
@@ -254,7 +254,7 @@ def test_an_operator_that_fails_is_a_failure_of_the_tool_not_of_the_program(make
     stage.load_robot().locate = lambda: None  # where the robot is cannot be read
     with pytest.raises(TypeError):
         stage.mutated("by-to", "x")
-    activation = stage.sessions[-1].activations[0]
+    activation = stage.sessions[-1].mutant
     assert activation is not None
     assert "operator by-to" in (activation.evidence.failure or "")
 

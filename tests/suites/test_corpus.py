@@ -29,6 +29,7 @@ def test_every_verdict_is_that_of_plain_pytest(name: str) -> None:
 
 
 @pytest.mark.whole
+@pytest.mark.needs("catalogue")
 def test_every_verdict_on_the_catalogue_is_that_of_plain_pytest() -> None:
     found = compare(
         PROJECTS / "fault_catalogue", families=("catalogue",), only={"catalogue": 2 * MUTANTS},

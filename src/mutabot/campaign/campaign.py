@@ -8,14 +8,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 from mutabot.campaign.baseline.baseline import Baseline, Sources
 from mutabot.campaign.evidence import CampaignEvidence
 from mutabot.campaign.request import Progress, Request
-from mutabot.execution.task import Executor
+from mutabot.execution.task import Executor, Task
 from mutabot.execution.workers import Workers
 from mutabot.families import CONTROL
 from mutabot.model import Mutant, Outcome
+from mutabot.model.job import Job
+
+#: a mutant in a round
+MutantRun = tuple[Mutant, int]
+#: how many times its baseline's wall clock a test may take before the safety net ends it
+WALL_FACTOR = 10.0
 
 
 @dataclass(frozen=True)
@@ -30,7 +37,7 @@ class Campaign:
         progress: is told what is going on.
         evidence: what is recorded; None if nothing is.
         proven: ways of running that controls have proven: an engine and ``Control.way``.
-        is_short: whether mutants are run without tests that do not reach them, see ``engines.confirmation``.
+        is_short: whether mutants are run without tests that do not reach them, see ``campaign.schedule``.
         real: the same over the real middleware, if this one is over a simulation of it.
         again: outcomes that were found so, and are to be found with the whole suite before they count.
     """
@@ -63,6 +70,46 @@ class Campaign:
             for mutant in (mutants if self.is_short else ())
             if mutant.family != CONTROL
         }
+
+    def task(self, mutant: Mutant, round: int, tests: tuple[str, ...], *, stop: bool = True) -> Task:
+        """The task of running these tests as this mutant in a process of its own."""
+        request, faults = self.request, self.baseline.faults
+        job = self.job(
+            round, tests, [mutant],
+            mutant=mutant,
+            stop_at_kill=stop and not request.every_test,
+            instrumentation=faults.instrumentation([mutant], active=True),
+            faults=faults.in_process(mutant),
+        )  # fmt: skip
+        walls, least = self.wall_limits(round, tests), request.configuration.timeout_seconds
+        alone = self.baseline.is_exclusive(round)
+        return Task((mutant, round), job, walls, least, self.startup_limit, alone=alone)
+
+    def job(self, round: int, tests: tuple[str, ...], mutants: Iterable[Mutant], **details: Any) -> Job:
+        """The job of running these tests as these mutants, with the limits that the baseline gives."""
+        factor = self.request.configuration.timeout_factor
+        refused = ((test, self.baseline.refused.get((round, test))) for test in tests)
+        return self.request.job(
+            round,
+            tests=tests,
+            record=True,
+            reaching=self.reaching(mutants, round),
+            budgets={test: self.baseline.budget(round, test, factor) for test in tests},
+            moments=self.baseline.probe_intervals.get(round, {}),
+            refused={test: calls for test, calls in refused if calls},
+            known=self.baseline.known,
+            **details,
+        )
+
+    @property
+    def startup_limit(self) -> float:
+        """Seconds of wall clock that a mutant may take until its first test begins."""
+        return max(self.request.configuration.timeout_seconds, WALL_FACTOR * self.baseline.startup)
+
+    def wall_limits(self, round: int, tests: Iterable[str]) -> dict[str, float]:
+        """Seconds of wall clock that each test may take: the safety net behind the other limits."""
+        least, ends = self.request.configuration.timeout_seconds, self.baseline.ends
+        return {test: max(least, WALL_FACTOR * ends[round, test].wall) for test in tests}
 
 
 def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:

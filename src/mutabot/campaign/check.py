@@ -9,7 +9,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import Unhandled, try_controls
 from mutabot.campaign.plan import Plan, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
-from mutabot.campaign.reuse.opened import OpenedFiles
+from mutabot.campaign.reuse.snapshot import OpenedFiles
 from mutabot.campaign.run import at_it, begin, selected
 from mutabot.config.configuration import Configuration
 from mutabot.errors import in_short
@@ -59,7 +59,7 @@ def _report(
     skipped = f", {baseline.skipped} skipped" if baseline.skipped else ""
     selected = f" selected of {len(plan.mutants)}" if len(mutants) != len(plan.mutants) else ""
     why = "cannot matter" if baseline.faults.left_out_beforehand else "would change nothing"
-    reached = {place.operation for place in baseline.places}
+    reached = {place.operation for place in baseline.hits}
     unused = [one.target for one in request.vocabulary.operations if one.target not in reached]
     flaky, nondeterministic = baseline.unstable, sorted(baseline.nondeterministic)
     clock = request.vocabulary.clock
@@ -68,7 +68,7 @@ def _report(
     rounds = f"{request.rounds} round{'s' if request.rounds != 1 else ''}"
     lines = [
         f"tests     {passing} in {rounds}{skipped}",
-        f"sites     {len({place.site for place in baseline.places})} reached",
+        f"sites     {len({place.site for place in baseline.hits})} reached",
         f"controls  {controls} passed",
         f"mutants   {len(mutants)}{selected}, {left_out} left out because they {why}",
         *(f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in flaky.items()),
@@ -85,7 +85,7 @@ def _report(
     data = {
         "replay": dict(unhandled.reasons),
         "tests": tests,
-        "sites": [place.key for place in baseline.places],
+        "sites": [place.key for place in baseline.hits],
         "mutants": len(mutants),
         "planned": len(plan.mutants),
         "left_out": left_out,

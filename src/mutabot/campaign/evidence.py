@@ -11,8 +11,7 @@ from hashlib import blake2b
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
-from mutabot.evidence.story import diverged
-from mutabot.evidence.tracks import RecordedPaths, noise_between
+from mutabot.evidence.story import RecordedPaths, diverged, noise_between
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import UNFIT
 from mutabot.model import Diverged, Mutant
@@ -61,16 +60,16 @@ class CampaignEvidence:
                     self.add_again(round, end)
                 elif end.recording is not None:
                     self._digests[round, end.test] = _digest(end.recording)
-                    self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, bytes_of(end.recording))
-                    self.problems.update(dict.fromkeys(_seen(end).recording.problems))
+                    data = bytes_of(end.recording)
+                    self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, data)
+                    self.problems.update(dict.fromkeys(from_bytes(data).problems))
 
     def add_again(self, round: int, end: TestEnd) -> None:
         """A further run of the original: how far things are apart without any fault."""
-        original = self._original(round, end.test) if self._is_new(round, end) else None
-        if original is not None:
-            found = noise_between(original, _seen(end))
-            if any(found.values()):
-                self._noise[round, end.test] = found
+        changed = self._changed(round, end)
+        found = noise_between(*changed[:2]) if changed is not None else {}
+        if any(found.values()):
+            self._noise[round, end.test] = found
 
     def take(
         self, mutant: str, round: int, ends: Iterable[TestEnd], *, survived: bool
@@ -79,10 +78,8 @@ class CampaignEvidence:
 
         Recordings that cannot be read or written any more, whoever has spoiled them, cost no outcome.
         """
-        if self.is_lost:
-            return ()
         try:
-            return self._take(mutant, round, ends, survived=survived)
+            return () if self.is_lost else self._take(mutant, round, ends, survived=survived)
         except (JournalError, *UNFIT) as error:
             self.is_lost = True
             self.problems[f"nothing is recorded any more from mutant {mutant} on: {error}"] = None
@@ -94,11 +91,11 @@ class CampaignEvidence:
         found = []
         self.recordings.forget(mutant, round)
         for end in ends:
-            original = self._original(round, end.test) if self._is_new(round, end) else None
-            if original is None or end.recording is None:
+            changed = self._changed(round, end)
+            if changed is None:
                 continue
-            noise, data = self._noise.get((round, end.test)), bytes_of(end.recording)
-            seen = RecordedPaths(from_bytes(data))
+            original, seen, data = changed
+            noise = self._noise.get((round, end.test))
             one = diverged(end.test, original, seen, noise, is_cut=end.outcome == "failed")
             if one is not None:
                 rank = Rank.SURVIVOR if survived else Rank.OTHER
@@ -106,9 +103,12 @@ class CampaignEvidence:
                 found.append(one)
         return tuple(sorted(found, key=lambda one: -one.worst))
 
-    def _is_new(self, round: int, end: TestEnd) -> bool:
-        """Whether a test has a recording that is not, to the letter, that of the original."""
-        return end.recording is not None and _digest(end.recording) != self._digests.get((round, end.test))
+    def _changed(self, round: int, end: TestEnd) -> tuple[RecordedPaths, RecordedPaths, bytes] | None:
+        """The original's recording of a test, this one, and its data; None if they are the same."""
+        if end.recording is None or _digest(end.recording) == self._digests.get((round, end.test)):
+            return None
+        original, data = self._original(round, end.test), bytes_of(end.recording)
+        return None if original is None else (original, RecordedPaths(from_bytes(data)), data)
 
     def _read_original(self, round: int, test: str) -> RecordedPaths | None:
         data = self.recordings.data(ORIGINAL, round, test)
@@ -143,8 +143,3 @@ def without_recording(end: TestEnd) -> TestEnd:
 
 def _digest(recording: str) -> bytes:
     return blake2b(recording.encode(), digest_size=16).digest()
-
-
-def _seen(end: TestEnd) -> RecordedPaths:
-    assert end.recording is not None
-    return RecordedPaths(from_bytes(bytes_of(end.recording)))

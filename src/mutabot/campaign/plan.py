@@ -146,11 +146,10 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     Raises OperatorError for a plug-in that is of no use.
     """
     wanted = [family for family in known_families() if not families or family in families]
-    rules = rules_of(wanted)
+    rules = [rule for rule in rules_of(wanted) if rule.family in wanted]
     found = []
-    for family in wanted:
-        for rule in (one for one in rules if one.family == family):
-            told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
-            published = f"Published operators: {rule.published}." if rule.published else ""
-            found.append({**told, "source": rule.rationale or published})
+    for rule in sorted(rules, key=lambda one: wanted.index(one.family)):
+        told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
+        published = f"Published operators: {rule.published}." if rule.published else ""
+        found.append({**told, "source": rule.rationale or published})
     return found

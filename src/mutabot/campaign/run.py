@@ -21,45 +21,31 @@ from mutabot.campaign import simulation
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
-from mutabot.campaign.budget import OUT_OF_TIME, run_planned
 from mutabot.campaign.campaign import Campaign, on_this_machine
-from mutabot.campaign.engines.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.engine import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
-from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
-from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.reuse.reuse import Reused, note_outdated, reuse
-from mutabot.campaign.reuse.snapshot import Snapshot, State
+from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, State
+from mutabot.campaign.schedule import OUT_OF_TIME, decide, earlier_decision, run_planned
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
-from mutabot.campaign.since.since import Revision, altered_since, only_altered, open_others
 from mutabot.errors import JournalError, NothingToDoError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.execution.task import Executor, Result
+from mutabot.journal import records
 from mutabot.journal.files import at_work
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import (
-    DRAWING,
-    DRAWS,
-    INCOMPLETE,
-    OPERATORS,
-    RAN_OVER,
-    REACHING,
-    REMARKS,
-    SIMULATION,
-    Replayed,
-)
 from mutabot.model import LeftOut, Mutant
-from mutabot.model.codec import to_data
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
+
+from .reuse.reuse import Reused, Revision, altered_since, note_outdated, only_altered, open_others, reuse
 
 #: remarks that are told where there are no mutants
 _REMARKS = 8
@@ -193,7 +179,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
                 finally:
                     if opened.remarks:
                         with suppress(JournalError):
-                            journal.set_meta(REMARKS, list(opened.remarks))
+                            journal.set_meta(records.REMARKS, list(opened.remarks))
             journal.set_meta("seconds", request.clock() - started)
             journal.finish(end)
         except BaseException as error:
@@ -241,26 +227,30 @@ def _run(
     campaign = decide(campaign, plan.mutants, journal, decided)
     after = Snapshot.take(request.root, before)
     edited = after.edited_programs(before)
+    dependencies, found = None, Reused()
     if edited:
         progress.note(f"{in_short(edited)} changed during the baseline: no outcome is reused, now or later")
-        is_whole = _run_all(campaign, part, OutcomeWriter(journal), Reused(), started)
-        return _end(journal, part, campaign, is_whole=is_whole)
-    state = State.now(request, before, after, watch.opened)
-    dependencies = Dependencies(request, baseline, state)
-    journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
-    write_shard(journal, request.shard, part, dependencies)
-    note_outdated(journal, request, dependencies)
-    found = reuse(journal, dependencies, part.mutants, request.rounds, progress, others)
-    if revision is not None:
-        altered = altered_since(revision, campaign, dependencies, found, part.mutants)
-        part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
+    else:
+        state = State.now(request, before, after, watch.opened)
+        dependencies = Dependencies(request, baseline, state)
+        journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
+        write_shard(journal, request.shard, part, dependencies)
+        note_outdated(journal, request, dependencies)
+        found = reuse(journal, dependencies, part.mutants, request.rounds, progress, others)
+        if revision is not None:
+            altered = altered_since(revision, campaign, dependencies, found, part.mutants)
+            part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
+    writer = OutcomeWriter(journal, dependencies, plan.mutants)
     try:
-        writer = OutcomeWriter(journal, dependencies, plan.mutants)
-        is_whole = _run_all(campaign, part, writer, found, started)
+        is_whole = run_planned(campaign, part.mutants, writer, found, started)
+        if is_whole:
+            rerun(campaign.whole, part.mutants, writer, request.clock() - started)
     finally:
-        _forget_if_edited(campaign, journal, dependencies, after)
-    _tidy(journal, request, whole)
-    return _end(journal, part, campaign, is_whole=is_whole)
+        if dependencies is not None:
+            _forget_if_edited(campaign, journal, dependencies, after)
+    if dependencies is not None:
+        _tidy(journal, request, whole)
+    return _end(journal, part, request.rounds) if is_whole else OUT_OF_TIME
 
 
 def _note_lacking(request: Request, watch: OpenedFiles, progress: Progress) -> None:
@@ -278,22 +268,11 @@ def _tidy(journal: Journal, request: Request, whole: Plan) -> None:
     journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
 
 
-def _run_all(campaign: Campaign, plan: Plan, writer: OutcomeWriter, found: Reused, started: float) -> bool:
-    """Run all that is not known, as far as there is time for it. Returns whether that is all."""
-    is_whole = run_planned(campaign, plan.mutants, writer, found, started)
-    if is_whole:
-        rerun(campaign.whole, plan.mutants, writer, campaign.request.clock() - started)
-    return is_whole
-
-
-def _end(journal: Journal, part: Plan, campaign: Campaign, *, is_whole: bool) -> str:
-    """How the campaign has ended, by what is in the journal."""
+def _end(journal: Journal, part: Plan, rounds: int) -> str:
+    """How a campaign has ended that ran all, by what is in the journal; of ladders, not every mutant is."""
     known = journal.rounds_known()
-    if not is_whole:
-        return OUT_OF_TIME
-    alone, _ = split_ladders(part.mutants)  # of ladders, not every mutant is run
-    is_known = all(known.get(mutant.id, 0) >= campaign.request.rounds for mutant in alone)
-    return "complete" if is_known else INCOMPLETE
+    is_known = all(known.get(one.id, 0) >= rounds for one in part.mutants if not one.ladder)
+    return "complete" if is_known else records.INCOMPLETE
 
 
 def _note_others(journal: Journal, progress: Progress) -> None:
@@ -365,12 +344,12 @@ def _write_beginning(
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
-        journal.set_meta(DRAWING, to_data(plan.drawing))
-    journal.set_meta(SIMULATION, request.simulation)
-    journal.set_meta(RAN_OVER, request.ran_over)
-    journal.set_meta(OPERATORS, summaries(plan.mutants))
-    journal.set_meta(DRAWS, drawing(plan.mutants))
-    journal.set_meta(REACHING, to_data(reaching(campaign.baseline, plan.mutants)))
+        journal.set_meta(records.DRAWING, plan.drawing)
+    journal.set_meta(records.SIMULATION, request.simulation)
+    journal.set_meta(records.RAN_OVER, request.ran_over)
+    journal.set_meta(records.OPERATORS, summaries(plan.mutants))
+    journal.set_meta(records.DRAWS, drawing(plan.mutants))
+    journal.set_meta(records.REACHING, reaching(campaign.baseline, plan.mutants))
 
 
 def _meta(request: Request) -> dict[str, Any]:
@@ -391,7 +370,7 @@ def _meta(request: Request) -> dict[str, Any]:
         "every_test": request.every_test,
         "fresh": request.fresh,
         "started": time.time(),
-        "vocabulary": to_data(request.vocabulary),
+        "vocabulary": request.vocabulary,
     }
 
 
@@ -400,7 +379,7 @@ def _meta(request: Request) -> dict[str, Any]:
 
 def replay_one(
     request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
-) -> list[Replayed]:
+) -> list[records.Replayed]:
     """Run one mutant again in these rounds, beside what the journal says of it.
 
     Raises what ``anew`` raises.
@@ -415,7 +394,7 @@ def replay_one(
         for outcome in replay(campaign, [(now, round) for round in rounds]):
             second[outcome.round] = outcome
             progress.advance(in_words(outcome))
-    return [Replayed(round, first.get((now.id, round)), second[round]) for round in rounds]
+    return [records.Replayed(round, first.get((now.id, round)), second[round]) for round in rounds]
 
 
 @contextmanager

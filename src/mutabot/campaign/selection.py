@@ -110,12 +110,9 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
     for pattern in unknown:
         nearest = nearest_name(pattern, known) or nearest_name(pattern.partition(":")[0], known)
         hint = f"the nearest is {nearest!r}" if nearest else "`mutabot list` shows what there is"
-        lines.append(f"{source}: no mutant fits {_shown(pattern)}; {hint}")
+        shown = repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
+        lines.append(f"{source}: no mutant fits {shown}; {hint}")
     return SelectionError("\n".join(lines))
-
-
-def _shown(pattern: str) -> str:
-    return repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
 
 
 def refuse_typos(request: Request) -> None:
@@ -125,12 +122,10 @@ def refuse_typos(request: Request) -> None:
     names = [*registry.names(), *known_families(), *(role.value for role in Role)]
     mistakes = []
     for option, words in (("--only", request.only), ("--skip", request.skip)):
-        unknown = [word for word in words if not _may_fit(word, files, names)]
-        if unknown:
-            mistakes.append(nothing_fits(option, unknown, [*names, *operators_of_packages(), *files]))
+        if unknown := [word for word in words if not _may_fit(word, files, names)]:
+            mistakes.append(str(nothing_fits(option, unknown, [*names, *operators_of_packages(), *files])))
     if mistakes:
-        text = "\n".join(map(str, mistakes))
-        raise SelectionError(text)
+        raise SelectionError("\n".join(mistakes))
 
 
 def _may_fit(word: str, files: Sequence[str], names: Collection[str]) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from mutabot.campaign.baseline.baseline import Baseline, Sources, observation, places_of
+from mutabot.campaign.baseline.baseline import Baseline, Sources, observation
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparison import Observation, compare, farthest
 from mutabot.errors import MutabotError, in_short
@@ -98,7 +98,7 @@ def run_of(result: Result, sources: Sources) -> Run:
     """What a worker saw of its mutant."""
     job = result.task.job
     assert job.mutant is not None
-    places = places_of(result, sources)
+    places = sources.places(result.sites)
     left_out = job.left_out(job.mutant.id)
     not_there = (f"{file}: {why}" for file, why in result.not_instrumented.items())
     return Run(
@@ -174,17 +174,12 @@ def judged(campaign: Campaign, run: Run) -> Outcome:
 
 def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:
     """The outcome of a mutant that could not be judged; an error that is not about it is raised again."""
-    refuse_others(error)
+    if isinstance(error, MutabotError | OSError):  # it says something of the user's set-up or of the disk
+        raise error
     where = traceback.extract_tb(error.__traceback__)[-1]
     text = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
     message = f"mutabot could not judge what it saw of it: {text}"
     return Outcome(mutant.id, round, Verdict.ERROR, message=message, engine=engine)
-
-
-def refuse_others(error: Exception) -> None:
-    """Raise an error again that says nothing of a mutant, but of the user's set-up or of the disk."""
-    if isinstance(error, MutabotError | OSError):
-        raise error
 
 
 def _judged(campaign: Campaign, run: Run) -> Outcome:

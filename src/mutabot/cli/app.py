@@ -31,14 +31,12 @@ from .options import Version, with_options
 _LONGEST = 400
 #: mutabot's own commands: their module in this folder, and what ``--help`` says of them
 _OWN = {
-    "init": ("campaign:init", "Draft a configuration and a vocabulary."),
     "check": ("campaign:check", "Try the set-up without running mutants."),
     "list": ("campaign:list_", "List the mutants that would run."),
     "operators": ("campaign:operators", "List the operators and the bugs they stand for."),
     "run": ("campaign:run", "Run the campaign, or continue it."),
     "merge": ("campaign:merge", "Merge the journals of shards."),
     "replay": ("campaign:replay", "Re-run one mutant in fresh processes."),
-    "suggest": ("campaign:suggest", "Suggest checks that kill survivors."),
     "results": ("results:results", "List mutants, scores and survivors."),
     "show": ("results:show", "Show the details of one mutant."),
     "thresholds": ("results:thresholds", "Show how large a fault the tests miss."),
@@ -88,8 +86,11 @@ class Commands(TyperGroup):
     """
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Return all names."""
-        return [*_OWN, *brought("commands", _OWN)]
+        """Return all names, in the order in which ``--help`` lists them."""
+        names = [*_OWN]
+        for part in brought("commands", _OWN).values():
+            names.insert(names.index(part.before) if part.before in names else len(names), part.name)
+        return names
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return the help of a command; None if there is no such command."""
@@ -121,38 +122,28 @@ def _command(name: str, function: Callable[..., object], help: str | None = None
     return typer.main.get_command(one)
 
 
-class Termination:
-    """The handler of SIGTERM.
-
-    Attributes:
-        has_come: whether there was one.
-    """
-
-    has_come = False
-
-    def __call__(self, number: int, frame: FrameType | None) -> None:
-        """Do what Ctrl-C does at this moment."""
-        self.has_come = True
-        on_interrupt = signal.getsignal(signal.SIGINT)
-        if callable(on_interrupt):
-            on_interrupt(signal.SIGINT, frame)
-
-
 @contextmanager
-def terminated_like_ctrl_c() -> Iterator[Termination]:
-    """Make SIGTERM do what Ctrl-C does.
+def terminated_like_ctrl_c() -> Iterator[list[int]]:
+    """Make SIGTERM do what Ctrl-C does, and give a list that tells whether one came.
 
     Does nothing outside the main thread, which alone receives signals, and where SIGTERM is handled or
     ignored already.
     """
-    termination = Termination()
+    come: list[int] = []
+
+    def end(number: int, frame: FrameType | None) -> None:
+        come.append(number)
+        on_interrupt = signal.getsignal(signal.SIGINT)
+        if callable(on_interrupt):
+            on_interrupt(signal.SIGINT, frame)
+
     is_main = threading.current_thread() is threading.main_thread()
     if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        yield termination
+        yield come
         return
-    signal.signal(signal.SIGTERM, termination)
+    signal.signal(signal.SIGTERM, end)
     try:
-        yield termination
+        yield come
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
@@ -186,12 +177,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a character gets "?", not an error
             stream.reconfigure(errors="replace")
     arguments = sys.argv[1:] if arguments is None else arguments
-    with terminated_like_ctrl_c() as termination:
+    with terminated_like_ctrl_c() as terminated:
         code = _code_of(arguments)
     if code == ExitCode.INTERRUPTED:
-        how = "ended by SIGTERM" if termination.has_come else "interrupted"
+        how = "ended by SIGTERM" if terminated else "interrupted"
         typer.echo(f"{how}; `mutabot results` shows the results so far", err=True)
-    return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and termination.has_come else code
+    return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and terminated else code
 
 
 def _code_of(arguments: Sequence[str]) -> int:

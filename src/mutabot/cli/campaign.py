@@ -1,6 +1,4 @@
-"""Commands that set up or run campaigns: ``init``, ``operators``, ``check``, ``list``, ``run``, ``merge``,
-``replay`` and ``suggest``.
-"""
+"""Commands that run campaigns: ``operators``, ``check``, ``list``, ``run``, ``merge`` and ``replay``."""
 
 from __future__ import annotations
 
@@ -11,46 +9,24 @@ from typing import Annotated, Unpack
 
 import typer
 
-from mutabot import limits
 from mutabot.campaign import check as checking
 from mutabot.campaign import run as running
 from mutabot.campaign.plan import listed_rules
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.selection import select
 from mutabot.campaign.sharding import shards
 from mutabot.cli import options
 from mutabot.cli.output import echo, print_json, progress_shown, show_results, tell
 from mutabot.cli.request import families_of, request_again, request_of
 from mutabot.config.configuration import Configuration, load_configuration
-from mutabot.errors import ExitCode, NothingToDoError, UsageError
+from mutabot.errors import ExitCode, UsageError
 from mutabot.journal.files import HOME, JOURNAL, find_journal
 from mutabot.journal.journal import JournalReader
 from mutabot.report.document import replayed as replayed_data
 from mutabot.report.terminal.campaign import plan_data, print_plan, print_rules
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.mutant import print_replayed, print_suggestions
+from mutabot.report.terminal.mutant import print_replayed
 from mutabot.results.gate import Decision, decide
-from mutabot.results.results import MutantResult, Results, find_mutant, read_results, results_at
-from mutabot.results.suggested import keep_suggestions
-
-
-def init(
-    context: typer.Context,
-    program: Annotated[
-        list[Path] | None,
-        typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
-    ] = None,
-    template: tuple[str, str] | None = None,
-) -> None:
-    """Draft a configuration and a vocabulary from one run of the tests, or start a project."""
-    from mutabot.init import propose, start  # noqa: PLC0415  # it loads much
-
-    if template is not None:
-        for line in start(context.obj, program or [], *template):
-            echo(line)
-        return
-    for line in propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True)):
-        echo(line)
+from mutabot.results.results import Results, find_mutant, read_results
 
 
 def operators(family: options.Families = None, json: options.Json = False) -> None:
@@ -181,57 +157,3 @@ def number_of(round: int, rounds: int) -> int:
     if round > rounds:
         raise UsageError(f"there is no round {round}; the campaign has {rounds}")
     return round - 1
-
-
-_Seeds = Annotated[
-    int,
-    typer.Option(
-        "--seeds",
-        metavar="N",
-        min=5,
-        max=limits.SEEDS,
-        help="New seeds for the tolerances, and as many for the proof.",
-    ),
-]
-
-
-def suggest(
-    context: typer.Context,
-    only: options.Only = None,
-    skip: options.Skip = None,
-    seeds: _Seeds = 20,
-    jobs: options.Jobs = None,
-    json: options.Json = False,
-) -> None:
-    """Suggest checks that kill survivors.
-
-    Each check is verified by running it with the mutant and with new seeds of the original.
-    """
-    from mutabot.suggest import suggest as find_checks  # noqa: PLC0415  # it loads much
-
-    path = find_journal(context.obj)
-    results = results_at(path)
-    chosen = _chosen(results, only, skip)
-    request = request_again(path.parent.parent, results, jobs)
-    with progress_shown() as progress:
-        found = find_checks(request, chosen, progress, seeds=seeds)
-    keep_suggestions(path, results.meta, found)
-    print_json(found) if json else print_suggestions(make_console(), found)
-
-
-def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:
-    """Return the survivors that were asked for. Raises NothingToDoError if there is none, saying why."""
-    if results.graded and not results.mutants:
-        raise NothingToDoError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
-    if not results.mutants:
-        raise NothingToDoError(f"the journal holds no mutants ({results.state}): run `mutabot run` first")
-    if not results.done:
-        raise NothingToDoError("no mutant has been run yet: continue with `mutabot run`")
-    mutants = select([one.mutant for one in results.mutants], tuple(only or ()), tuple(skip or ()), None)
-    survivors = {one.mutant.id: one for one in results.survivors}
-    if not survivors:
-        raise NothingToDoError("no mutant survived: there is no check to suggest")
-    chosen = [survivors[mutant.id] for mutant in mutants if mutant.id in survivors]
-    if not chosen:
-        raise NothingToDoError("none of the mutants that were asked for survived")
-    return chosen

@@ -11,8 +11,7 @@ import typer
 
 from mutabot.report.document import data_of, document, dumps
 from mutabot.report.terminal.campaign import print_results, print_summary
-from mutabot.report.terminal.console import leave_pipe, make_console
-from mutabot.report.terminal.progress import Bar, Lines, make_progress
+from mutabot.report.terminal.console import Bar, Lines, leave_pipe, make_console, make_progress
 from mutabot.results.results import Results, results_at
 
 

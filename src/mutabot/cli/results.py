@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Annotated
 
 import typer
+from typer import Option
 
 from mutabot.cli import options
 from mutabot.cli.output import print_bytes, print_json, show_results, tell
@@ -28,27 +29,14 @@ from mutabot.results.thresholds import thresholds_of
 #: stands for standard output
 _STANDARD = Path("-")
 
-_Formats = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--format",
-        metavar="NAME",
-        help=f"One of {', '.join(names())}. Repeatable, each with an --output.",
-    ),
-]
-_Outputs = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--output", "-o", metavar="FILE", help="File for the format, in the same order; - is standard output."
-    ),
-]
-_Html = Annotated[
-    Path | None,
-    typer.Option("--html", metavar="DIR", help="Write pages for a browser into this folder."),
-]
-_Prefix = Annotated[
-    str, typer.Option("--prefix", metavar="FOLDER", help="Folder of the project in its repository.")
-]
+_FORMAT = f"One of {', '.join(names())}. Repeatable, each with an --output."
+_OUTPUT = "File for the format, in the same order; - is standard output."
+_HTML = "Write pages for a browser into this folder."
+_PREFIX = "Folder of the project in its repository."
+_Formats = Annotated[list[str] | None, Option("--format", metavar="NAME", help=_FORMAT)]
+_Outputs = Annotated[list[Path] | None, Option("--output", "-o", metavar="FILE", help=_OUTPUT)]
+_Html = Annotated[Path | None, Option("--html", metavar="DIR", help=_HTML)]
+_Prefix = Annotated[str, Option("--prefix", metavar="FOLDER", help=_PREFIX)]
 
 
 def results(context: typer.Context, json: options.Json = False) -> None:

@@ -10,15 +10,8 @@ from itertools import product
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    ByteSize,
-    Field,
-    GetJsonSchemaHandler,
-    TypeAdapter,
-    ValidationError,
-)
+import pydantic
+from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic_core import CoreSchema
 
 from mutabot import limits
@@ -42,7 +35,7 @@ _NO_VOCABULARY = (
 )
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
-_BYTES = TypeAdapter(ByteSize)
+_BYTES = pydantic.TypeAdapter(pydantic.ByteSize)
 #: signs of a path, and bytes of a name in it, that a file system takes
 _LONGEST_PATH, _LONGEST_NAME = 4000, 255
 #: bytes that Python and pytest need
@@ -55,7 +48,7 @@ def _amount(value: Any, *, least: int, example: str) -> Any:
     if isinstance(value, str):
         try:
             value = int(_BYTES.validate_python(value if value.strip(" .0123456789") else ""))
-        except (ValidationError, OverflowError):
+        except (pydantic.ValidationError, OverflowError):
             raise ValueError(f"{shortened(value)!r} is no number of bytes; write it like {example}") from None
     if isinstance(value, int) and not isinstance(value, bool) and value < least:
         raise ValueError(f"{value} bytes are too little; write it like {example}")
@@ -72,7 +65,9 @@ def _known_family(name: str) -> str:
 class _FamilyNames:
     """What a schema says of them: packages are asked only where it is made."""
 
-    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: pydantic.GetJsonSchemaHandler
+    ) -> dict[str, Any]:
         return {"enum": list(known_families())}
 
 

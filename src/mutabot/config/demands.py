@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
@@ -11,15 +10,12 @@ from pydantic import AfterValidator, Field
 from mutabot.errors import unknown_name_text
 from mutabot.model import Kind
 from mutabot.model.graded import OFFSET, Demand, parse_amount
-from mutabot.model.quantity import DIMENSIONS, MEASURED, WHOLE
-from mutabot.model.units import UNITS, Dimension, dimension_of
+from mutabot.model.mutant import means_numbers
+from mutabot.model.quantity import MEASURED, measures_of
+from mutabot.model.units import OF_ANY, UNITS, units_of
 
 from .mistakes import DocumentPlace
 from .table import Table
-
-#: what every quantity can be off by beside its own measure: it comes late, or is scaled
-_ANY = (Dimension.TIME, Dimension.RATIO)
-_NUMBERS = re.compile(r"\d+(-\d+)?(,\d+(-\d+)?)*")
 
 
 def _check_kind(kind: Kind | None) -> Kind | None:
@@ -52,7 +48,7 @@ def _demand(place: DocumentPlace, raw: Mapping[str, Any]) -> Demand | None:
     notice, unit = _amount(place / "notice", table.notice)
     if table.operator != OFFSET:
         _check_operator(place / "operator", table.operator)
-    if table.site is not None and _NUMBERS.fullmatch(table.site):
+    if table.site is not None and means_numbers(table.site):
         text = f"{table.site!r} is the number of a mutant, which may change; write file:line or an id"
         (place / "site").error(text)
     if len(place.errors) == mistakes and table.kind is not None:
@@ -85,11 +81,10 @@ def _check_operator(place: DocumentPlace, name: str) -> None:
 
 def _check_measure(operator: str, kind: Kind, unit: str | None) -> None:
     """Raise ValueError for a unit that no fault of this kind has."""
-    own = (Dimension.ANGLE,) if kind in WHOLE else tuple(DIMENSIONS.get(kind, ()))
-    allowed = own if operator == OFFSET else (*own, *_ANY)
-    units = ", ".join(name for name in UNITS if dimension_of(name) in allowed)
-    if unit is None and allowed:
-        raise ValueError(f"a {kind} has a unit; write it behind the number: {units}")
-    if unit is not None and dimension_of(unit) not in allowed:
-        text = f"use {units}" if allowed else "it has no unit"
+    own = measures_of(kind)
+    units = units_of(own if operator == OFFSET else (*own, *OF_ANY))
+    if unit is None and units:
+        raise ValueError(f"a {kind} has a unit; write it behind the number: {', '.join(units)}")
+    if unit is not None and unit not in units:
+        text = f"use {', '.join(units)}" if units else "it has no unit"
         raise ValueError(f"{unit!r} measures no {operator} of a {kind}; {text}")

@@ -93,9 +93,11 @@ class Feed:
 
     def note(self, text: str) -> None:
         """Something worth telling happens now."""
-        tape = self._present()
+        tape = tapes.running()
         now = self._now(tape) if tape is not None else None
         if tape is not None and now is not None:
+            if tape is not self._tape:
+                self._begin(tape, now)
             tape.note(self._offset + now, "note", text)
 
     @property
@@ -148,13 +150,6 @@ class Feed:
         self._next_picture = (floor(now / self._shutter + _HAIR) + 1) * self._shutter
         if tape.filmed_by is self:
             tape.picture(self._offset + now, read)
-
-    def _present(self) -> Tape | None:
-        tape = tapes.running()
-        now = self._now(tape) if tape is not None and tape is not self._tape else None
-        if tape is not None and now is not None:
-            self._begin(tape, now)
-        return tape
 
     def _begin(self, tape: Tape, now: float) -> None:
         """The first word in a test: a simulation that is there already begins at 0 as well."""

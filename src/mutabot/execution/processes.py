@@ -254,15 +254,12 @@ class Copy:
     """A copy of a fork server, at work on a job. Like ``Spawned``, but it is the server that sees it end."""
 
     pidfd = None
+    #: nobody but the server's keeper looks after what it leaves
+    left: list[str] | None = None
 
     def __init__(self, pid: int, server: ForkServerProcess) -> None:
         self.pid, self._server = pid, server
         self.startup = server.startup
-
-    @property
-    def left(self) -> None:
-        """Nobody but the server's keeper looks after what it leaves."""
-        return
 
     @property
     def exit_code(self) -> int | None:

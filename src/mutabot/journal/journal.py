@@ -142,8 +142,8 @@ class JournalReader:
     @property
     def vocabulary(self) -> Vocabulary | None:
         """The vocabulary of the campaign, if it was written down."""
-        data = self.meta().get("vocabulary")
-        return from_data(Vocabulary, data) if data is not None else None
+        found: Vocabulary | None = self.meta().get("vocabulary")
+        return found
 
     @property
     def finished(self) -> str | None:

@@ -39,13 +39,13 @@ class Recordings:
 
     Attributes:
         path: the file.
+        used: bytes of all recordings together.
         dropped: how many made room for others, or found none.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection, limit: int = 0) -> None:
         self.path, self._connection, self._limit = path, connection, limit
-        self._used = 0
-        self.dropped = 0
+        self.used = self.dropped = 0
 
     @classmethod
     def to_write(cls, journal: Path, limit: int) -> Recordings:
@@ -59,7 +59,7 @@ class Recordings:
             found = cls(path, connect(path), limit)
             found._connection.execute("PRAGMA auto_vacuum = INCREMENTAL")
             found._connection.execute(_TABLE)
-            found._used = found._total()
+            found.used = found._total()
         return found
 
     @classmethod
@@ -82,18 +82,13 @@ class Recordings:
         """Close the file."""
         self._connection.close()
 
-    @property
-    def used(self) -> int:
-        """Bytes of all recordings together."""
-        return self._used
-
     def forget(self, mutant: str, round: int) -> None:
         """Drop what is there of a mutant, or of the original, in a round."""
         self._delete("mutant = ? AND round = ?", mutant, round)
 
     def add(self, mutant: str, round: int, test: str, rank: Rank, data: bytes) -> bool:
         """Add one; of lower ranks, others make room for it. Returns whether there was room."""
-        if self._used + len(data) > self._limit and not self._make_room(rank, len(data)):
+        if self.used + len(data) > self._limit and not self._make_room(rank, len(data)):
             self.dropped += 1
             return False
         with guarded(self.path):
@@ -101,7 +96,7 @@ class Recordings:
                 "INSERT OR REPLACE INTO recording VALUES (?, ?, ?, ?, ?, ?)",
                 (mutant, round, test, int(rank), len(data), data),
             )
-        self._used += len(data)
+        self.used += len(data)
         return True
 
     def tests(self, mutant: str, round: int) -> tuple[str, ...]:
@@ -151,20 +146,20 @@ class Recordings:
     def _make_room(self, rank: Rank, size: int) -> bool:
         lower = "SELECT mutant, round, test FROM recording WHERE rank < ? ORDER BY rank, size DESC"
         for mutant, round, test in self._rows(lower, rank):
-            if self._used + size <= self._limit:
+            if self.used + size <= self._limit:
                 break
             self._delete("mutant = ? AND round = ? AND test = ?", mutant, round, test)
             self.dropped += 1
         with guarded(self.path):
             self._connection.execute("PRAGMA incremental_vacuum")
-        return self._used + size <= self._limit
+        return self.used + size <= self._limit
 
     def _delete(self, which: str, *values: object) -> None:
         freed = self._total(which, *values)
         if freed:
             with guarded(self.path):
                 self._connection.execute(f"DELETE FROM recording WHERE {which}", values)
-            self._used -= freed
+            self.used -= freed
 
     def _total(self, which: str = "1", *values: object) -> int:
         return int(self._rows(f"SELECT coalesce(sum(size), 0) FROM recording WHERE {which}", *values)[0][0])

@@ -435,7 +435,7 @@ def fact(key: str, value: Any) -> Any:
             is_fine = True
     if not is_fine:
         raise ValueError
-    return value
+    return found
 
 
 def round_in(value: Any) -> int:

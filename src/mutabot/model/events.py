@@ -538,13 +538,12 @@ class Untrusted(Event):
 
 
 #: the kinds of event by their names
-EVENTS: dict[str, type[Any]] = {kind.__name__: kind for kind in Event.__subclasses__()}
+EVENTS: dict[str, type[Event]] = {kind.__name__: kind for kind in Event.__subclasses__()}
 
 
 def event_to_data(event: Event) -> dict[str, Any]:
     """JSON-like data of an event, with its type."""
-    data: dict[str, Any] = to_data(event)
-    return {"type": type(event).__name__, **data}
+    return {"type": type(event).__name__, **to_data(event)}
 
 
 def event_from_data(data: dict[str, Any]) -> Event:
@@ -554,6 +553,4 @@ def event_from_data(data: dict[str, Any]) -> Event:
     """
     if not isinstance(data, dict):
         raise TypeError(f"an event is an object, not {type(data).__name__}")
-    kind = EVENTS[data["type"]]
-    event: Event = from_data(kind, {key: value for key, value in data.items() if key != "type"})
-    return event
+    return from_data(EVENTS[data["type"]], {key: value for key, value in data.items() if key != "type"})

@@ -191,8 +191,7 @@ def write_job(home: str | os.PathLike[str], job: Job) -> None:
 
 def read_job(home: str | os.PathLike[str]) -> Job:
     """The job of the worker with this folder."""
-    job: Job = from_data(Job, json.loads(job_file(home).read_text(encoding="utf-8")))
-    return job
+    return from_data(Job, json.loads(job_file(home).read_text(encoding="utf-8")))
 
 
 @frozen

@@ -236,8 +236,7 @@ class Mutant:
     @property
     def id(self) -> str:
         """Stable under edits elsewhere: file, function, text, occurrence, quantity, operator."""
-        from_pattern = f"{self.pattern_name}" if self.pattern is not None else ""
-        subject = "/".join(part for part in (from_pattern, self.quantity) if part) or "call"
+        subject = "/".join(part for part in (self.pattern_name, self.quantity) if part) or "call"
         variant = f"={self.variant}" if self.variant else ""
         if self.moment is not None:
             variant += f"@{self.moment.text}"

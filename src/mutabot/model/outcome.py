@@ -325,8 +325,14 @@ def same_end(first: Outcome, second: Outcome) -> bool:
 
 def in_words(outcome: Outcome) -> str:
     """How a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
-    lines = (outcome.message or "").strip().splitlines()
-    return f"{end_in_words(outcome)}{f': {lines[0]}' if lines else ''}"
+    is_told = bool((outcome.message or "").strip())
+    return f"{end_in_words(outcome)}: {first_line(outcome.message)}" if is_told else end_in_words(outcome)
+
+
+def first_line(text: str | None) -> str:
+    """The first line of a message, or words that say there is none."""
+    lines = (text or "").strip().splitlines()
+    return lines[0] if lines else "no message"
 
 
 def end_in_words(outcome: Outcome) -> str:

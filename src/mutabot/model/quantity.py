@@ -133,6 +133,13 @@ DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
         for kind in PLAIN - {Kind.COUNT, Kind.NUMBER}
     },
 }
+
+
+def measures_of(kind: Kind) -> tuple[Dimension, ...]:
+    """What faults in a quantity of this kind measure: an orientation as a whole is off by an angle."""
+    return (Dimension.ANGLE,) if kind in WHOLE else tuple(DIMENSIONS.get(kind, ()))
+
+
 #: kinds whose values are numbers on a scale, with a unit
 MEASURED = frozenset(DIMENSIONS.keys() - {Kind.OPENING} | WHOLE | PLAIN)
 #: the reading that tells where a written kind is now

@@ -9,7 +9,7 @@ conversion: A direct, general and computationally efficient method", PLoS ONE 17
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from enum import StrEnum
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -82,6 +82,15 @@ UNITS: dict[str, Unit] = {
     for dimension, factors in _FACTORS.items()
     for name, factor in factors.items()
 }
+
+
+#: what every quantity can be off by beside its own measure: it comes late, or is scaled
+OF_ANY = (Dimension.TIME, Dimension.RATIO)
+
+
+def units_of(dimensions: Collection[Dimension]) -> tuple[str, ...]:
+    """The units that measure one of these."""
+    return tuple(name for name, unit in UNITS.items() if unit.dimension in dimensions)
 
 
 def dimension_of(unit: str) -> Dimension:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from mutabot.families import CONTROL
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
-from mutabot.model.operation import COMING, Form
+from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 
 from .magnitudes import Magnitudes, sized
@@ -88,11 +88,6 @@ class CommandOperator(Operator):
 def form_of(operation: Operation) -> Form | None:
     """What is done under its name; None for what has none."""
     return operation.named.form if operation.named is not None else None
-
-
-def comes_by_itself(operation: Operation) -> bool:
-    """Whether nobody asks for it: a message to a callback, a tick."""
-    return form_of(operation) in COMING
 
 
 def idle_of(call: Call) -> Reply:

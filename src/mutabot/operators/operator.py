@@ -8,16 +8,16 @@ kind of fault. What every operator declares, whatever it acts on, says ``Rule``.
 - What acts on anything else belongs to a provider of its own (``mutabot/faults.py``), which says where its
   operators are and what else they have to declare.
 
-What several share has a name that begins with ``_``, be it a class or a file. A third party names its class
-in its ``mutabot.extensions.Extension``; that goes for operators on calls. Engines, plan, reports and
-documentation know no operator by name: whatever they need to know of one stands here or in the contract of
-its provider.
+What several share has a name that begins with ``_``, be it a class or a file. A package, as
+``mutabot_catalogue`` does, names its classes in its ``mutabot.extensions.Extension``. Engines, plan, reports
+and documentation know no operator by name: whatever they need to know of one stands here or in the contract
+of its provider.
 
 An ``Operator`` answers four questions: where could it act, what does it do there, what does that look like
 to an engineer, and which examples show it. It sees quantities and their values, never Python syntax or
 a vendor's API, so that whatever can be turned into a ``Call`` can be mutated. What it needs for that it
 declares as a set of ``needs``, which the plan checks. Nearly all have one of two shapes: they change a value
-(``value.py``), or do something with the call as a whole (``command.py``). ``robot/commands.py`` has the
+(``value.py``), or do something with the call as a whole (``command.py``). ``kinds/commands.py`` has the
 shortest ones.
 """
 

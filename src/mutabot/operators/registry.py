@@ -17,31 +17,13 @@ from .command import CONTROLS
 from .operator import Operator
 
 _KINDS = Path(__file__).parent / "kinds"
-#: mutabot's own operators in the order of the documentation and of the numbers of their mutants; those that
-#: are not here come last
-_ORDER = """
-    reverse by-to skip repeat opposite negate noise misread
-    offset scale sensor-noise drift quantise deadband lag early
-    cm-for-m mm-for-m inch-for-mm deg-for-rad ms-for-s
-    axis-swap joint-order left-handed base-for-tool tcp-missing tcp-doubled joint-turn
-    euler-order quaternion-order quaternion-sign
-    swap-next previous-target half-wait no-wait lost-command double-command late-grip early-release
-    unreported-refusal
-    dropout old-reading stuck-reading spike saturated-reading swapped-channels wrong-object confused-label
-    late-reading
-    speed-override force-override weak-grip wrong-payload partial-opening silent-limit
-    drop duplicate stale delay reorder
-    wrong-frame shift-stamp empty-stamp wrong-name short-queue flip-latch wrong-reliability wrong-durability
-    wrong-deadline wrong-period use-default
-    kill-node restart-node cancel-goal lose-answer jump-clock
-"""
+#: files in the order of the documentation, and of the numbers of mutants; others come last
+_ORDER = ("motions", "commands", "readings", "graded")
 
 
 def built_in() -> list[str]:
     """Names of mutabot's own operators that make mutants, in the order of the documentation."""
-    places = {name: place for place, name in enumerate(_ORDER.split())}
-    found = (rule.name for module in _modules() for rule in _of_module(module))
-    return sorted(found, key=lambda name: (places.get(name, len(places)), name))
+    return [rule.name for module in _modules() for rule in _of_module(module)]
 
 
 def names() -> list[str]:
@@ -66,8 +48,8 @@ def load_all() -> list[Operator]:
 
 
 def preload(wanted: Iterable[str] | None = None) -> None:
-    """Load these operators, or all built-in ones; who needs one that cannot be loaded is told then."""
-    for name in built_in() if wanted is None else wanted:
+    """Load these operators, or all; who needs one that cannot be loaded is told then."""
+    for name in (*built_in(), *brought("operators")) if wanted is None else wanted:
         with suppress(OperatorError):
             operator(name)
 
@@ -101,7 +83,7 @@ def _modules() -> dict[str, str]:
     """
     return {
         f"{__package__}.kinds.{module}": (_KINDS / f"{module}.py").read_text(encoding="utf-8")
-        for module in modules_in(_KINDS)
+        for module in sorted(modules_in(_KINDS), key=lambda one: (*_ORDER, one).index(one))
     }
 
 

@@ -10,10 +10,9 @@ from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar, TypeVar
 
-from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import SAME_ORIENTATION, TURNED_ROUND, Value, is_same
-from mutabot.model.units import Quaternion, convert, distance, from_rotation_vector, inverse, product
+from mutabot.model.units import Quaternion, distance, inverse
 
 from .magnitudes import Magnitudes, sized
 from .operator import Context, Operator, Subject, Unchanged, quantity_of
@@ -23,8 +22,6 @@ _NAMES = re.compile(r"[._]")
 #: why an operator leaves a call alone, or what it reads, that is without its value
 NOT_PASSED = "the call does not pass this argument"
 NOT_RETURNED = "the call does not return this value"
-#: why an operator that asks where the robot is leaves a call alone
-NOT_TOLD = "the position of the robot is not known yet"
 SAME = "the value would stay the same"
 
 
@@ -171,13 +168,6 @@ def the_other_way(quantity: Quantity, value: Value) -> Value | None:
     return turned(quantity, value, inverse, TURNED_ROUND)
 
 
-def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
-    """The orientation turned by a random rotation vector of this standard deviation in each part."""
-    sigma = convert(deviation, quantity.unit or "rad", "rad")
-    turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
-    return turned(quantity, value, lambda orientation: product(turn, orientation))
-
-
 def turned(
     quantity: Quantity,
     value: Value,
@@ -193,42 +183,6 @@ def turned(
         return value
     parts = iter(quantity.numbers(after))
     return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
-
-
-class Exchange(ValuesOperator):
-    """Exchanges two values of one kind; the variant names the second."""
-
-    family = CATALOGUE
-
-    @abstractmethod
-    def pairs(self, whole: Subject) -> Iterable[tuple[Quantity, Quantity]]:
-        """The pairs of a call whose values could be exchanged."""
-
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
-        for one, other in self.pairs(whole):
-            yield replace(whole, quantity=one, variant=other.name.lstrip("."))
-
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        one, other = context.quantity.name, _other_of(context.subject).name
-        first, second = (given(values, name, context.subject) for name in (one, other))
-        return {one: second, other: first}
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        one, other = quantity_of(subject), _other_of(subject)
-        told = f"{label(one)} {one.text(before)} and {label(other)} {other.text(after)} exchanged"
-        return told if subject.is_written else f"reads {told}"
-
-
-def _other_of(subject: Subject) -> Quantity:
-    """The second quantity of a pair."""
-    name = subject.variant.partition("+")[0]
-    return next(one for one in subject.side if one.name.lstrip(".") == name)
-
-
-def is_alike(one: Quantity, other: Quantity) -> bool:
-    """Whether the values of two quantities mean the same, but for where they stand."""
-    return (one.kind, one.unit, one.mode, one.frame) == (other.kind, other.unit, other.mode, other.frame)
 
 
 def is_number(value: Value) -> bool:
@@ -267,22 +221,6 @@ def next_of(value: Value, quantity: Quantity, by: int = 1) -> Value:
     return values[(values.index(value) + by) % len(values)]
 
 
-def like(before: float, after: float) -> float:
-    """A number in the type of the one in whose place it comes, where that loses nothing."""
-    is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
-    return int(after) if is_whole else after
-
-
 def within(value: float, limits: tuple[float, float] | None) -> float:
     """A number, or the end of the limits that is nearest to it."""
     return value if limits is None else min(max(value, limits[0]), limits[1])
-
-
-def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
-    """The ends of the middle share of what a quantity may be. Raises Unchanged if nobody knows its range."""
-    limits = quantity.range or quantity.clip
-    if limits is None:
-        raise Unchanged("the vocabulary gives no range")
-    low, high = limits
-    cut = (high - low) * (1.0 - share) / 2.0
-    return low + cut, high - cut

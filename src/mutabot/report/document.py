@@ -19,7 +19,6 @@ from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
-from mutabot.results.suggested import Suggestion, Suggestions
 from mutabot.results.thresholds import line_of
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
@@ -128,28 +127,7 @@ def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
 
 
 def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
-    line = "state rounds ladders=all"
-    return {"format": FORMAT, **data_of.facts(found, line)}
-
-
-def _suggestions(found: Suggestions) -> dict[str, Any]:
-    def mutant(name: str) -> dict[str, Any]:
-        told = found.descriptions.get(name, "")
-        return {"id": name, "number": found.numbers.get(name), "description": told}
-
-    def kills(one: Suggestion) -> list[dict[str, Any]]:
-        return [
-            {"mutant": mutant(name), "rounds": [round + 1 for round in rounds]}
-            for name, rounds in one.kills.items()
-        ]
-
-    return {
-        **data_of.facts(found, "rounds seeds"),
-        "suggestions": [{**data_of(one), "kills": kills(one)} for one in found.suggestions],
-        "diff": found.diff,
-        "unsolved": [{**data_of(one), "mutant": mutant(one.mutant)} for one in found.unsolved],
-        "dropped": data_of(found.dropped),
-    }
+    return {"format": FORMAT, **data_of.facts(found, "state rounds ladders=all")}
 
 
 #: JSON-like data of anything of ours
@@ -186,6 +164,5 @@ data_of = Encoder(
         ladders.LadderRound: _ladder_round,
         ladders.Between: "above=low? at_most=high level",
         ladders.Violation: "round=round+1 noticed missed",
-        Suggestions: _suggestions,
     }
 )

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 
 from mutabot.errors import UsageError, unknown_name_text
-from mutabot.extensions import ExtensionPart, brought
+from mutabot.extensions import brought
 from mutabot.frozen import frozen
 from mutabot.model import Span
 from mutabot.results.results import Results
@@ -91,7 +91,7 @@ def _prefix(line: str, column: int) -> str:
 
 def names() -> list[str]:
     """The names of all formats."""
-    return sorted([*_own(), *_of_packages()])
+    return sorted([*_own(), *brought("formats", _own())])
 
 
 def format_of(name: str) -> Format:
@@ -99,7 +99,7 @@ def format_of(name: str) -> Format:
     if name in _own():
         module = importlib.import_module(f"{__package__}.formats.{name.replace('-', '_')}")
         return module.make  # type: ignore[no-any-return]
-    part = _of_packages().get(name)
+    part = brought("formats", _own()).get(name)
     if part is None:
         raise UsageError(unknown_name_text("format", name, names()))
     return part.load_function()
@@ -108,7 +108,3 @@ def format_of(name: str) -> Format:
 def _own() -> list[str]:
     found = (module.name for module in pkgutil.iter_modules([str(Path(__file__).with_name("formats"))]))
     return [name.replace("_", "-") for name in found if not name.startswith("_")]
-
-
-def _of_packages() -> Mapping[str, ExtensionPart]:
-    return brought("formats", _own())

@@ -9,7 +9,7 @@ from mutabot.errors import in_short
 from mutabot.frozen import frozen
 from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated
 from mutabot.model import LeftOut, Mutant, Span, Verdict
-from mutabot.results.divergence import first_line
+from mutabot.model.outcome import first_line
 from mutabot.results.results import Results, unlooked
 from mutabot.results.score import Group
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
@@ -218,11 +218,12 @@ def _reliability(results: Results) -> Iterator[Section]:
     if confirmed is not None:
         yield Section(f"{confirmed.text}.", is_alarm=bool(confirmed.wrong))
     if checked is not None:
+        where = "over the real middleware" if results.meta.get(SIMULATION) else "in fresh processes"
         lines = [
             f"mutant {one.number}, round {one.round + 1}: {one.first}; re-run: {one.second}"
             for one in checked.disagreements
         ]
-        text = f"Verified: {checked.agreed} of {checked.checked} outcomes end the same {_where(results)}."
+        text = f"Verified: {checked.agreed} of {checked.checked} outcomes end the same {where}."
         yield Section(text, lines=lines, is_alarm=bool(lines))
     repeats = results.repeats
     kinds = (("kill that might be a coincidence", repeats.doubted), ("other kill", repeats.others))
@@ -235,11 +236,6 @@ def _reliability(results: Results) -> Iterator[Section]:
         files = plural(len({one.test_file.partition("::")[0] for one in results.controls}), "test file")
         text = f"Self-check passed in {files} (a no-op mutant survived, a crashing one was killed)"
         yield Section(text, is_detail=True)
-
-
-def _where(results: Results) -> str:
-    """Where outcomes were verified."""
-    return "over the real middleware" if results.meta.get(SIMULATION) else "in fresh processes"
 
 
 def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repeated]]) -> Iterator[Section]:

@@ -14,7 +14,8 @@ from typing import Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
-from mutabot.results.divergence import first_line, numbers_text, worst_of
+from mutabot.model.outcome import first_line
+from mutabot.results.divergence import numbers_text, worst_of
 from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
@@ -73,17 +74,8 @@ T = TypeVar("T")
 
 #: facts of a campaign that tell nothing of the machine and its folders
 _META = (
-    "mutabot",
-    "python",
-    "versions",
-    "seed",
-    "rounds",
-    "engine",
-    "families",
-    "order",
-    "started",
-    "seconds",
-)
+    "mutabot", "python", "versions", "seed", "rounds", "engine", "families", "order", "started", "seconds",
+)  # fmt: skip
 
 
 def portable(campaign: Results) -> Results:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
+from mutabot.model.outcome import first_line
 from mutabot.model.quantity import distinct_texts, value_text
 
 
@@ -90,12 +91,6 @@ def _end_text(outcome: Outcome) -> str:
             return f"killed by {outcome.by or 'a test'}: {first_line(outcome.message)}"
         case _:
             return f"{outcome.verdict}: {first_line(outcome.message)}"
-
-
-def first_line(text: str | None) -> str:
-    """The first line of a message, or words that say there is none."""
-    lines = (text or "").strip().splitlines()
-    return lines[0] if lines else "no message"
 
 
 def numbers_text(numbers: Iterable[int]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from mutabot.errors import ExitCode, in_short
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
-from mutabot.journal.records import ShardOf
+from mutabot.journal.records import INCOMPLETE, ShardOf
 from mutabot.model import Verdict
 from mutabot.model.graded import Demand
 from mutabot.results.ladders import ladders_of
@@ -64,7 +64,8 @@ def decide(
         return Decision(ExitCode.UNRELIABLE, unstable)
     if results.since is not None and not results.everything:
         return Decision(ExitCode.FINE)  # nothing that was asked for has changed
-    if not total.valid and not _knows_thresholds(results):
+    is_judged = bool(results.graded) and any(not one.why_unjudged for one in ladders_of(results))
+    if not total.valid and not is_judged:  # scores have no part in thresholds
         return Decision(ExitCode.NOTHING_KNOWN, (_nothing_valid(results),))
     share = total.timeouts / total.valid if total.valid else 0.0
     if max_timeouts is not None and share > max_timeouts:
@@ -90,7 +91,7 @@ def _doubtful(results: Results) -> Iterator[str]:
             f"{in_short(results.set_aside, 5)} in the journal: not written by mutabot, or damaged; "
             "nothing of it is believed, and `mutabot run` runs it again"
         )
-    elif results.is_incomplete:
+    elif INCOMPLETE in results.state:
         yield _incomplete(results)
     if results.altered:
         yield (
@@ -155,11 +156,6 @@ def _nothing_valid(results: Results) -> str:
         return "the robot refused every mutant, so nothing is known about the tests"
     ends = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
     return f"no mutant was valid ({ends}), so nothing is known about the tests"
-
-
-def _knows_thresholds(results: Results) -> bool:
-    """Whether something is known of a ladder: scores have no part in that."""
-    return bool(results.graded) and any(not one.why_unjudged for one in ladders_of(results))
 
 
 def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:

@@ -18,7 +18,6 @@ from mutabot.journal import records
 from mutabot.journal.files import is_written
 from mutabot.journal.journal import JournalReader
 from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
-from mutabot.model.codec import from_data
 from mutabot.model.mutant import fits
 from mutabot.results.divergence import change_text, explain, quantity_of, worst_of
 from mutabot.results.score import Group, RoundScores, Score, groups_of
@@ -231,11 +230,6 @@ class Results:
         return Confirmed.of(self.outcomes, self.meta.get("seed") or 0)
 
     @property
-    def is_incomplete(self) -> bool:
-        """Whether all was run, but not every outcome is in the journal."""
-        return records.INCOMPLETE in self.state
-
-    @property
     def known(self) -> str:
         """``12 of 20 outcomes are known``."""
         return f"{self.done} of {self.planned} outcomes are known"
@@ -301,25 +295,26 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     rounds = _number_of_rounds(meta, outcomes)
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
-    told: dict[str, Any] = {key: from_data(records.FACTS[key], meta[key]) for key in _TOLD if key in meta}
+    told = {key: meta[key] for key in _TOLD if key in meta}
     drawing, shard = told.get(records.DRAWING), told.get(records.SHARD)
     groups = groups_of(mutants, outcomes, rounds, drawing)
     is_whole = _is_whole(mutants, outcomes, rounds)
     drawn = groups if drawing is not None else ()
-    old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
-    if old.outcomes:
-        mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
-        outcomes = [*outcomes, *old.outcomes]
+    old, outdated = _earlier(journal, mutants, outcomes, rounds) if earlier else ([], {})
+    old_ids = {outcome.mutant for outcome in old}
+    if old:
+        more = [mutant for mutant, _ in journal.known() if mutant.id in old_ids]
+        mutants = sorted([*mutants, *more], key=lambda mutant: mutant.number)
+        outcomes = [*outcomes, *old]
         groups = groups_of(mutants, outcomes, rounds, None)
     graded = {mutant.id for mutant in mutants if mutant.has_sizes}
-    old_ids = {outcome.mutant for outcome in old.outcomes}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
         row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
         why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
         quantity = quantity_of(mutant, vocabulary)
-        return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, mutant.id in old.outdated)
+        return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, outdated.get(mutant.id, False))
 
     texts = {file: journal.source(file) for file in sorted({one.site.span.file for one in mutants})}
     found = Results(
@@ -344,42 +339,26 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     return replace(found, state=state, set_aside=set_aside)
 
 
-@frozen
-class _Earlier:
-    """What earlier campaigns found that the last one did not.
+def _earlier(
+    journal: JournalReader, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
+) -> tuple[list[Outcome], dict[str, bool]]:
+    """What earlier campaigns found that the last one did not, of its mutants or others.
 
-    Attributes:
-        mutants: those that the last campaign did not plan.
-        outcomes: of these, and of planned ones that have not been run yet.
-        outdated: ids of mutants that depend on something that has changed since.
+    Also of which mutants of these something has changed since that they depend on, by their ids.
     """
-
-    mutants: tuple[Mutant, ...] = ()
-    outcomes: tuple[Outcome, ...] = ()
-    outdated: frozenset[str] = frozenset()
-
-    @classmethod
-    def of(
-        cls, journal: JournalReader, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
-    ) -> _Earlier:
-        done = {(outcome.mutant, outcome.round) for outcome in outcomes}
-        meta = journal.meta()
-        known = {mutant.id: (mutant, outdated) for mutant, outdated in journal.known()}
-        wanted = {mutant.id for mutant in planned} | known.keys()
-        found = [
-            outcome
-            for outcome in journal.kept_outcomes()
-            if outcome.mutant in wanted
-            and outcome.round < rounds
-            and (outcome.mutant, outcome.round) not in done
-        ]
-        ids = {outcome.mutant for outcome in found}
-        mutants = tuple(mutant for mutant, _ in known.values() if mutant.id in ids)
-        # what was planned and would still hold has been taken over, unless everything is to be run again, or
-        # another shard is to look at it
-        planned_may_hold = bool(meta.get("fresh")) or records.SHARD in meta
-        outdated = {name for name in ids if (known[name][1] if name in known else not planned_may_hold)}
-        return cls(mutants, tuple(found), frozenset(outdated))
+    done = {(outcome.mutant, outcome.round) for outcome in outcomes}
+    outdated = {mutant.id: is_outdated for mutant, is_outdated in journal.known()}
+    wanted = {mutant.id for mutant in planned} | outdated.keys()
+    found = [
+        one
+        for one in journal.kept_outcomes()
+        if one.mutant in wanted and one.round < rounds and (one.mutant, one.round) not in done
+    ]
+    # what was planned and would still hold has been taken over, unless everything is to be run again, or
+    # another shard is to look at it
+    meta = journal.meta()
+    may_hold = bool(meta.get("fresh")) or records.SHARD in meta
+    return found, {one.mutant: outdated.get(one.mutant, not may_hold) for one in found}
 
 
 def _number_of_rounds(meta: Mapping[str, Any], outcomes: list[Outcome]) -> int:
@@ -389,10 +368,10 @@ def _number_of_rounds(meta: Mapping[str, Any], outcomes: list[Outcome]) -> int:
 
 def _attempt(journal: JournalReader) -> str | None:
     found = journal.attempt
-    if found:
-        return found
-    if found is None:
-        return None
+    return found if found or found is None else _unfinished(journal)
+
+
+def _unfinished(journal: JournalReader) -> str:
     return "running" if is_written(journal.path) else "killed"
 
 
@@ -404,7 +383,7 @@ def _is_whole(mutants: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: in
 
 
 def _state(journal: JournalReader, shard: records.ShardOf | None, *, is_whole: bool) -> str:
-    state = journal.finished or ("running" if is_written(journal.path) else "killed")
+    state = journal.finished or _unfinished(journal)
     if state == "complete" and not is_whole and (shard is None or shard.of == 1):
         return records.INCOMPLETE
     if shard is None or shard.of == 1:

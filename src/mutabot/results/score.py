@@ -98,7 +98,9 @@ class RoundScores:
         for outcome in outcomes:
             by_round[outcome.round].append(outcome)
             by_mutant.setdefault(outcome.mutant, [None] * rounds)[outcome.round] = outcome
-        killed = [[_share(one, _is_killed) for one in row] for row in by_mutant.values()]
+        killed = [
+            [_share(one, lambda one: one.verdict.is_killed) for one in row] for row in by_mutant.values()
+        ]
         found = [[_share(one, _is_found) for one in row] for row in by_mutant.values()]
         return cls(
             tuple(Score.of(one) for one in by_round),
@@ -162,27 +164,18 @@ def groups_of(
     for outcome in outcomes:
         if outcome.mutant in key_of:
             found[key_of[outcome.mutant]].append(outcome)
-    return tuple(
-        _group(family, role, sizes[family, role], those, rounds, drawing)
-        for (family, role), those in found.items()
-    )
-
-
-def _group(
-    family: str, role: str, size: int, outcomes: Iterable[Outcome], rounds: int, drawing: Drawing | None
-) -> Group:
-    stratum = drawing.stratum(family, role) if drawing is not None and drawing.sample is not None else None
-    population = stratum.population if stratum is not None else None
-    return Group(family, role, size, RoundScores.of(outcomes, rounds, population=population), population)
+    groups = []
+    for (family, role), those in found.items():
+        stratum = drawing.stratum(family, role) if drawing is not None else None
+        population = stratum.population if stratum is not None else None
+        scores = RoundScores.of(those, rounds, population=population)
+        groups.append(Group(family, role, sizes[family, role], scores, population))
+    return tuple(groups)
 
 
 def _mean(scores: Sequence[float | None]) -> float | None:
     known = [score for score in scores if score is not None]
     return fmean(known) if known else None
-
-
-def _is_killed(outcome: Outcome) -> bool:
-    return outcome.verdict.is_killed
 
 
 def _is_found(outcome: Outcome) -> bool:

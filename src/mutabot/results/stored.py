@@ -87,11 +87,10 @@ def rows(results: Results) -> Iterator[dict[str, Any]]:
                 divergence=next(iter(outcome.divergence), None),
             )  # fmt: skip
             cells = _FACTS.facts(row, _LINE)
-            yield {name: None if _is_no_number(cell) else cell for name, cell in cells.items()}
-
-
-def _is_no_number(cell: Any) -> bool:
-    return isinstance(cell, float) and not math.isfinite(cell)
+            is_number = {
+                key: not isinstance(cell, float) or math.isfinite(cell) for key, cell in cells.items()
+            }
+            yield {key: cell if is_number[key] else None for key, cell in cells.items()}
 
 
 @frozen
@@ -120,11 +119,6 @@ class StoredCampaign(Results):
         return list(rows(self))
 
 
-def journal_at(path: Path) -> Path:
-    """The journal that a user means by a path: a journal, or a project's folder or a folder inside it."""
-    return find_journal(path) if path.is_dir() else path
-
-
 def open(path: str | Path = ".") -> StoredCampaign:
     """Read the last campaign of a journal, also one that was interrupted or still runs.
 
@@ -132,4 +126,5 @@ def open(path: str | Path = ".") -> StoredCampaign:
 
     Raises JournalError if there is no journal, or none that this version reads.
     """
-    return StoredCampaign(**shallow(results_at(journal_at(Path(path)))))
+    journal = find_journal(Path(path)) if Path(path).is_dir() else Path(path)
+    return StoredCampaign(**shallow(results_at(journal)))

@@ -4,8 +4,8 @@ It imports the standard library, wrapt, pytest, and of mutabot only ``model``, `
 ``extensions`` and ``operators``. ``session_hooks`` and ``test_hooks`` make pytest run a job, and ``session``
 holds what stands in the program for it: ``targets`` finds what the vocabulary names, ``interception`` and
 ``program_text`` are the two ways of a mutant into it, ``observation`` looks at the world, ``isolation``
-forks, ``processes`` follows what the tests start, and ``watching`` is for ``mutabot init``. To follow one
-call, begin at ``interception/dispatcher.py``.
+forks, and ``processes`` follows what the tests start. To follow one call, begin at
+``interception/dispatcher.py``.
 """
 
 import os

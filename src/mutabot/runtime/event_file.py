@@ -21,6 +21,10 @@ class EventWriter(Protocol):
         """Take one event."""
 
 
+def _die() -> None:
+    os._exit(UNWRITTEN)
+
+
 class EventFile:
     """The file of this process.
 
@@ -36,12 +40,7 @@ class EventFile:
     """
 
     def __init__(
-        self,
-        folder: str,
-        name: str,
-        key: str,
-        fail: Callable[[], None] = lambda: os._exit(UNWRITTEN),
-        bell: int | None = None,
+        self, folder: str, name: str, key: str, fail: Callable[[], None] = _die, bell: int | None = None
     ) -> None:
         self._folder, self.name, self._key, self._fail = folder, name, key, fail
         self._bell = bell

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import resource
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Any, NoReturn
 
 from mutabot.errors import MutabotError
 from mutabot.model.job import Budget
-from mutabot.model.outcome import added
 from mutabot.model.path import class_name
 
 #: classes that are told by their names, since their modules may not be loaded, with what they hold
@@ -121,6 +120,10 @@ class Evidence:
     is_unknown: bool = False
     away: dict[str, int] = field(default_factory=dict)
 
+    def copy(self) -> Evidence:
+        """The same, for itself."""
+        return replace(self, away=dict(self.away))
+
     @property
     def culprits(self) -> frozenset[int]:
         """The refusals and all that they hold, each by its ``id``."""
@@ -130,23 +133,6 @@ class Evidence:
     def refusal(self) -> str | None:
         """How the robot refused a mutated call, in its own words; None if it did not."""
         return str(leaves(self.refusals[-1])[0]) if self.refusals else self.said
-
-
-def together(found: Sequence[Evidence]) -> Evidence:
-    """The evidence of several mutants that are one: it acts if all of them do."""
-    if len(found) == 1:
-        return found[0]
-    return Evidence(
-        hits=min((one.hits for one in found), default=0),
-        acted=min((one.acted for one in found), default=0),
-        example=next((one.example for one in found if one.example is not None), None),
-        refusals=tuple(refusal for one in found for refusal in one.refusals),
-        said=next((one.said for one in found if one.said is not None), None),
-        failure=next((one.failure for one in found if one.failure is not None), None),
-        is_of_text=any(one.is_of_text for one in found),
-        is_unknown=any(one.is_unknown for one in found),
-        away=added(one.away for one in found),
-    )
 
 
 class BudgetExceeded(BaseException):  # it is no error of the program's
@@ -177,10 +163,6 @@ class Meter:
     def __post_init__(self) -> None:
         self.most = inf if self.budget.operations is None else self.budget.operations
 
-    def exceed_operations(self) -> NoReturn:
-        """End a test whose intercepted calls are more than ``most``. Raises BudgetExceeded."""
-        self._exceed(f"more than {self.budget.operations} operations")
-
     def tick(self, time: float) -> None:
         """The simulation has advanced to ``time`` (s). Raises BudgetExceeded beyond the limit."""
         if self.started is None or self.now is None:
@@ -200,7 +182,7 @@ class Meter:
         self.now = time
         limit = self.budget.simulated
         if limit is not None and (self.simulated or 0.0) > limit:
-            self._exceed(f"more than {limit:.6g} s of simulated time")
+            self.exceed(f"more than {limit:.6g} s of simulated time")
 
     @property
     def simulated(self) -> float | None:
@@ -209,7 +191,8 @@ class Meter:
             return None
         return self.used + self.now - self.started
 
-    def _exceed(self, text: str) -> NoReturn:
+    def exceed(self, text: str) -> NoReturn:
+        """End a test that goes beyond a limit. Raises BudgetExceeded."""
         self.exceeded = self.exceeded or text
         raise BudgetExceeded(text)
 

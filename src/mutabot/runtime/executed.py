@@ -12,31 +12,25 @@ import ast
 import builtins
 import os
 import sys
-from collections.abc import Iterable
 from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.model.source_units import (
-    ALL_FILES,
-    MODULE,
-    WHOLE,
-    Executed,
-    functions_of,
-)
-from mutabot.runtime.audit import FRAMES, listen
+from mutabot.model.source_units import ALL_FILES, MODULE, WHOLE, Executed, functions_of
+from mutabot.runtime.processes.environment import FRAMES, listen
 from mutabot.runtime.program_text import loading
 
 #: the built-in name of the bytes, one for each function
 RAN = "__mutabot_ran__"
-_STARTS = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.forkpty", "os.exec"}
+#: audit events of the start of a process
+STARTS = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.forkpty", "os.exec"}
 #: modules whose loading means that processes are started without an event
 _SPAWNERS = {"multiprocessing.popen_spawn_posix", "multiprocessing.popen_forkserver"}
 _FOREIGN = {"uname", "git", "ldconfig", "lsb_release", "nvidia-smi"}
 _PLACES = tuple[str, int]
 
 
-class ExecutedUnits:
-    """The record of this process and of its forks. See ``loading.Step``.
+class ExecutedUnits(loading.SourceStep):
+    """The record of this process and of its forks. Of a file that is compiled without marks, all counts.
 
     Args:
         root: absolute path of the project.
@@ -71,7 +65,7 @@ class ExecutedUnits:
                 self._common.add((name, WHOLE))
         loading.add(self)
         loading.hook_pytest(self.wants, self.change)
-        listen(("open", "import", "exec", *_STARTS), self._hear)
+        listen(("open", "import", "exec", *STARTS), self._hear)
 
     def wants(self, path: str) -> bool:
         """Whether a file is the project's own."""
@@ -91,9 +85,6 @@ class ExecutedUnits:
             self._places.append((name, node.lineno))
             self._ran.append(0)
             _mark(node, number)  # what is defined in it may be sent to processes that know no marks
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """It is compiled without marks: all of it counts."""
 
     def start_test(self) -> None:
         """A test begins, before its fixtures."""
@@ -140,7 +131,7 @@ class ExecutedUnits:
         return real[len(self._root) :]
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """Something happens that may matter beside what is executed; see ``runtime.audit``."""
+        """Something happens that may matter beside what is executed; see ``environment.listen``."""
         if event == "open":
             path, _, flags = arguments
             if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):
@@ -153,12 +144,10 @@ class ExecutedUnits:
             name = self._name(arguments[0].co_filename)
             if name is not None and name not in self._loaded:
                 self._common.add((name, WHOLE))
-        elif event in _STARTS and not (
-            _is_by_us() or _is_foreign(event, arguments) or self._is_import_of_library()
-        ):
+        elif event in STARTS and not (_is_by_us() or _is_foreign(event, arguments) or self._is_of_library()):
             self._common.add((ALL_FILES, WHOLE))
 
-    def _is_import_of_library(self) -> bool:
+    def _is_of_library(self) -> bool:
         """Whether an installed package does it while it is imported, as ``glfw`` does to know a version."""
         frame: FrameType | None = sys._getframe(1 + FRAMES)
         while frame is not None:
@@ -187,10 +176,7 @@ def _is_by_us() -> bool:
 def _is_import() -> bool:
     """Whether a program text is opened by what imports it, or by pytest."""
     name = _who(("pathlib", "linecache", "tokenize", "codecs"))
-    return name.startswith("_pytest.") or name in (
-        "_frozen_importlib_external",
-        "importlib._bootstrap_external",
-    )
+    return name.startswith(("_pytest.", "_frozen_importlib_external", "importlib._bootstrap_external"))
 
 
 def _is_foreign(event: str, arguments: tuple[Any, ...]) -> bool:
@@ -214,10 +200,7 @@ def _mark(function: ast.FunctionDef | ast.AsyncFunctionDef, number: int) -> None
 
 
 def _imports(tree: ast.Module, package: str) -> bool:
-    names: Iterable[str] = (
-        name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Import | ast.ImportFrom)
-        for name in (getattr(node, "module", None) or "", *(one.name for one in node.names))
-    )
+    nodes = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    names = [getattr(node, "module", None) or "" for node in nodes]
+    names += [one.name for node in nodes for one in node.names]
     return any(name.partition(".")[0] == package for name in names)

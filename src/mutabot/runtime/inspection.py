@@ -11,8 +11,7 @@ from mutabot.model import Call, Operation, Vocabulary
 from mutabot.model.events import Event, Problem, Remark
 from mutabot.model.quantity import Value
 from mutabot.runtime.targets.callables import Callables, not_imported
-from mutabot.runtime.targets.messages import Messages
-from mutabot.runtime.targets.target import Finding, NotFoundError, resolve
+from mutabot.runtime.targets.target import Finding, Messages, NotFoundError, resolve
 
 #: the targets of a process
 Kinds = Sequence[Callables | Messages]

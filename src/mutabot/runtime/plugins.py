@@ -24,7 +24,7 @@ import pytest
 
 from mutabot.frozen import frozen
 from mutabot.model.events import Watched
-from mutabot.runtime.isolation.namespaces import left_out
+from mutabot.runtime.isolation.forkable import left_out
 from mutabot.runtime.seeds import node_id
 
 
@@ -45,8 +45,7 @@ class Plugin:
 
 PLUGINS = (
     Plugin(
-        "pytest-xdist",
-        (("xdist", "xdist.plugin"), ("xdist.looponfail", "xdist.looponfail")),
+        "pytest-xdist", (("xdist", "xdist.plugin"), ("xdist.looponfail", "xdist.looponfail")),
         ("xdist_group(name)",),
     ),
     Plugin("pytest-cov", (("pytest_cov", "pytest_cov.plugin"),), ("no_cover",)),
@@ -60,12 +59,9 @@ PLUGINS = (
     Plugin("pytest-forked", (("pytest_forked", "pytest_forked"),), ("forked",)),
     Plugin("pytest-parallel", (("parallel", "pytest_parallel"),)),
     Plugin(
-        "pytest-run-parallel",
-        (("run-parallel", "pytest_run_parallel.plugin"),),
-        (
-            "parallel_threads(n)", "parallel_threads_limit(n)", "force_parallel_threads(n)", "iterations(n)",
-            "thread_unsafe",
-        ),
+        "pytest-run-parallel", (("run-parallel", "pytest_run_parallel.plugin"),),
+        ("parallel_threads(n)", "parallel_threads_limit(n)", "force_parallel_threads(n)", "iterations(n)",
+         "thread_unsafe"),
     ),
     Plugin("pytest-testmon", (("pytest-testmon", "testmon.pytest_testmon"),)),
 )  # fmt: skip
@@ -139,14 +135,11 @@ def _stand_in(plugin: ModuleType, hooks: tuple[str, ...]) -> ModuleType:
     """A plug-in with the declarations and fixtures of another."""
     found = ModuleType(f"stand-in for {plugin.__name__}")
     for name, value in vars(plugin).items():
-        if name in hooks or _is_fixture(value):
+        # before pytest 8.4, a fixture is a function with a mark
+        is_fixture = hasattr(value, "_pytestfixturefunction")
+        if name in hooks or is_fixture or type(value).__name__ == "FixtureFunctionDefinition":
             setattr(found, name, value)
     return found
-
-
-def _is_fixture(value: Any) -> bool:
-    # before pytest 8.4, a fixture is a function with a mark
-    return type(value).__name__ == "FixtureFunctionDefinition" or hasattr(value, "_pytestfixturefunction")
 
 
 def _normal(requirement: str) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from random import Random
 from typing import Any
@@ -81,47 +81,45 @@ class ProcessFatal(ProcessFault):
 
 
 @dataclass(slots=True)
-class ProcessFaults:
-    """All such faults in this process.
+class PlacedFault:
+    """The mutant of this process, if it is such a fault.
 
     Attributes:
-        on_act: told the mutant's id when one changes something for the first time in a test.
+        on_act: told the mutant's id when it changes something for the first time in a test.
         fatal: what the fatal control raises: the setup of the running test is to fail with it.
     """
 
     on_act: Callable[[str], None]
     fatal: FatalFault | None = None
-    _placed: dict[str, tuple[Mutant, InProcess]] = field(default_factory=dict)
-    _faults: dict[str, ProcessFault] = field(default_factory=dict)
-    _failures: dict[str, str] = field(default_factory=dict)
+    _mutant: Mutant | None = None
+    _how: InProcess | None = None
+    _fault: ProcessFault | None = None
+    _failure: str | None = None
 
-    def add(self, mutant: Mutant, how: InProcess) -> None:
+    def place(self, mutant: Mutant, how: InProcess) -> None:
         """From the next test on, this is in place."""
-        self._placed[mutant.id] = mutant, how
+        self._mutant, self._how = mutant, how
 
     @property
-    def evidence(self) -> list[Evidence]:
-        """What each of them did in the running test."""
-        found = []
-        for id in self._placed:
-            evidence = self._faults[id].evidence if id in self._faults else Evidence()
-            found.append(replace(evidence, failure=self._failures.get(id, evidence.failure)))
-        return found
+    def evidence(self) -> Evidence:
+        """What it did in the running test."""
+        found = self._fault.evidence if self._fault is not None else Evidence()
+        return found if self._failure is None else replace(found, failure=self._failure)
 
     def start_test(self, test: str, random_of: Callable[[Mutant], Random]) -> None:
         """A test begins."""
         self.fatal = None
-        for id, (mutant, how) in self._placed.items():
-            with self._told(mutant, "put in place"):
-                fault = self._faults.get(id) or self._made(mutant, how)
+        if self._mutant is not None and self._how is not None:
+            with self._told(self._mutant, "put in place"):
+                fault = self._fault = self._fault or self._made(self._mutant, self._how)
                 fault.evidence = Evidence()
-                fault.start_test(test, random_of(mutant))
+                fault.start_test(test, random_of(self._mutant))
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""
-        for id, fault in self._faults.items():
-            with self._told(self._placed[id][0], "taken away"):
-                fault.end_test()
+        if self._fault is not None:
+            with self._told(self._fault.mutant, "taken away"):
+                self._fault.end_test()
 
     @contextmanager
     def _told(self, mutant: Mutant, what: str) -> Iterator[None]:
@@ -131,8 +129,7 @@ class ProcessFaults:
         except FatalFault as error:
             self.fatal = error
         except Exception as error:
-            why = f"{mutant.operator} cannot be {what}: {type(error).__name__}: {error}"
-            self._failures[mutant.id] = why
+            self._failure = f"{mutant.operator} cannot be {what}: {type(error).__name__}: {error}"
 
     def _made(self, mutant: Mutant, how: InProcess) -> ProcessFault:
         """The fault, which is made when the first test begins."""
@@ -141,7 +138,6 @@ class ProcessFaults:
         if not isinstance(fault, ProcessFault):
             raise TypeError(f"{how.reference} is no mutabot.runtime.process_fault.ProcessFault")
         fault.on_act = lambda: self.on_act(mutant.id)
-        self._faults[mutant.id] = fault
         return fault
 
 

@@ -25,12 +25,7 @@ def _import_us_unrewritten() -> None:
 
 _import_us_unrewritten()  # before anything else of us is imported
 
-from mutabot.model.call import (  # noqa: E402
-    CAMPAIGN_SEED_VARIABLE,
-    DEFAULT_SEED,
-    ROUND_VARIABLE,
-    SEED_VARIABLE,
-)
+from mutabot.model import call  # noqa: E402
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
 from mutabot.runtime import seeds  # noqa: E402
 from mutabot.runtime.seeds import PytestNode, node_id  # noqa: E402
@@ -75,7 +70,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None
 
         _hooks = SessionHooks.from_files(job, int(pipe))
         _hooks.config = early_config
-    elif _hooks is None and os.environ.get(ROUND_VARIABLE):
+    elif _hooks is None and os.environ.get(call.ROUND_VARIABLE):
         _plain_round = PlainRound.from_environment()
     try:
         return (yield)
@@ -94,7 +89,7 @@ def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
     status = yield
     is_last = config.hook.pytest_cmdline_main.get_hookimpls()[-1].plugin is sys.modules[__name__]
     if _hooks is not None and is_last and isinstance(status, int):
-        from mutabot.runtime.isolation.parent_death import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
+        from mutabot.runtime.isolation.forkable import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         leave(int(status))
     return status
@@ -115,7 +110,7 @@ def seed_of(node: PytestNode) -> int:
     seeded = _hooks or _plain_round
     if seeded is not None:
         return seeded.seed_of(node_id(node))
-    return int(os.environ.get(SEED_VARIABLE, "0"))
+    return int(os.environ.get(call.SEED_VARIABLE, "0"))
 
 
 def _seed(request: pytest.FixtureRequest) -> int:
@@ -201,14 +196,15 @@ class PlainRound:
     @classmethod
     def from_environment(cls) -> PlainRound | None:
         """The round that the environment names, or None. Raises pytest.UsageError for what makes no sense."""
-        number = _whole_number(ROUND_VARIABLE, least=1)
+        number = _whole_number(call.ROUND_VARIABLE, least=1)
         if number is None:
             return None
-        if os.environ.get(SEED_VARIABLE):
-            text = f"{ROUND_VARIABLE} gives every test its seed in that round, {SEED_VARIABLE} another one"
-            raise pytest.UsageError(f"{text}; set one of the two")
-        seed = _whole_number(CAMPAIGN_SEED_VARIABLE, least=0)
-        return cls(DEFAULT_SEED if seed is None else seed, number - 1)
+        if os.environ.get(call.SEED_VARIABLE):
+            names = call.ROUND_VARIABLE, call.SEED_VARIABLE
+            text = "{} gives every test its seed in that round, {} another one; set one of the two"
+            raise pytest.UsageError(text.format(*names))
+        seed = _whole_number(call.CAMPAIGN_SEED_VARIABLE, least=0)
+        return cls(call.DEFAULT_SEED if seed is None else seed, number - 1)
 
     def seed_of(self, name: str) -> int:
         """The seed of a test or shared fixture in this round."""

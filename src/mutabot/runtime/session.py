@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
@@ -16,95 +16,82 @@ from mutabot.model.job import Budget, Job
 from mutabot.model.operation import owner_of
 from mutabot.model.quantity import Value
 from mutabot.runtime.event_file import EventWriter
-from mutabot.runtime.evidence import Evidence, Meter, together
-from mutabot.runtime.inspection import Inspection, Kinds
+from mutabot.runtime.evidence import Evidence, Meter
+from mutabot.runtime.inspection import Inspection
 from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
-from mutabot.runtime.observation.clock import ClockReader, ProgramTime
-from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.observation.clock import ClockReader, Instances, ProgramTime
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
-from mutabot.runtime.process_fault import ProcessFaults
+from mutabot.runtime.process_fault import PlacedFault
 from mutabot.runtime.program_text.call_sites import CallSites
-from mutabot.runtime.program_text.handing import Handing
+from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.returns import Returns
-from mutabot.runtime.program_text.session_text import SessionText
-from mutabot.runtime.program_text.standing import Standing, StandIns, last_name
+from mutabot.runtime.program_text.standing import Handing, Standing, StandIns, last_name
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.messages import Messages
-from mutabot.runtime.targets.target import Finding, Handler
+from mutabot.runtime.targets.target import Finding, Handler, Messages
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
 
 
-@dataclass(slots=True)
 class Session:
     """The job at hand.
 
-    Attributes:
+    Args:
         job: what to do.
         pipe: where reports go.
         locator: finds the site of a frame, and of a function that is called back.
+
+    Attributes:
         recorder: traces; always kept, since survivors are compared with the original.
         callables, messages: what stands around the vocabulary's targets; no messages where none is asked for.
+        targets: those that there are of the two.
         passing: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
         is_fork: whether this process was forked to be its mutant.
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
         standing: what stands there.
-        handing: sees calls of what the program hands on.
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
         noted: in the baseline, calls of the running test that the robot refused, or that returned its memory.
         on_noted: told of each of them; None if nobody asks.
-        placed: faults that their providers put in place before each test.
+        placed: the mutant, if it is a fault that its provider puts in place before each test.
     """
 
-    job: Job
-    pipe: EventWriter
-    locator: Locator
-    recorder: Recorder = field(init=False)
-    callables: Callables = field(init=False)
-    messages: Messages | None = None
-    passing: Dispatcher = field(init=False)
-    inspection: Inspection = field(init=False)
-    placed: ProcessFaults = field(init=False)
-    recording: TestRecording = field(init=False)
-    instances: Instances = field(default_factory=Instances)
-    along: Along = field(init=False)
-    is_fork: bool = False
-    text: SessionText | None = None
-    returns: Returns | None = None
-    call_sites: CallSites = field(init=False)
-    standing: Standing = field(init=False)
-    handing: Handing = field(init=False)
-    test: str = ""
-    noted: dict[Noted, None] = field(default_factory=dict)
-    on_noted: Callable[[Noted], None] | None = None
-    _adapters: list[Adapter] = field(default_factory=list)
-    _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
-    _telling: list[Adapter] = field(default_factory=list)
-    _time: ProgramTime = field(init=False)
-    _main_thread: int | None = field(default_factory=lambda: threading.main_thread().ident)
-    _sees_itself: set[Handler] = field(default_factory=set)
+    call_sites: CallSites
+    standing: Standing
 
-    def __post_init__(self) -> None:
+    def __init__(self, job: Job, pipe: EventWriter, locator: Locator) -> None:
+        self.job, self.pipe, self.locator = job, pipe, locator
         self.recorder = Recorder(self._site_seen)
-        self.recording = TestRecording()
+        self.recording = TestRecording(self._simulated, self._aside, job.vocabulary.clock is not None)
+        self.instances = Instances()
         self.along = Along(partial(self._read_probes, along=True))
-        self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
-        self.placed = ProcessFaults(self._acted)
+        self.inspection = Inspection(job.vocabulary, job.inspect, self._send)
+        self.placed = PlacedFault(self._acted)
         self.callables = Callables(self.inspection.target_is_wrong)
-        self.passing = Dispatcher(
-            self.locator, self.recorder, self.instances, self.along, self._raised, self._on_end
-        )
-        self.passing.oracle_nodes = self.job.oracle_nodes
-        self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
+        self.messages: Messages | None = None
+        self.targets: list[Callables | Messages] = [self.callables]
+        self.passing = Dispatcher(locator, self.recorder, self.instances, self.along, self._raised)
+        self.passing.oracle_nodes = job.oracle_nodes
+        self.passing.on_end = self.inspection.note if job.inspect else None
+        self.is_fork = False
+        self.text: SessionText | None = None
+        self.returns: Returns | None = None
+        self.test = ""
+        self.noted: dict[Noted, None] = {}
+        self.on_noted: Callable[[Noted], None] | None = None
+        self._adapters: list[Adapter] = []
+        self._lately: dict[str, Mapping[str, Value]] = {}
+        self._telling: list[Adapter] = []
+        self._time = ProgramTime(job.vocabulary, lambda: self.meter, self.instances)
+        self._main_thread = threading.main_thread().ident
+        self._sees_itself: set[Handler] = set()
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
@@ -124,12 +111,16 @@ class Session:
         if vocabulary.clock is not None:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
-            self.callables.wrap(clock.tick, reader.handler())
+            self.callables.wrap(clock.tick, reader.handle)
         self._listen()
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
         if self.job.record or self.job.serving is not None:
-            self._watch_imports()
+            # what the program does while it is imported counts for every test that comes after
+            self.passing.meter = Meter(Budget())
+            is_original = self.job.mutant is None
+            self.recorder.answers = Answers(handles_of(vocabulary)) if is_original else None
+            self._start_mutant()
 
     def _see_calls(self) -> None:
         """See calls where they are written, of whatever stands in the place of an operation."""
@@ -137,17 +128,15 @@ class Session:
         self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
         self._tell_standing()
         names = {last_name(one.operation) for one in called}
-        self.handing = Handing(self.standing, self.passing.given)
-        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
+        handing = Handing(self.standing, self.passing.given)
+        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, handing)
         self.call_sites.install()
 
     def _tell_standing(self) -> None:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
-        mutants = self.job.forking.mutants if self.job.forking is not None else ()
-        own = (self.job.mutant,) if self.job.mutant is not None else ()
-        self.standing.known = dict(self.job.known) | {
-            one.site.span: one.operation for one in (*mutants, *own)
-        }
+        mutants = list(self.job.forking.mutants) if self.job.forking is not None else []
+        mutants += [self.job.mutant] if self.job.mutant is not None else []
+        self.standing.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
         if self.job.inspect:
             self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
 
@@ -164,17 +153,14 @@ class Session:
 
     def _heeded(self) -> Messages:
         """The names on middlewares, which are hooked as soon as anybody asks for one."""
-        self.messages = self.messages or Messages(self.inspection.target_is_wrong)
+        if self.messages is None:
+            self.messages = Messages(self.inspection.target_is_wrong)
+            self.targets.append(self.messages)
         return self.messages
 
-    @property
-    def targets(self) -> Kinds:
-        """All targets of this process."""
-        return [self.callables] if self.messages is None else [self.callables, self.messages]
-
     def _heard(self, name: str, message: Any) -> None:
-        for activation in self.activations:
-            activation.heard(name, message)
+        if self.mutant is not None:
+            self.mutant.heard(name, message)
         self.passing.refused.heard(name, message)
         for adapter in self._telling:
             adapter.observe_message(name, message)
@@ -191,30 +177,10 @@ class Session:
         self._sees_itself.add(adapter.handler)
         return adapter.handler
 
-    def _watch_imports(self) -> None:
-        """What the program does while it is imported counts for every test that comes after."""
-        self.passing.meter = Meter(Budget())
-        self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if self.job.mutant is None else None
-        self._start_activations()
-
-    def _end_imports(self) -> None:
-        """The first test begins."""
-        if self.meter is None or self.test:
-            return
-        for call in self.recorder.trace:
-            self.pipe.send(Called(*call))
-        for activation in self.activations:
-            activation.keep_import_evidence()
-
     @property
-    def sites(self) -> tuple[SiteSeen, ...]:
-        """All sites that were reached so far."""
-        return tuple(self.recorder.sites)
-
-    @property
-    def activations(self) -> list[ActiveMutant]:
-        """The mutants of calls that are at work: none for the original."""
-        return self.passing.mutants
+    def mutant(self) -> ActiveMutant | None:
+        """The mutant of calls that is at work; None for the original, and for other mutants."""
+        return self.passing.mutant
 
     @property
     def meter(self) -> Meter | None:
@@ -222,23 +188,17 @@ class Session:
         return self.passing.meter
 
     @property
-    def fork_parent(self) -> ForkParent | None:
-        """What forks a process for each mutant, while this process runs the original."""
-        return self.passing.fork_parent
-
-    @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
         self.look_back()
-        found = [activation.evidence for activation in self.activations]
         if self.text is not None and self.text.is_mutant:
-            found.append(self.text.evidence)
-        return together([*found, *self.placed.evidence])
+            return self.text.evidence
+        return self.mutant.evidence if self.mutant is not None else self.placed.evidence
 
     def look_back(self, *, at_all: bool = False) -> None:
-        """Look whether the program has written to copies that mutants handed out; ``at_all`` of them."""
-        for activation in self.activations:
-            activation.look_back(at_all=at_all)
+        """Look whether the program has written to copies that the mutant handed out; ``at_all`` of them."""
+        if self.mutant is not None:
+            self.mutant.look_back(at_all=at_all)
 
     @property
     def commands(self) -> int:
@@ -249,12 +209,12 @@ class Session:
         """Take on a mutant. What of it is an alternative in the program text stands there already."""
         operation = self.job.vocabulary.operation(mutant.operation)
         if mutant.id in self.job.faults:
-            self.placed.add(mutant, self.job.faults[mutant.id])
+            self.placed.place(mutant, self.job.faults[mutant.id])
         elif operation is not None:
             refusals = self._refusals(operation)
             on_act = partial(self._acted, mutant.id)
             told = (on_act, self._in_mutated_call, self._time.now_if_known)
-            self.passing.mutants.append(ActiveMutant(mutant, operation, refusals, *told))
+            self.passing.mutant = ActiveMutant(mutant, operation, refusals, *told)
 
     def grow(self, parent: ForkParent) -> None:
         """Run the original from now on, and fork a process for each of the parent's mutants."""
@@ -263,7 +223,7 @@ class Session:
         self._watch_text()
 
     def _watch_text(self) -> None:
-        parent = self.fork_parent
+        parent = self.passing.fork_parent
         if self.text is not None and parent is not None:
             self.text.watch(parent.fork_at_place, parent.places())
 
@@ -271,7 +231,7 @@ class Session:
         """In a process that was just forked: be this mutant, with its alternatives in the program text."""
         self.passing.fork_parent, self.is_fork = None, True
         self.activate(mutant)
-        self._start_activations()
+        self._start_mutant()
         if self.text is not None:
             self.text.alternatives.on_place = None
             self.text.alternatives.activate(*choices)
@@ -279,7 +239,8 @@ class Session:
     def take_on(self, job: Job, pipe: EventWriter) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
-        self.inspection.is_asked, self.passing.on_end = job.inspect, self._on_end
+        self.inspection.is_asked = job.inspect
+        self.passing.on_end = self.inspection.note if job.inspect else None
         self._tell_standing()
         if self.text is not None:
             self.text.pipe = pipe
@@ -289,9 +250,13 @@ class Session:
 
         ``fixtures`` tells what objects they hold; None in a process below the tests.
         """
-        self._end_imports()
+        if self.meter is not None and not self.test:  # the first test
+            for call in self.recorder.trace:
+                self.pipe.send(Called(*call))
+            if self.mutant is not None:
+                self.mutant.early = self.mutant.evidence
         self.test = test
-        self._look_again()
+        self.standing.note_modules(self.call_sites.loaded)
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
         is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
@@ -300,8 +265,8 @@ class Session:
         self.instances.start(fixtures)
         self.passing.calls.clear()
         self.noted.clear()
-        self.passing.on_live = self._is_live if is_baseline else None
-        self.passing.refused.on_refused = self._refused if is_baseline else None
+        self.passing.on_live = self._note if is_baseline else None
+        self.passing.refused.on_refused = partial(self._note, is_refused=True) if is_baseline else None
         self.passing.refused.start(self.job.refused.get(test, ()))
         self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
@@ -311,35 +276,25 @@ class Session:
         if self.text is not None:
             self.text.start_test(test)
             self._watch_text()
-        self._start_activations()
-        self.placed.start_test(test, self._random_of)
-        has_clock = self.job.vocabulary.clock is not None
-        self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
+        self._start_mutant()
+        self.placed.start_test(test, lambda mutant: Random(self._seed_of(mutant)))
+        self.recording.start(test, is_wanted=self.job.evidence)
 
     def _aside(self) -> Untracked:
         """What is done in this context is none of the program's doing."""
         is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
         return Untracked(self.returns if is_main else None)
 
-    def _look_again(self) -> None:
-        """What the program has made since the last test."""
-        if self.call_sites.loaded:
-            self.standing.note_modules(frozenset(self.call_sites.loaded))
-            self.call_sites.loaded.clear()
-
     def _seed_of(self, mutant: Mutant) -> int:
         """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
         return derive(self.job.seed, self.job.round, self.test, mutant.ladder or mutant.id)
 
-    def _random_of(self, mutant: Mutant) -> Random:
-        return Random(self._seed_of(mutant))
-
-    def _start_activations(self) -> None:
-        for activation in self.activations:
-            mutant = activation.mutant
+    def _start_mutant(self) -> None:
+        if self.mutant is not None:
+            mutant = self.mutant.mutant
             seed = self._seed_of(mutant)
             usual = self.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
-            activation.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
+            self.mutant.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
 
     def _moment_of(self, mutant: Mutant) -> Moment | None:
         """At which calls of the running test a mutant acts."""
@@ -358,8 +313,8 @@ class Session:
         self.passing.meter = None
         self.placed.end_test()
         if self.text is not None:
-            if self.fork_parent is not None:
-                self.fork_parent.tell_undiverged(self.text.alternatives.hits)
+            if self.passing.fork_parent is not None:
+                self.passing.fork_parent.tell_undiverged(self.text.alternatives.hits)
             self.text.end_test()
 
     def take_probes(self) -> Reading:
@@ -395,23 +350,20 @@ class Session:
 
         ``texts`` is what processes below the tests saw of the program text.
         """
-        if self.fork_parent is not None:
-            self.fork_parent.finish()
+        if self.passing.fork_parent is not None:
+            self.passing.fork_parent.finish()
         if self.text is not None:
             self.text.finish(texts)
         if self.job.record and self.job.mutant is None:
-            self._tell_known_later()
+            # of sites at which an operation stood in some tests and something unknown in others
+            stood = self.standing.stood | {seen.span: seen.operation for seen in self.recorder.sites}
+            for span in sorted(self.standing.alone & stood.keys()):
+                self._send(KnownLater(span, stood[span]))
         if self.job.inspect:
             self.inspect_targets()
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
-
-    def _tell_known_later(self) -> None:
-        """Tell of sites at which an operation stood in some tests and something unknown in others."""
-        stood = self.standing.stood | {seen.span: seen.operation for seen in self.sites}
-        for span in sorted(self.standing.alone & stood.keys()):
-            self._send(KnownLater(span, stood[span]))
 
     def inspect_targets(self) -> None:
         """Look at every target of the vocabulary, also of what no test has led to."""
@@ -425,25 +377,13 @@ class Session:
         if self.text is not None and not refused.has(made):
             self.text.raised(error, made.call, names)
 
-    def _refused(self, made: SiteCall) -> None:
-        """The robot refused a call of the original."""
-        self._note(Noted(self._index_of(made), made.number))
-
-    def _is_live(self, made: SiteCall) -> None:
-        """A call of the original returned the robot's own memory."""
-        self._note(Noted(self._index_of(made)))
-
-    def _note(self, one: Noted) -> None:
+    def _note(self, made: SiteCall, *, is_refused: bool = False) -> None:
+        """A call of the original was refused by the robot, or returned the robot's own memory."""
+        index = self.recorder.index_of(replace(seen_by(made), direct=False))
+        one = Noted(index, made.number if is_refused else None)
         if one not in self.noted and self.on_noted is not None:
             self.on_noted(one)
         self.noted[one] = None
-
-    def _index_of(self, made: SiteCall) -> int:
-        return self.recorder.index_of(replace(seen_by(made), direct=False))
-
-    @property
-    def _on_end(self) -> Callable[..., None] | None:
-        return self.inspection.note if self.job.inspect else None
 
     def _refusals(self, operation: Operation) -> frozenset[str]:
         return frozenset((*operation.refusals, *self.job.vocabulary.refusals))
@@ -457,9 +397,8 @@ class Session:
 
     def _acted(self, mutant: str) -> None:
         """The mutant changed something; what is of the program text has no name."""
-        self.recording.note_fault(
-            len(self.recorder.trace), self.recorder.began if mutant else self.recording.clock()
-        )
+        time = self.recorder.began if mutant else self.recording.clock()
+        self.recording.note_fault(len(self.recorder.trace), time)
         self.pipe.send(Acted(self.test))
 
     def _simulated(self) -> float | None:

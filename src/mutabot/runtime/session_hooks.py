@@ -15,17 +15,15 @@ from mutabot import extensions
 from mutabot.frozen import compile_all
 from mutabot.model import Mutant, Role
 from mutabot.model.events import SessionEnd
-from mutabot.model.job import Forking, Job, read_job
+from mutabot.model.job import Job, read_job
 from mutabot.operators.registry import preload
 from mutabot.runtime import seeds
 from mutabot.runtime.event_file import EventFile, Held
 from mutabot.runtime.evidence import limit_memory
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.isolation.files import Isolation, PrivateFiles
+from mutabot.runtime.isolation.files import LOG, PrivateFiles
 from mutabot.runtime.isolation.fork_parent import ForkParent
-from mutabot.runtime.isolation.forkable import track_event_loops
-from mutabot.runtime.isolation.forked_run import ForkedRun
-from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
+from mutabot.runtime.isolation.forkable import die_with_parent, track_event_loops
 from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
@@ -33,15 +31,10 @@ from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.test_end import classify, with_evidence
-from mutabot.runtime.test_hooks import TestHooks
+from mutabot.runtime.test_hooks import ForkedRun, TestHooks, classify, with_evidence
 
 if TYPE_CHECKING:
     from mutabot.runtime.isolation.fork_server import ForkServer
-
-
-#: where a process keeps what it prints, in its home
-LOG = "log.txt"
 
 
 class SessionHooks:
@@ -57,17 +50,17 @@ class SessionHooks:
         config: pytest's configuration; None until it reads the first of the user's code.
     """
 
+    _files: PrivateFiles
+
     def __init__(self, job: Job, pipe: EventFile, server: ForkServer | None = None) -> None:
-        self.locator = Locator(job.root, job.program, job.oracle)
         self.config: pytest.Config | None = None
         self._held = Held()
+        self.locator = Locator(job.root, job.program, job.oracle)
         self.session = Session(job, pipe if server is None else self._held, self.locator)
-        self.tests = TestHooks(self.session, self.locator)
+        self.tests = TestHooks(self.session)
         self._server = server
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
-        self._not_private: str | None = None
-        self._files: PrivateFiles | None = None
 
     @property
     def job(self) -> Job:
@@ -77,9 +70,7 @@ class SessionHooks:
     @classmethod
     def from_files(cls, job_file: str, descriptor: int) -> SessionHooks:
         """Read the job, set the limits of the process and put the interception in place."""
-        die_with_parent()
-        if nobody_listens(descriptor):  # the controller died before the kernel was asked
-            os._exit(ALONE)
+        die_with_parent(pipe=descriptor)
         home = os.path.dirname(job_file)
         job = read_job(home)
         extensions.use(job.extensions)
@@ -108,14 +99,9 @@ class SessionHooks:
         return hooks
 
     def _make_private(self, job: Job, home: str) -> None:
-        if not job.private_files:
-            self._not_private = "private_files is switched off"
-            return
         root = os.path.realpath(job.root)
-        files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
-        self._not_private = files.make()
-        if self._not_private is None:
-            self._files = files
+        self._files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
+        if job.private_files and self._files.make() is None:
             # it removes old folders of pytest's, which are there again for the next process
             _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
         die_with_parent()  # a process that changes its rights loses that wish
@@ -129,31 +115,23 @@ class SessionHooks:
             self.tests.left_out = job.left_out(job.mutant.id)
         if job.forking is not None:
             preload({mutant.operator for mutant in job.forking.mutants})  # and not in every fork
-            self._be_fork_parent(job.forking, home, members, has_nodes=has_nodes)
-
-    def _be_fork_parent(self, forking: Forking, home: str, members: Members, *, has_nodes: bool) -> None:
-        compile_all()
-        log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
-        assert isinstance(pipe, EventFile)
-        track_event_loops()
-        parent = ForkParent(
-            forking, self.job.tests or (), pipe,
-            Isolation((log.st_dev, log.st_ino), home, self._files, self._not_private), self._become,
-            has_nodes, members.have_begun,
-        )  # fmt: skip
-        self.session.grow(parent)
+            compile_all()
+            track_event_loops()
+            pipe, tests = self.session.pipe, job.tests or ()
+            assert isinstance(pipe, EventFile)
+            more = (self._become, has_nodes, members.have_begun)
+            self.session.grow(ForkParent(job.forking, tests, pipe, self._files, *more))
 
     def _become(self, mutant: Mutant, folder: str) -> None:
         """In a process that was just forked: go on as this mutant."""
-        assert self.session.fork_parent is not None
+        assert self.session.passing.fork_parent is not None
         self.tests.start_clocks(is_new=True)
         self.tests.left_out = self.job.left_out(mutant.id)
         if self.config is not None:
             # nobody reads a fork's traceback, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
-        fork = ForkedRun(self.session, self.session.fork_parent, mutant, folder)
-        self.tests.fork = fork
+        fork = ForkedRun(self.tests, self.session.passing.fork_parent, mutant, folder)
         self.session.become(mutant, fork.choices)
 
     def _is_of_tests(self, path: str) -> bool:
@@ -233,7 +211,10 @@ class SessionHooks:
         else:
             seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
         result = yield
-        drop_idle_plugins(session.config)
+        # hypothesis's plugin imports all of hypothesis for its summary, even if no test has used it
+        manager = session.config.pluginmanager
+        if "hypothesis" not in sys.modules and (plugin := manager.get_plugin("hypothesispytest")) is not None:
+            manager.unregister(plugin)
         return result
 
     def _take_on(self, session: pytest.Session, home: str, descriptor: int) -> None:
@@ -267,17 +248,10 @@ class SessionHooks:
             return
         members = self.tests.members
         self.session.finish(members.texts_seen() if members is not None else ())
-        if members is not None and members.doubt is not None:
-            self._errors.append(members.doubt)
-        not_private = self._not_private if self.job.private_files else None
+        if members is not None and members.children.doubt is not None:
+            self._errors.append(members.children.doubt)
+        not_private = self._files.why_not if self.job.private_files else None
         self.session.pipe.send(SessionEnd(int(exitstatus), self._collected, tuple(self._errors), not_private))
-
-
-def drop_idle_plugins(config: pytest.Config) -> None:
-    """Hypothesis's plugin imports all of hypothesis for its summary, even if no test has used it."""
-    plugin = config.pluginmanager.get_plugin("hypothesispytest")
-    if plugin is not None and "hypothesis" not in sys.modules:
-        config.pluginmanager.unregister(plugin)
 
 
 def _keep_cache_in(config: pytest.Config, home: str) -> None:

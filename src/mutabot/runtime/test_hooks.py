@@ -1,41 +1,276 @@
-"""Pytest's hooks around each test of a job: they start its measurements and tell how it ended."""
+"""Pytest's hooks around each test of a job: they start its measurements and tell how it ended.
+
+What ends a test is a check, an exception, a limit, a refusal, or a failure of the tool. A process that was
+forked in the middle of a test goes on to the end as its mutant, or leaves when a test decides.
+"""
 
 from __future__ import annotations
 
+import gc
 import os
+import re
+import sys
 from collections.abc import Generator, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import islice
 from time import perf_counter, process_time  # tests may replace those of the module
-from typing import Any
+from traceback import walk_tb
+from types import FrameType
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import pytest
 
-from mutabot.model import By
-from mutabot.model.events import TestEnd, TestStart
+from mutabot.extensions import packages
+from mutabot.model import By, Mutant, Role, Vocabulary
+from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
+from mutabot.model.job import write_job
+from mutabot.model.path import class_name
 from mutabot.model.process_time import TimeUsed
-from mutabot.model.source_units import Executed
-from mutabot.runtime import seeds
-from mutabot.runtime.audit import listen
-from mutabot.runtime.evidence import Evidence
-from mutabot.runtime.executed import ExecutedUnits
+from mutabot.runtime import FOLDER, seeds
+from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
+from mutabot.runtime.executed import STARTS, ExecutedUnits
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.isolation.forked_run import ForkedRun
+from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.observation.checks import Looks
 from mutabot.runtime.observation.probes import Reading
 from mutabot.runtime.plugins import drop_idle_watchdog, watched, watched_by_faulthandler
+from mutabot.runtime.processes.environment import listen
+from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
-from mutabot.runtime.test_end import (
-    FAILED,
-    PASSED,
-    classify,
-    is_expected_failure,
-    outcome_so_far,
-    with_evidence,
-)
+from mutabot.runtime.targets.target import is_named
+
+if TYPE_CHECKING:
+    import doctest
+
+
+#: where an object lies in memory differs from run to run and says nothing
+_ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
+#: exceptions that are checks or time-outs wherever they were raised; their modules may not be loaded
+_CHECKS = ("doctest:DocTestFailure",)
+_TIMEOUTS = ("hypothesis.errors:DeadlineExceeded",)
+#: what lets the suite pass
+PASSED, SKIPPED, XFAILED, XPASSED = "passed", "skipped", "xfailed", "xpassed"
+FAILED = "failed"
+
+
+def classify(
+    error: BaseException, test: str, file: str, locator: Locator, vocabulary: Vocabulary, evidence: Evidence
+) -> TestEnd:
+    """The end of a test that this exception means: why it failed, and nothing else.
+
+    Of exceptions that hold others, such as exception groups, what they hold decides: a refusal if all are, a
+    check if all are that are no refusals; a time-out or a failure if one is.
+
+    Args:
+        error: what pytest caught.
+        test: node id of the test.
+        file: its file, whose folder holds the test's own helpers.
+    """
+    found = leaves(error)
+    culprits = evidence.culprits
+    is_refused = is_due_to(error, culprits)
+    counting = [leaf for leaf in found if is_refused or not is_due_to(leaf, culprits)]
+    no_checks = [leaf for leaf in counting if not _is_check(leaf, file, locator, vocabulary)]
+    overdue = next((leaf for leaf in found if _is_timeout(leaf)), None)
+    shown = overdue or (no_checks or counting)[0]
+    is_syntax = all(isinstance(leaf, SyntaxError) for leaf in found)
+    return TestEnd(
+        test,
+        FAILED,
+        by=By.EXCEPTION if no_checks else By.CHECK,
+        exception=class_name(type(shown)),
+        message=_text(shown, len(found)),
+        place=_place(shown, locator),
+        timeout=_lines(shown)[0] if overdue is not None else None,
+        failure=failure_in(error, vocabulary.failures),
+        refused=evidence.refusal if is_refused else None,
+        # a mutant of the program text made a text that is no program or no command
+        invalid=evidence.is_of_text and (is_syntax or (evidence.is_unknown and is_refused)),
+    )
+
+
+def with_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) -> TestEnd:
+    """The end of a test with what its mutant did.
+
+    ``cause``: what ended it otherwise: also what a test said that it would do.
+    """
+    cause = cause or end
+    refusal = evidence.refusal
+    if evidence.is_of_text and cause.refused is None:
+        refusal = None
+    # what follows a refusal that is data follows from what the program makes of it
+    is_caught = refusal is not None and evidence.said is None
+    return replace(
+        end,
+        failure=evidence.failure or cause.failure,
+        invalid=cause.invalid,
+        refused=refusal,
+        caught=is_caught and end.outcome == FAILED and cause.refused is None,
+        hits=evidence.hits,
+        acted=evidence.acted,
+        away=evidence.away,
+        example=evidence.example,
+    )
+
+
+def outcome_so_far(report: pytest.TestReport, before: str) -> str:
+    """The outcome of a test with one more report that is no failure.
+
+    The report of the call comes after those of its subtests and says what they come to; set-up and
+    tear-down count where they did not simply pass.
+    """
+    is_expected = hasattr(report, "wasxfail")
+    if report.skipped:
+        return XFAILED if is_expected else SKIPPED
+    if report.when == "call":
+        return XPASSED if is_expected else PASSED
+    return before
+
+
+def _text(error: BaseException, count: int) -> str:
+    """What an exception says, shortly; ``count``: how many there are in its group."""
+    lines = _lines(error)[:12]
+    if count > 1:
+        lines.append(f"(one of {count} exceptions in a group)")
+    return "\n".join(lines)[:2000]
+
+
+def _lines(error: BaseException) -> list[str]:
+    text = str(error)
+    if isinstance(error, pytest.FixtureLookupError):
+        text = error.msg or f"fixture {error.argname!r} not found"
+    elif _is_mismatch(error):
+        source, want, got = error.example.source.strip(), error.example.want.strip(), error.got.strip()
+        text = f"{source}: expected {want or 'nothing'}, got {got or 'nothing'}"
+    return _ADDRESS.sub("0x…", text).strip().splitlines() or [type(error).__name__]
+
+
+def _is_timeout(error: BaseException) -> bool:
+    """Whether a limit ended the test: ours, or one of the suite's own."""
+    if isinstance(error, BudgetExceeded) or is_named(error, _TIMEOUTS):
+        return True
+    return isinstance(error, pytest.fail.Exception) and any(
+        frame.f_globals.get("__name__") == "pytest_timeout" for frame, _ in _from_the_raise(error)
+    )
+
+
+def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary: Vocabulary) -> bool:
+    if is_named(error, (*_CHECKS, *vocabulary.checks)) or isinstance(error, pytest.fail.Exception):
+        return True
+    if not isinstance(error, AssertionError):
+        return False
+    # An assertion is a check if the tests made it. Code of helper libraries says nothing, so the frame
+    # nearest to the raise decides that is the tests', the program's or an operation's.
+    folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
+    for frame, _ in _from_the_raise(error):
+        filename = locator.real(frame.f_code.co_filename)
+        package = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+        if filename.startswith(FOLDER) or package in packages():  # such bring operators, or hooks
+            return False
+        role = locator.role(filename)
+        if role is Role.PROGRAM:
+            return False
+        if role is Role.ORACLE or filename.startswith(folder) or filename.endswith("conftest.py"):
+            return True
+    return True
+
+
+def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
+    """The frames that the exception came through and the lines they were at, innermost first."""
+    return list(walk_tb(error.__traceback__))[::-1]
+
+
+def _place(error: BaseException, locator: Locator) -> str | None:
+    """The innermost line that is the user's own: the file lies under the root and is not installed."""
+    lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
+    if _is_mismatch(error) and error.test.filename is not None and error.test.lineno is not None:
+        lines.append((error.test.filename, error.test.lineno + error.example.lineno + 1))
+    for filename, line in lines:
+        relative = locator.relative(filename)
+        if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
+            return f"{relative}:{line}"
+    return None
+
+
+def _is_mismatch(error: Any) -> TypeGuard[doctest.DocTestFailure]:
+    """Whether an example of a doctest gave something else than it says."""
+    module = sys.modules.get("doctest")  # who raised it has imported it
+    return module is not None and isinstance(error, module.DocTestFailure)
+
+
+class ForkedRun:
+    """This process from its fork on.
+
+    Args:
+        tests: the hooks for each of its tests.
+        parent: what has forked it.
+        mutant: its mutant.
+        folder: its own folder.
+
+    Attributes:
+        choices: what its mutant is in the program text.
+    """
+
+    def __init__(self, tests: TestHooks, parent: ForkParent, mutant: Mutant, folder: str) -> None:
+        session, tests.fork, tests.members = tests.session, self, None
+        self.mutant = mutant
+        self.choices = parent.forking.choices.get(mutant.id, ())
+        self._tests, self._session, self._parent, self._folder = tests, session, parent, folder
+        self._pid = os.getpid()
+        self._shared = session.meter.simulated if session.meter is not None else None
+        self._is_early = not session.test
+        self._has_acted = False
+        gc.freeze()  # what is never looked at stays shared with the parent
+        listen(STARTS, self._hear)
+
+    def start_test(self) -> None:
+        """A test begins, its second at least."""
+        self._parent.note_next_test(self.mutant.id)
+        self._shared = None
+
+    def end_test(self, end: TestEnd) -> None:
+        """A test is over: tell how it ended, and leave if it decides about the mutant."""
+        self._has_acted |= end.acted > 0
+        try:
+            self._report(end)
+        finally:
+            if end.is_decided and not self._parent.forking.every_test:
+                os._exit(DECIDED)  # whatever happens, nothing must run on in this process
+
+    def finish(self, errors: list[str]) -> None:
+        """The session is over: what its exit code is, the parent will tell."""
+        self._parent.note_next_test(self.mutant.id)
+        self._parent.note_finished(self.mutant.id)
+        self._session.pipe.send(ForkSessionEnd((self.mutant.id,), errors=tuple(errors)))
+
+    def _report(self, end: TestEnd) -> None:
+        if end.outcome == FAILED:  # only survivors are compared with the original
+            end = replace(end, trace=(), returned=(), moments=())
+        sites = [self._session.recorder.sites[index] for index in sorted({hit[0] for hit in end.trace})]
+        told = ForkTestEnd(self.mutant.id, end, tuple(sites), self._shared, self._is_early)
+        self._session.pipe.send(told)
+
+    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """The program is about to start its first process, which is to be the mutant as well."""
+        if self._tests.members is None and os.getpid() == self._pid:
+            self._tests.members = self._own_processes()
+
+    def _own_processes(self) -> Members:
+        session, job = self._session, self._session.job
+        text = job.instrumentation
+        if text is not None:
+            text = text.only(tuple(self.choices))
+        job = replace(job, mutant=self.mutant, forking=None, instrumentation=text)
+        write_job(self._folder, replace(job, reaching={}))
+        session.job = replace(job, forking=session.job.forking)
+        members = Members(self._folder, session, has_acted=self._has_acted)
+        members.start_test(session.test)
+        watch_forks(members.folder, session)
+        return members
+
 
 #: parts that are looked at in what a fixture gives
 _MOST = 1000
@@ -49,10 +284,9 @@ class TestHooks:
 
     Args:
         session: the job at hand.
-        locator: whose file is whose.
 
     Attributes:
-        members: processes below the test process; None as long as no job is known. A fork has its own.
+        members: processes below this one; None as long as no job is known, and in a fork until it starts one.
         fork: what this process does if it was forked to be a mutant; None in all others.
         left_out: tests that are not run, since they do not reach the mutant and one before has.
         looks: the checks that the test makes.
@@ -61,16 +295,14 @@ class TestHooks:
 
     __test__ = False  # not a test class, whatever pytest may think of the name
 
-    def __init__(self, session: Session, locator: Locator) -> None:
+    def __init__(self, session: Session) -> None:
         self.session = session
-        self.locator = locator
         self.members: Members | None = None
         self.fork: ForkedRun | None = None
         self.left_out: frozenset[str] = frozenset()
         self.looks = Looks()
         self.units = ExecutedUnits(session.job.root)
         self._address: str | None = None
-        self._hears = False
         self._failure: TestEnd | None = None
         self._failed_in = ""
         self._expected: TestEnd | None = None
@@ -79,6 +311,7 @@ class TestHooks:
         self._reading = Reading()
         self._started = (0.0, 0.0)
         self._used = TimeUsed.from_now()
+        listen(("socket.bind",), self._hear)
 
     def start_clocks(self, *, is_new: bool = False) -> None:
         """Count from now on what the test takes; ``is_new``: in a process that was just forked."""
@@ -98,9 +331,8 @@ class TestHooks:
         self._start(item, test)
         result = yield
         end = self._test_end(test)
-        members = self.members if self.fork is None else self.fork.members
-        if members is not None:
-            end = members.merged(end)
+        if self.members is not None:
+            end = self.members.merged(end)
         if self.fork is not None:  # which may have begun in this test
             self.fork.end_test(end)
         session.end_test()
@@ -114,21 +346,17 @@ class TestHooks:
         self._failure, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self._address = self._logged = None
         self.looks.clear()
-        if not self._hears:
-            self._hears = True
-            listen(("socket.bind",), self._hear)
         session = self.session
         session.pipe.send(TestStart(test))
         limit = watched_by_faulthandler(item)
         if limit is not None:
             session.pipe.send(limit)
         seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
-        if session.fork_parent is not None:
-            session.fork_parent.begin_test(test)
+        if session.passing.fork_parent is not None:
+            session.passing.fork_parent.begin_test(test)
         self.start_clocks()
-        members = self.members if self.fork is None else self.fork.members
-        if members is not None:
-            members.start_test(test)
+        if self.members is not None:
+            self.members.start_test(test)
         session.start_test(test, partial(objects_of_fixtures, item))
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
@@ -141,7 +369,7 @@ class TestHooks:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """The fixtures of a test are next."""
-        if self.session.fork_parent is not None:
+        if self.session.passing.fork_parent is not None:
             drop_idle_watchdog(item)
         if self.session.placed.fatal is not None:
             raise self.session.placed.fatal
@@ -178,7 +406,7 @@ class TestHooks:
             self._note_failure(self._classified(item, call) or passed, call.when)
         elif self._outcome != FAILED:
             self._outcome = outcome_so_far(report, self._outcome)
-            if is_expected_failure(report):
+            if report.skipped and hasattr(report, "wasxfail"):  # it failed as the test said it would
                 self._expected = self._classified(item, call)
         return report
 
@@ -186,11 +414,6 @@ class TestHooks:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """A report counts for the suite: a plug-in that runs a test again does not report what it undoes."""
         self._logged = bool(self._logged) or report.failed
-
-    def _executed(self, evidence: Evidence) -> Executed:
-        """What was executed: in a test that a mutant neither reached nor failed, in that test alone."""
-        is_mutant = self.session.job.mutant is not None or self.fork is not None
-        return self.units.of_test(alone=is_mutant and not evidence.hits and self._outcome != FAILED)
 
     def _note_failure(self, end: TestEnd, phase: str) -> None:
         """The first failure counts; of several subtests, the first that is more than a refusal."""
@@ -204,20 +427,19 @@ class TestHooks:
         if call.excinfo is None:
             return None
         session = self.session
-        known = (self.locator, session.job.vocabulary, session.evidence)
+        known = (session.locator, session.job.vocabulary, session.evidence)
         return classify(call.excinfo.value, node_id(item), str(item.path), *known)
 
     def _test_end(self, test: str) -> TestEnd:
         if self._outcome == FAILED and self._logged is False:
             self._failure, self._outcome = None, PASSED
-        session, evidence, meter, returns = (
-            self.session,
-            self.session.evidence,
-            self.session.meter,
-            self.session.returns,
-        )
+        session, returns = self.session, self.session.returns
+        evidence, meter = session.evidence, session.meter
         wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
         assert meter is not None
+        # of a test that a mutant neither reached nor failed, it is told what was executed in that test alone
+        is_mutant = session.job.mutant is not None or self.fork is not None
+        is_alone = is_mutant and not evidence.hits and self._outcome != FAILED
         end = self._failure or TestEnd(test, self._outcome)
         end = with_evidence(end, evidence, self._failure or self._expected)
         end = replace(
@@ -239,9 +461,9 @@ class TestHooks:
             exclusive=self._address,
             reading=self._reading.seconds,
             not_along=self._reading.not_along,
-            more_checks=self.looks.more,
+            more_checks=len(self.looks.more),
             recording=session.recording.text(session.recorder.told()),
-            executed=self._executed(evidence),
+            executed=self.units.of_test(alone=is_alone),
         )
         if not session.job.record:
             return end
@@ -250,7 +472,7 @@ class TestHooks:
             trace=tuple(session.recorder.trace),
             returned=tuple(returns.entries) if returns is not None else (),
             moments=tuple(session.along.entries),
-            checks=self.looks.checks,
+            checks=tuple(self.looks.noted.values()),
         )
 
 

@@ -9,8 +9,7 @@ from typing import Any
 import wrapt
 
 from mutabot.model.operation import Form
-from mutabot.runtime.targets.messages import deliver
-from mutabot.runtime.targets.target import Names
+from mutabot.runtime.targets.target import Names, deliver
 from mutabot_ros._patches import Patches, code_of
 
 from . import _nodes

@@ -6,8 +6,7 @@ from importlib import import_module
 from typing import Any
 
 from mutabot.model.operation import Form
-from mutabot.runtime.targets.messages import deliver
-from mutabot.runtime.targets.target import Names
+from mutabot.runtime.targets.target import Names, deliver
 from mutabot_ros._patches import Patches, code_of
 
 from . import _nodes

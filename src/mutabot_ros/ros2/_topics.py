@@ -7,12 +7,12 @@ import functools
 import inspect
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
 from mutabot.model.operation import Form
-from mutabot.runtime.targets.messages import anew, deliver, wait_for
-from mutabot.runtime.targets.target import Handler, Names
+from mutabot.runtime.targets.target import Handler, Names, anew, deliver, wait_for
 from mutabot_ros._patches import Patches, code_of
 from mutabot_ros.ros2 import _nodes
 
@@ -193,9 +193,12 @@ def as_called(callback: Any, ours: Callable[..., Any]) -> Any:
 
 def _named_like(callback: Any, ours: Any) -> Any:
     try:
-        return functools.wraps(callback)(ours)
+        named: Any = functools.wraps(callback)(ours)
     except (AttributeError, TypeError):
         return ours
+    with suppress(TypeError, ValueError):  # what is written in C may have none
+        named.__signature__ = inspect.signature(callback)  # an executor asks for it at each tick
+    return named
 
 
 def _made(

@@ -2,8 +2,8 @@
 
 `start` puts a middleware in Python in the place of rclpy's C extension. For modules of the project and of
 rclpy, it puts simulated time in the place of `time`, `threading` and so on. rclpy's own Python, the project
-and its tests stay as they are. What cannot be simulated raises `NeedsRealRos`; `reasons()` gives all that
-was found.
+and its tests stay as they are, but for what executors do around each wait (`middleware/executors.py`).
+What cannot be simulated raises `NeedsRealRos`; `reasons()` gives all that was found.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from mutabot.campaign.baseline.baseline import Sources, observations_of
+from mutabot.campaign.baseline.baseline import Sources, observation
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparison import Observation, compare
 from mutabot.execution.task import Result
@@ -29,7 +29,10 @@ def difference(
             continue
         of_round = (runs[round, 0], runs[round, 1], result)
         ends = [{end.test: end.lasting for end in one.ends} for one in of_round]
-        seen = [observations_of(one, sources) for one in of_round]
+        seen = [
+            {end.test: observation(end, places) for end in one.ends}
+            for one, places in ((one, sources.places(one.sites)) for one in of_round)
+        ]
         for test in dict.fromkeys([*ends[0], *ends[2]]):
             was, again, now = (one.get(test, "not run") for one in ends)
             line = None

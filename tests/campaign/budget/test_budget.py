@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign import budget
-from mutabot.campaign.budget import in_order
+from mutabot.campaign import schedule
 from mutabot.campaign.run import run_campaign
+from mutabot.campaign.schedule import in_order
 from mutabot.execution.interruption import OutOfTimeError, interruptible, interruptions_kept, limited
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Role, Site, Span, Verdict
@@ -116,7 +116,7 @@ def test_what_is_under_way_when_the_time_is_up_gets_no_verdict(
     (project / "mission.py").write_text(
         (project / "mission.py").read_text().replace("sleep(0.05)", "sleep(1.0)")
     )
-    monkeypatch.setattr(budget, "_FIRST", 1000)
+    monkeypatch.setattr(schedule, "_FIRST", 1000)
     results = campaign(project, budget=3.5)
     assert results.done < results.planned
     assert results.state == "out of time"

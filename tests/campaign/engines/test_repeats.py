@@ -11,7 +11,7 @@ import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines import rerun
-from mutabot.campaign.engines.rerun import SECONDS, Doubts
+from mutabot.campaign.engines.rerun import Doubts
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
@@ -76,7 +76,7 @@ def test_repeats_beyond_their_time_are_left_and_told(
     tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     script.kill(FALSE)
-    for name in ("SECONDS", "SHARE", "MOST_SECONDS", "MOST_SHARE"):
+    for name in ("SHARE", "MOST_SECONDS", "MOST_SHARE"):
         monkeypatch.setattr(rerun, name, 0.0)
     write_project(tmp_path, MISSION, TESTS)
     results, found, progress = campaign(tmp_path, engine="fork", repeats=True)
@@ -92,6 +92,7 @@ def test_more_kills_are_repeated_once_one_does_not_come_out_again(
     mission = "\n\n".join(f"def {name}(arm):\n    arm.move_by(0.2)" for name in names)
     tests = "\n".join(f"def test_{name}():\n    mission.{name}(Arm())\n" for name in names)
     lines: dict[bool, str] = {}
+    monkeypatch.setattr(rerun, "SHARE", 4.0)  # by its clock a campaign takes a quarter of a second
     for comes_again in (True, False):
 
         def mutated(run: Run, comes_again: bool = comes_again) -> End:
@@ -106,7 +107,7 @@ def test_more_kills_are_repeated_once_one_does_not_come_out_again(
         folder = write_project(tmp_path / str(comes_again), mission, text)
         _, _, progress = campaign(folder, repeats=True)
         lines[comes_again] = next(line for line in progress.lines if line.startswith("re-runs:"))
-    told = rf"re-runs: (\d) of \1 doubtful kills confirmed; (\d) were left, .* {SECONDS:.0f} s"
+    told = r"re-runs: ([1-9]) of \1 doubtful kills confirmed; (\d) were left, as repeats may take \d+ s"
     left = re.fullmatch(told, lines[True])
     assert left is not None
     assert int(left[1]) + int(left[2]) == len(names)

@@ -14,9 +14,8 @@ from mutabot.campaign.run import run_campaign
 from mutabot.config.options import Sample
 from mutabot.errors import UsageError
 from mutabot.journal.journal import Journal
-from mutabot.journal.records import DRAWING, Drawing
+from mutabot.journal.records import DRAWING
 from mutabot.model import Mutant, Role
-from mutabot.model.codec import from_data
 from results import samples
 from tests.campaign.project import Quiet, request_for, write_project
 
@@ -158,7 +157,7 @@ def test_a_campaign_on_a_sample_writes_down_what_it_was_drawn_from(tmp_path: Pat
     folder = write_project(tmp_path, *PROJECT)
     path = run_campaign(request_for(folder, sample=Sample.parse("4")), Quiet())
     with Journal.open(path) as journal:
-        drawing = from_data(Drawing, journal.meta()[DRAWING])
+        drawing = journal.meta()[DRAWING]
         assert len(journal.mutants()) == len(journal.outcomes()) == 4
     (stratum,) = drawing.strata
     assert (stratum.drawn, drawing.sample) == (4, "4")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.campaign.run import plan_only
 from mutabot.families import CATALOGUE, GRADED, ROBOT
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
@@ -83,6 +85,7 @@ VOCABULARY = f"""
 WHY = "nobody reads what the call returns: it is a statement by itself"
 
 
+@pytest.mark.needs("catalogue")
 def test_readings_of_calls_that_stand_alone_are_left_out(tmp_path: Path) -> None:
     folder = write_project(
         tmp_path, MISSION, TESTS, robot=ROBOT_PY, vocabulary=VOCABULARY, more={"library.py": LIBRARY},

@@ -11,8 +11,7 @@ import pytest
 
 from mutabot.campaign import run as campaign
 from mutabot.campaign.reuse.keys import Dependencies
-from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.reuse.snapshot import Snapshot, counted
+from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, counted
 from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
+from mutabot.campaign.reuse.reuse import Revision
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.since.since import Revision
 from mutabot.errors import ExitCode, UsageError
 from mutabot.journal.journal import Journal
 from mutabot.results.gate import decide

@@ -11,8 +11,8 @@ import pytest
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import UsageError
-from mutabot.init import start
 from mutabot_cell.template import KNOWN, project
+from mutabot_init.template import start
 
 from .robots.conftest import file_of, robot_named
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.config.vocabulary import load
-from mutabot.init import propose
+from mutabot_init.propose import propose
 
 DRIVER = """
     import rospy

@@ -45,11 +45,14 @@ def example(tmp_path: Path) -> Path:
 
 
 def run_suite(folder: Path, number: int, seed: int) -> subprocess.CompletedProcess[str]:
-    """Plain pytest on the example."""
+    """Plain pytest on the example, which has the patience that a busy machine needs."""
+    for name in ("kinova.py", "tracker.py"):
+        text = (folder / name).read_text()
+        (folder / name).write_text(text.replace("PATIENCE = 10.0", "PATIENCE = 60.0"))
     environment = {**os.environ, "ROS_DOMAIN_ID": str(number), "MUTABOT_SEED": str(seed)}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
     return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300, check=False
     )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.config.vocabulary import load
-from mutabot.init import propose
+from mutabot_init.propose import propose
 
 pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text.session_text import SessionText
+from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.switches import hand_through
 from mutabot_source.nodes import same_program
 from mutabot_source.operator import TextExample

@@ -9,8 +9,7 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console
 
-from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.progress import Bar, Lines, make_progress
+from mutabot.report.terminal.console import Bar, Lines, make_console, make_progress
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 

@@ -116,6 +116,7 @@ def test_a_path_leads_into_a_container(make_stage: Make, given: str, path: str) 
     assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]
 
 
+@pytest.mark.needs("catalogue")
 @pytest.mark.parametrize(
     ("given", "operator", "variant", "changed"),
     [

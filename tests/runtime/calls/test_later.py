@@ -10,6 +10,8 @@ import pytest
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from tests.runtime.stage import Make
 
+pytestmark = pytest.mark.needs("catalogue")
+
 ROBOT = """
     import asyncio
 

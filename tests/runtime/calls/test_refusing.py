@@ -12,8 +12,8 @@ import pytest
 from mutabot.model import Call, Operation, Pattern, Role, Span
 from mutabot.model.job import RefusedAt
 from mutabot.model.operation import Form, Named, Refused
+from mutabot.runtime.interception.active_mutant import RefusedCalls, answered, heard, refused_of
 from mutabot.runtime.interception.adapter import SiteCall
-from mutabot.runtime.interception.refusals import RefusedCalls, answered, heard, refused_of
 
 STATUS = Refused(".status", (5, 6))
 

@@ -13,7 +13,7 @@ import pytest
 
 from mutabot.model import Instrumentation
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text.session_text import SessionText
+from mutabot.runtime.program_text.instrument import SessionText
 from tests.runtime.stage import forget
 
 

@@ -176,7 +176,7 @@ def test_only_so_many_are_noted_and_those_of_fixtures_are_told_apart(program: No
     returns.begin_call()
     for _ in range(LIMIT):
         module.inner(1)
-    assert (len(returns.entries), returns.prepared, returns.truncated) == (LIMIT, 1, True)
+    assert (len(returns.entries), returns.prepared, returns.is_on) == (LIMIT, 1, False)
     returns.stop()
     returns.start()
     assert returns.entries == []

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import Observation, TraceCall, as_steady
 from mutabot.errors import MutabotError
 from mutabot.execution.task import Result
@@ -22,25 +21,11 @@ from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
 from mutabot.languages.front_end import SiteName, front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
-from mutabot.languages.python import unused_calls
-from mutabot.model import (
-    FATAL,
-    IDENTITY,
-    Choice,
-    Instrumentation,
-    Mutant,
-    Operation,
-    Pattern,
-    ProgramText,
-    Role,
-    Site,
-    Span,
-    Vocabulary,
-)
+from mutabot.model import FATAL, IDENTITY, Operation, Pattern, Vocabulary
 from mutabot.model.answer import is_plain
 from mutabot.model.events import Remark, SiteSeen, TestEnd
 from mutabot.model.job import Budget, Idle, InProcess, RefusedAt
-from mutabot.model.mutant import Extent, Place
+from mutabot.model.mutant import Choice, Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
 from mutabot.operators.command import Identity
 
 #: what a control is at a place of a fault that is put in place by its provider's own code
@@ -80,10 +65,6 @@ class PlantedFaults:
                 elif provider not in (CALLS, MESSAGES):
                     made.left_out_beforehand.append(one)
         return made
-
-    def provider_at(self, place: Place) -> str:
-        """The provider whose way into the program mutants at a place take."""
-        return self.providers.get(place, CALLS)
 
     def choices(self, mutant: Mutant) -> tuple[Choice, ...]:
         """The alternatives in the program text that a mutant is."""
@@ -127,7 +108,6 @@ class PlantedFaults:
 
 #: characters that all answers of one mutant may take; they go to every process that runs it
 LIMIT = 1_000_000
-_MISSING = object()
 
 
 class NoAnswerError(MutabotError):
@@ -176,19 +156,13 @@ def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnsw
         return Idle((told,)).data()
     if not answers.first:
         raise NoAnswerError(f"no recorded call returned, so nobody knows what it answers; {_HINT}")
-    numbers: dict[str, int] = {}
-    of_test = {}
-    kept: list[Any] = []
-    for key, note in answers.first.items():
-        data = _kept(note)
-        number = numbers.setdefault(json.dumps(data), len(numbers))
-        if number == len(kept):
-            kept.append(data)
-        of_test[key] = number
+    texts = {key: json.dumps(_kept(note)) for key, note in answers.first.items()}
+    numbers = {text: number for number, text in enumerate(dict.fromkeys(texts.values()))}
     if sum(map(len, numbers)) > LIMIT:
         raise NoAnswerError(f"what it answers in all tests is more than {LIMIT} characters; {_HINT}")
-    is_single = len(kept) == 1 and not answers.varying
-    return Idle(tuple(kept), {} if is_single else of_test, tuple(answers.varying)).data()
+    is_single = len(numbers) == 1 and not answers.varying
+    of_test = {} if is_single else {key: numbers[text] for key, text in texts.items()}
+    return Idle(tuple(map(json.loads, numbers)), of_test, tuple(answers.varying)).data()
 
 
 _HINT = "say in the vocabulary what to answer while the robot does nothing: idle = …"
@@ -197,10 +171,9 @@ _HINT = "say in the vocabulary what to answer while the robot does nothing: idle
 def _kept(note: Any) -> Any:
     if is_plain(note):
         return note
-    data = note.get("kept", _MISSING)
-    if data is _MISSING:
+    if "kept" not in note:
         raise NoAnswerError(f"what it answers cannot be kept ({note['opaque']}); {_HINT}")
-    return data
+    return note["kept"]
 
 
 @dataclass(slots=True)
@@ -215,23 +188,19 @@ class Sources:
     _names: dict[str, Mapping[Extent, SiteName]] = field(default_factory=dict)
     _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
 
-    def site(self, seen: SiteSeen) -> Site:
-        """The site at which something was seen."""
+    def places(self, sites: Iterable[SiteSeen]) -> dict[int, Place]:
+        """The places that a process reported, by their index in its traces."""
+        return {seen.index: self._place(seen) for seen in sites}
+
+    def _place(self, seen: SiteSeen) -> Place:
         span = seen.span
         if span.file not in self._names:
             self._names[span.file] = self._in(span.file, front_end_of(span.file).names) or {}
         text, occurrence = self._names[span.file].get(_extent(span), SiteName(f"line {span.line}", 1))
-        return Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
+        site = Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
+        return Place(site, seen.operation, seen.pattern)
 
-    def is_written_through(self, span: Span) -> bool:
-        """Whether the file writes to what an expression of it gives, as far as its text says."""
-        return self._is_among(span, written_through)
-
-    def is_unused(self, seen: SiteSeen) -> bool:
-        """Whether nobody uses what the call returns: it is a statement by itself."""
-        return seen.direct and self._is_among(seen.span, unused_calls)
-
-    def _is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
+    def is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
         """Whether an expression is one of those that are found in the text of its file, if that is Python."""
         is_python = front_end_of(span.file) is PYTHON
         return is_python and _extent(span) in (self._in(span.file, find) or ())
@@ -326,11 +295,6 @@ class Baseline(Original):
     varying_calls: set[tuple[int, str]] = field(default_factory=set)
     shares_files: bool = False
 
-    @property
-    def places(self) -> list[Place]:
-        """All places that any test reaches in any round."""
-        return list(self.hits)
-
     def suite(self, round: int) -> tuple[str, ...]:
         """The tests that a mutant is run with, in their order: all that can be relied on."""
         return tuple(self.tests[round])
@@ -368,16 +332,19 @@ class Baseline(Original):
         for one in planned.values():
             self.early |= one.early
             for (round, place), tests in one.reached.items():
-                self._reach(round, place, None if place in one.early else frozenset(tests))
+                self.reach(round, place, None if place in one.early else frozenset(tests))
 
-    def _reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
+    def reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
         """These tests reach a place in a round; None: what stands there is there for all tests."""
-        quickest = sorted(self.tests[round], key=lambda test: cost(self.ends[round, test]))
-        here = [test for test in quickest if tests is None or test in tests]
-        aside = [test for where, test in self.unstable if where == round]
-        self.reaching[round, place] = here
-        if aside := [test for test in aside if tests is None or test in tests]:
+        here = [test for test in self.tests[round] if tests is None or test in tests]
+        aside = [test for where, test in self.unstable if where == round and (tests is None or test in tests)]
+        self.reaching[round, place] = sorted(here, key=lambda test: cost(self.ends[round, test]))
+        if aside:
             self.flaky_reaching[round, place] = aside
+
+    def seconds(self, round: int, tests: Iterable[str]) -> float:
+        """What tests took, by the clock on the wall."""
+        return sum(self.ends[round, test].wall for test in tests)
 
     def doubt(self, test: str) -> None:
         """A test failed once where equal runs pass: its kills may be chance."""
@@ -431,10 +398,6 @@ class Baseline(Original):
         }
         return [test for where, test in self.unstable if where == round and test in reaching]
 
-    def refused_in(self, round: int, tests: Iterable[str]) -> dict[str, tuple[RefusedAt, ...]]:
-        """The calls of these tests that the robot refuses in the original."""
-        return {test: self.refused[round, test] for test in tests if (round, test) in self.refused}
-
     def budget(self, round: int, test: str, factor: float) -> Budget:
         """What a mutant may use in this test.
 
@@ -451,22 +414,6 @@ class Baseline(Original):
 def cost(end: TestEnd) -> tuple[float, int]:
     """What a test costs, in a measure that is the same in every run: wall clocks are not."""
     return (end.simulated or 0.0, end.operations)
-
-
-def places_of(result: Result, sources: Sources) -> dict[int, Place]:
-    """The places a worker reported, by their index in its traces."""
-    return {seen.index: place_of(seen, sources) for seen in result.sites}
-
-
-def place_of(seen: SiteSeen, sources: Sources) -> Place:
-    """The place at which something was seen."""
-    return Place(sources.site(seen), seen.operation, seen.pattern)
-
-
-def observations_of(result: Result, sources: Sources) -> dict[str, Observation]:
-    """What is compared of each test of a run."""
-    places = places_of(result, sources)
-    return {end.test: observation(end, places) for end in result.ends}
 
 
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
@@ -486,14 +433,10 @@ def refused_of(result: Result) -> dict[str, tuple[RefusedAt, ...]]:
     sites = {seen.index: seen for seen in result.sites}
     found: dict[str, tuple[RefusedAt, ...]] = {}
     for end in result.ends:
-        numbers: dict[int, set[int]] = {}
-        for index, number in end.refused_calls:
-            numbers.setdefault(index, set()).add(number)
-        if numbers:
-            found[end.test] = tuple(
-                RefusedAt(
-                    sites[index].span, sites[index].operation, sites[index].pattern, tuple(sorted(those))
-                )
-                for index, those in numbers.items()
-            )
+        numbers: dict[int, list[int]] = {}
+        for index, number in sorted({*end.refused_calls}):
+            numbers.setdefault(index, []).append(number)
+        of_sites = ((sites[index], tuple(those)) for index, those in numbers.items())
+        calls = tuple(RefusedAt(seen.span, seen.operation, seen.pattern, those) for seen, those in of_sites)
+        found |= {end.test: calls} if calls else {}
     return found

@@ -12,16 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.campaign.baseline.baseline import (
-    Baseline,
-    Hit,
-    RecordedAnswers,
-    Sources,
-    cost,
-    observations_of,
-    places_of,
-    refused_of,
-)
+from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.vocabulary import problem_error
@@ -29,11 +20,15 @@ from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
+from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.events import Remark, TestEnd
 from mutabot.model.mutant import Place
+from mutabot.model.outcome import first_line
 from mutabot.operators import load_all
+
+from .baseline import Baseline, Hit, RecordedAnswers, Sources, observation, refused_of
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance
 FAILS = "fails on the unmutated program"
@@ -63,7 +58,7 @@ def repeat_command(request: Request, round: int, test: str) -> str:
 def why_set_aside(request: Request, round: int, end: TestEnd) -> str:
     """Why a test that fails on the original in this round is set aside in it."""
     seed = derive(request.seed, round, end.test)
-    text = f"{FAILS} with seed {seed}: {_first_line(end)}"
+    text = f"{FAILS} with seed {seed}: {first_line(end.message)}"
     return f"{text}; repeat it by {repeat_command(request, round, end.test)}"
 
 
@@ -75,16 +70,11 @@ def refuse_failing(request: Request, failing: Failing) -> None:
     if not found:
         return
     where = "in round 1" if request.rounds == 1 else f"in all {request.rounds} rounds"
-    shown = "\n".join(f"  {end.test}: {_first_line(end)}" for end in found[:10])
+    shown = "\n".join(f"  {end.test}: {first_line(end.message)}" for end in found[:10])
     more = f"\n  … and {len(found) - 10} more" if len(found) > 10 else ""
     noun = "test fails" if len(found) == 1 else "tests fail"
     again = f"\nrepeat by {repeat_command(request, 0, found[0].test)}"
     raise BaselineError(f"{len(found)} {noun} on the unmutated program {where}:\n{shown}{more}{again}")
-
-
-def _first_line(end: TestEnd) -> str:
-    lines = (end.message or "").strip().splitlines()
-    return lines[0] if lines else "no message"
 
 
 _KNOWN_LATER = (
@@ -138,10 +128,6 @@ class _Suite:
         for result in self.results.values():
             self.known.update(result.known_later)
         return bool(self.known)
-
-    def of(self, round: int) -> list[Result]:
-        """The runs of a round, in their order."""
-        return [self.results[key] for key in sorted(self.results) if key[0] == round]
 
 
 def take_baseline(
@@ -215,7 +201,8 @@ def _read(
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):
-        failing |= _add_round(baseline, request, sources, round, suite.of(round))
+        of_round = [suite.results[key] for key in sorted(suite.results) if key[0] == round]
+        failing |= _add_round(baseline, request, sources, round, of_round)
         first = suite.results[round, 0]
         baseline.text[round] = TextSeen(
             imported=frozenset(first.seen.imported if first.seen else ()),
@@ -281,7 +268,7 @@ def _add_round(
 ) -> dict[tuple[int, str], TestEnd]:
     """Take in the runs of a round; returns the tests that fail in all of them."""
     runs = [{end.test: end for end in result.ends} for result in repetitions]
-    observed = [observations_of(result, sources) for result in repetitions]
+    places = [sources.places(result.sites) for result in repetitions]
     failed: dict[tuple[int, str], TestEnd] = {}
     good: list[str] = []
     for test, end in runs[0].items():
@@ -300,17 +287,17 @@ def _add_round(
             baseline.ends[round, test] = replace(
                 end, wall=max([end.wall, *(o.wall for o in others if o)]), recording=None
             )
-            baseline.observations[round, test] = observed[0][test]
-            for again, found in zip(others, observed[1:], strict=True):
+            baseline.observations[round, test] = observation(end, places[0])
+            for again, there in zip(others, places[1:], strict=True):
                 if again is not None:
-                    baseline.compare_runs(round, again, found[test], request.vocabulary)
+                    baseline.compare_runs(round, again, observation(again, there), request.vocabulary)
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
     # without the tests that are set aside nothing fails
     is_set_aside = len(good) < len(runs[0]) and repetitions[0].exit_code == _FAILED
     baseline.exits[round] = 0 if is_set_aside else repetitions[0].exit_code
-    _add_hits(baseline, sources, round, repetitions[0], good)
+    _add_hits(baseline, sources, round, repetitions[0], places[0])
     baseline.refused |= {(round, test): calls for test, calls in refused_of(repetitions[0]).items()}
     return failed
 
@@ -322,14 +309,17 @@ def _no_tests(baseline: Baseline) -> str:
     return f"no test ran: {baseline.skipped} skipped"
 
 
-def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, good: list[str]) -> None:
-    places = places_of(result, sources)
+def _add_hits(
+    baseline: Baseline, sources: Sources, round: int, result: Result, places: Mapping[int, Place]
+) -> None:
+    good = baseline.tests[round]
     live = {places[index] for end in result.ends for index in end.live}
-    baseline.written_through |= {place for place in live if sources.is_written_through(place.site.span)}
+    baseline.written_through |= {one for one in live if sources.is_among(one.site.span, written_through)}
     for seen in result.sites:
         place = places[seen.index]
-        baseline.unread[place] = sources.is_unused(seen) and baseline.unread.get(place, True)
-    reaching: dict[Place, list[str]] = {}
+        is_unused = seen.direct and sources.is_among(seen.span, unused_calls)
+        baseline.unread[place] = is_unused and baseline.unread.get(place, True)
+    reaching: dict[Place, set[str]] = {}
     for end in result.ends:
         if end.test not in good:
             if (round, end.test) in baseline.unstable:  # where it would have judged mutants
@@ -340,14 +330,12 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
             place = places[index]
             baseline.hits.setdefault(place, []).append(Hit(written, read, (round, end.test)))
             baseline.answers.setdefault(place, RecordedAnswers()).add(round, end.test, answer)
-            tests = reaching.setdefault(place, [])
-            if end.test not in tests:
-                tests.append(end.test)
+            reaching.setdefault(place, set()).add(end.test)
     for call in result.called_at_import:
         place = places[call.site]
         baseline.hits.setdefault(place, []).append(Hit(call.written, call.read, (round, "")))
         baseline.answers.setdefault(place, RecordedAnswers()).add(round, "", call.answer)
         baseline.early.add(place)
-        reaching[place] = list(good)
+        reaching[place] = set(good)
     for place, tests in reaching.items():
-        baseline.reaching[round, place] = sorted(tests, key=lambda test: cost(baseline.ends[round, test]))
+        baseline.reach(round, place, tests)

@@ -5,7 +5,7 @@ Without readings of probes comparisons would say nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from mutabot.campaign.baseline.baseline import Baseline
@@ -126,7 +126,8 @@ def _out_of_range(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark
     for owner, side, quantity, values in _recorded(baseline, vocabulary):
         if quantity.range is None:
             continue
-        numbers = [found for value in values if (found := [*filter(is_number, _items(value))])]
+        each = (value if isinstance(value, list | tuple) else [value] for value in values)
+        numbers = [found for items in each if (found := [*filter(is_number, items)])]
         outside = [[one for one in some if not quantity.allows(one)] for some in numbers]
         examples = [some[0] for some in outside if some]
         limits = "[{:g}, {:g}]".format(*quantity.range)
@@ -157,7 +158,3 @@ def _recorded(
             for side, quantities in (("arguments", owner.arguments), ("result", owner.result)):
                 for quantity in quantities if found else ():
                     yield owner, side, quantity, [values.get(quantity.name) for values in found]
-
-
-def _items(value: Any) -> Sequence[Any]:
-    return value if isinstance(value, list | tuple) else [value]

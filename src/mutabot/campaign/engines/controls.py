@@ -15,18 +15,16 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import REPLAY
 from mutabot.campaign.verdict import judge, run_of
 from mutabot.errors import ControlError
-from mutabot.families import CONTROL
+from mutabot.families import CALLS, CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
 from mutabot.operators.command import Fatal, Identity
-
-from .tasks import MutantRun, task
 
 IDENTITY, FATAL = Identity.name, Fatal.name
 #: what a control is run for that is forked before any test
@@ -96,7 +94,7 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
         if not passing or place not in planned or (forked and any(end.processes for end in ends)):
             continue
         is_early = place in baseline.early
-        way = (baseline.faults.provider_at(place), forked and is_early)
+        way = (baseline.faults.providers.get(place, CALLS), forked and is_early)
         cost = (round, is_early, min(end.wall for end in passing))
         if way not in chosen or cost < chosen[way][0]:
             chosen[way] = (cost, place, passing[0].test)
@@ -156,8 +154,6 @@ def settled(
 
 
 def _replayed(campaign: Campaign, controls: Iterable[Control]) -> Iterator[tuple[Control, Outcome]]:
-    tasks = (
-        replace(task(campaign, *one.run, one.tests, stop=one.name == FATAL), key=one) for one in controls
-    )
+    tasks = (replace(campaign.task(*one.run, one.tests, stop=one.name == FATAL), key=one) for one in controls)
     for result in campaign.executor.run(tasks):
         yield result.task.key, judge(campaign, run_of(result, campaign.sources))

@@ -21,21 +21,12 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
-from mutabot.campaign.baseline.baseline import observation, place_of
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.baseline.baseline import observation
+from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.request import FORK, REPLAY
 from mutabot.campaign.reuse.keys import OutcomeWriter
-from mutabot.campaign.verdict import (
-    Death,
-    Run,
-    judged,
-    not_judged,
-    not_run,
-    refuse_others,
-    run_of,
-    without_tests,
-)
-from mutabot.errors import in_short
+from mutabot.campaign.verdict import Death, Run, judged, not_judged, not_run, run_of, without_tests
+from mutabot.errors import MutabotError, in_short
 from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
@@ -44,7 +35,6 @@ from mutabot.model.job import Forking
 from mutabot.model.mutant import Place
 
 from .controls import Control, controls_of, run_controls, settled
-from .tasks import MutantRun, job_of, startup_limit, task, wall_limits
 
 #: seconds for a test of the suite without any mutant
 _DEADLINE = 600.0
@@ -140,9 +130,8 @@ def _by_fork(
     mutants = {mutant.id: mutant for mutant, _ in runs}
     controls = _forked_controls(campaign, mutants.values())
     campaign.progress.stage("mutants", len(runs))
-    parents = ForkParents(campaign, left)
     hindered: list[tuple[Mutant, Outcome]] = []
-    for outcome in parents.run([*(one.run for one in controls.values()), *runs]):
+    for outcome in run_forks(campaign, [*(one.run for one in controls.values()), *runs], left):
         if outcome.mutant in controls:
             yield from settled(campaign, FORK, controls[outcome.mutant], outcome)
         elif outcome.beside is not None:
@@ -150,7 +139,7 @@ def _by_fork(
         else:
             yield outcome
     _tell(campaign, left)
-    clear_up(campaign, parents.suspects)
+    clear_up(campaign, left.suspects)
     left.runs = [run for run in left.runs if run[0].id not in controls]
     yield from run_alone(campaign, hindered)
 
@@ -171,7 +160,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Un
     if FORK in campaign.request.engines:
         controls = _forked_controls(campaign, mutants)
         campaign.progress.stage("controls", len(controls))
-        for outcome in ForkParents(campaign, left).run([one.run for one in controls.values()]):
+        for outcome in run_forks(campaign, [one.run for one in controls.values()], left):
             ended += len(list(settled(campaign, FORK, controls[outcome.mutant], outcome, is_step=True)))
         apart = [one for one in mutants if campaign.baseline.is_apart(one)]
         rest = mutants if left.runs else apart
@@ -186,8 +175,7 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)
     for reason, names in tests.items():
-        during = "no forks while the program is imported"
-        where = f"no forks in {in_short(names, 1)}" if names[0] else during
+        where = f"no forks in {in_short(names, 1)}" if names[0] else "no forks while the program is imported"
         campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
     if left.apart:
         text = "each is in place from the start of each test, in a process of its own"
@@ -238,7 +226,7 @@ def _run(
     def tasks() -> Iterator[Task]:
         for mutant, round in runs:
             if campaign.baseline.tests_reaching(round, mutant):
-                made = task(campaign, mutant, round, campaign.baseline.suite(round))
+                made = campaign.task(mutant, round, campaign.baseline.suite(round))
                 yield replace(made, alone=alone or made.alone)
             else:
                 uncovered.append((mutant, round))
@@ -265,12 +253,14 @@ class Unhandled:
         apart: ids of mutants that need a process of their own, whatever their tests.
         reasons: test to why mutants cannot be forked in it.
         notes: what else went wrong, in words.
+        suspects: (round, test) that ended otherwise in a fork parent than in the baseline.
     """
 
     runs: list[MutantRun] = field(default_factory=list)
     apart: set[str] = field(default_factory=set)
     reasons: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    suspects: list[tuple[int, str]] = field(default_factory=list)
 
     def why(self, mutant: Mutant) -> str:
         """Why a mutant is left, in words."""
@@ -279,48 +269,35 @@ class Unhandled:
         return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
 
 
-class ForkParents:
-    """The fork parents of all rounds, cut into parts where places share nothing.
+def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) -> Iterator[Outcome]:
+    """Run mutants in rounds as forks, of one parent a round, or of several where places share nothing.
 
-    Args:
-        campaign: the campaign.
-        left: is filled with what is left to replay.
-
-    Attributes:
-        suspects: (round, test) that ended otherwise in a fork parent than in the baseline.
+    Yields outcomes as they come. ``left`` is filled with what is left to replay.
     """
-
-    def __init__(self, campaign: Campaign, left: Unhandled) -> None:
-        self.campaign, self.left = campaign, left
-        self.suspects: list[tuple[int, str]] = []
-
-    def run(self, runs: Iterable[MutantRun]) -> Iterator[Outcome]:
-        """Run mutants in rounds. Yields outcomes as they come."""
-        baseline = self.campaign.baseline
-        parents: dict[int, _ForkParent] = {}
-        for mutant, round in runs:
-            # a control that may not have a test of its own is no mutant of any test
-            if mutant.family != CONTROL and not baseline.tests_reaching(round, mutant):
-                yield without_tests(baseline, mutant, round)
-                continue
-            if round not in parents:  # also if nothing is forked in it: it is the second run
-                parents[round] = _ForkParent(self, round)
-            if baseline.is_apart(mutant):
-                self.left.runs.append((mutant, round))
-                self.left.apart.add(mutant.id)
-            else:
-                parents[round].add(mutant)
-        # the text of all rounds alike, so that one fork server can serve them
-        text = baseline.faults.instrumentation(
-            {one.id: one for parent in parents.values() for one in parent.mutants}.values()
-        )
-        by_key = dict(enumerate(cut(list(parents.values()), self.campaign.executor.spread)))
-        tasks = (parent.task(key, text) for key, parent in by_key.items())
-        for event in self.campaign.executor.events(tasks):
-            if isinstance(event, Result):
-                yield from by_key[event.task.key].finish(event)
-            else:
-                yield from by_key[event[0].key].take(event[1])
+    baseline = campaign.baseline
+    parents: dict[int, _ForkParent] = {}
+    for mutant, round in runs:
+        # a control that may not have a test of its own is no mutant of any test
+        if mutant.family != CONTROL and not baseline.tests_reaching(round, mutant):
+            yield without_tests(baseline, mutant, round)
+            continue
+        if round not in parents:  # also if nothing is forked in it: it is the second run
+            parents[round] = _ForkParent(campaign, left, round)
+        if baseline.is_apart(mutant):
+            left.runs.append((mutant, round))
+            left.apart.add(mutant.id)
+        else:
+            parents[round].add(mutant)
+    # the text of all rounds alike, so that one fork server can serve them
+    text = baseline.faults.instrumentation(
+        {one.id: one for parent in parents.values() for one in parent.mutants}.values()
+    )
+    by_key = dict(enumerate(cut(list(parents.values()), campaign.executor.spread)))
+    for event in campaign.executor.events(parent.task(key, text) for key, parent in by_key.items()):
+        if isinstance(event, Result):
+            yield from by_key[event.task.key].finish(event)
+        else:
+            yield from by_key[event[0].key].take(event[1])
 
 
 def cut(parents: list[_ForkParent], places: int) -> list[_ForkParent]:
@@ -333,18 +310,16 @@ def cut(parents: list[_ForkParent], places: int) -> list[_ForkParent]:
 
 
 @dataclass(slots=True)
-class _ForkedRun:
+class _ForkedRun(Run):
     """What is known of one mutant so far.
 
     Attributes:
-        run: what the judge gets.
-        ends: its tests that have ended.
+        own: its tests that have ended.
         forked: number of the test in which it was forked, as far as it has told; -1: before any.
         is_decided: whether one of them has decided about the mutant.
     """
 
-    run: Run
-    ends: dict[str, events.TestEnd] = field(default_factory=dict)
+    own: dict[str, events.TestEnd] = field(default_factory=dict)
     forked: int | None = None
     is_decided: bool = False
 
@@ -352,9 +327,8 @@ class _ForkedRun:
 class _ForkParent:
     """The fork parent of one round and its forks."""
 
-    def __init__(self, parents: ForkParents, round: int) -> None:
-        self._parents, self._round = parents, round
-        self._campaign, self._left = parents.campaign, parents.left
+    def __init__(self, campaign: Campaign, left: Unhandled, round: int) -> None:
+        self._campaign, self._left, self._round = campaign, left, round
         self._baseline, self._sources = self._campaign.baseline, self._campaign.sources
         self._open: dict[str, _ForkedRun] = {}
         self._tests = self._baseline.suite(round)
@@ -367,17 +341,17 @@ class _ForkParent:
 
     def add(self, mutant: Mutant) -> None:
         """Add a mutant to fork."""
-        self._open[mutant.id] = _ForkedRun(Run(mutant, self._round, self._tests, engine=FORK))
+        self._open[mutant.id] = _ForkedRun(mutant, self._round, self._tests, engine=FORK)
 
     @property
     def mutants(self) -> tuple[Mutant, ...]:
         """The mutants whose outcomes are not known yet."""
-        return tuple(fork.run.mutant for fork in self._open.values())
+        return tuple(fork.mutant for fork in self._open.values())
 
     @property
     def seconds(self) -> float:
         """What its own tests and its forks take at most, by those of the baseline."""
-        own = sum(self._baseline.ends[self._round, test].wall for test in self._tests)
+        own = self._baseline.seconds(self._round, self._tests)
         return own * (1 + len(self._open)) + _FORK * len(self._open)
 
     def parts(self, places: float) -> list[_ForkParent]:
@@ -388,7 +362,7 @@ class _ForkParent:
             return [self]
         reaching = self._baseline.tests_reaching
         mutants = sorted(self.mutants, key=lambda one: (reaching(self._round, one), one.id))
-        found = [_ForkParent(self._parents, self._round) for _ in range(count)]
+        found = [_ForkParent(self._campaign, self._left, self._round) for _ in range(count)]
         for number, mutant in enumerate(mutants):
             found[number * count // len(mutants)].add(mutant)
         return found
@@ -396,7 +370,7 @@ class _ForkParent:
     def task(self, key: int, text: Instrumentation | None) -> Task:
         """The task that runs the fork parent."""
         campaign, baseline, mutants = self._campaign, self._baseline, self.mutants
-        walls = wall_limits(campaign, self._round, self._tests)
+        walls = campaign.wall_limits(self._round, self._tests)
         choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
         at_start: dict[str, tuple[str, ...]] = {}  # where tests have processes below them
         for mutant in mutants:
@@ -407,15 +381,15 @@ class _ForkParent:
             mutants=mutants,
             walls=walls,
             wall=max(walls.values(), default=0.0),
-            startup=startup_limit(campaign),
+            startup=campaign.startup_limit,
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=campaign.request.every_test,
             serial=baseline.is_exclusive(self._round),
             at_start=at_start,
         )
-        job = job_of(campaign, self._round, self._tests, mutants, forking=forking, instrumentation=text)
+        job = campaign.job(self._round, self._tests, mutants, forking=forking, instrumentation=text)
         for fork in self._open.values():
-            fork.run.left_out = job.left_out(fork.run.mutant.id)
+            fork.left_out = job.left_out(fork.mutant.id)
         # it waits for forks that go to the end
         patience = 2.0 * sum(walls.values()) + forking.startup + _PATIENCE
         may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
@@ -431,16 +405,11 @@ class _ForkParent:
         try:
             yield from self._take(event)
         except Exception as error:
-            refuse_others(error)
-            fork = (
-                self._open.get(event.mutant)
-                if isinstance(event, events.ForkTestEnd | events.ForkDied)
-                else None
-            )
-            if fork is not None:
-                del self._open[fork.run.mutant.id]
-                yield not_judged(fork.run.mutant, self._round, error, FORK)
+            if isinstance(event, events.ForkTestEnd | events.ForkDied) and event.mutant in self._open:
+                yield not_judged(self._open.pop(event.mutant).mutant, self._round, error, FORK)
                 return
+            if isinstance(error, MutabotError | OSError):
+                raise
             text = f"a report of the fork parent cannot be used: {type(error).__name__}: {error}"
             self._left.notes.append(text)
             self._is_off = self._is_off or isinstance(event, events.TestEnd)
@@ -450,11 +419,11 @@ class _ForkParent:
             case events.ForkTestEnd() if event.mutant in self._open:
                 yield from self._fork_ended(event)
             case events.ForkDied() if event.mutant in self._open:
-                self._open[event.mutant].run.death = _death_of(event)
+                self._open[event.mutant].death = _death_of(event)
                 yield from self._settle(event.mutant)
             case events.ForkSessionEnd():
                 for mutant in self._open.keys() & set(event.mutants):
-                    run = self._open[mutant].run
+                    run = self._open[mutant]
                     run.exit_code = event.exit_code
                     run.death = Death("; ".join(event.errors)) if event.errors else run.death
                     yield from self._settle(mutant)
@@ -464,7 +433,7 @@ class _ForkParent:
             case events.Undiverged():
                 self._undiverged[event.test] = event.hits
             case events.SiteSeen():
-                self._places[event.index] = place_of(event, self._sources)
+                self._places |= self._sources.places([event])
             case events.TestEnd():
                 yield from self._test_ended(event)
             case events.Untrusted():  # forks have files of their own: what is settled is not concerned
@@ -475,7 +444,7 @@ class _ForkParent:
                 self._leave(list(self._open))
 
     def _leave(self, mutants: Iterable[str]) -> None:
-        self._left.runs += [(self._open.pop(mutant).run.mutant, self._round) for mutant in mutants]
+        self._left.runs += [(self._open.pop(mutant).mutant, self._round) for mutant in mutants]
 
     def finish(self, result: Result) -> Iterator[Outcome]:
         """The process is gone: settle what can be settled, and leave the rest to replay."""
@@ -485,9 +454,9 @@ class _ForkParent:
         simulated = [end.simulated for end in self._own_ends if end.simulated is not None]
         for fork in list(self._open.values()):
             # nothing differed: it was the mutant's run as well
-            if is_whole and fork.ends and fork.forked is None and fork.run.death is None:
-                fork.run.exit_code = self._baseline.exits[self._round]
-                fork.run.shared = sum(simulated) if simulated else None
+            if is_whole and fork.own and fork.forked is None and fork.death is None:
+                fork.exit_code = self._baseline.exits[self._round]
+                fork.shared = sum(simulated) if simulated else None
                 yield self._judged(fork, len(self._tests))
         self._leave(list(self._open))
 
@@ -495,13 +464,12 @@ class _ForkParent:
         fork, test = self._open[event.mutant], event.end.test
         if fork.forked is None:
             fork.forked = -1 if event.is_early else self._numbers[test]
-        fork.ends[test] = event.end
+        fork.own[test] = event.end
         fork.is_decided |= event.end.is_decided
         if event.shared is not None:
-            fork.run.shared = (fork.run.shared or 0.0) + event.shared
+            fork.shared = (fork.shared or 0.0) + event.shared
         if event.end.outcome != "failed":
-            places = {seen.index: place_of(seen, self._sources) for seen in event.sites}
-            fork.run.observations[test] = observation(event.end, places)
+            fork.observations[test] = observation(event.end, self._sources.places(event.sites))
         yield from self._settle(event.mutant)
 
     def _test_ended(self, end: events.TestEnd) -> Iterator[Outcome]:
@@ -509,7 +477,7 @@ class _ForkParent:
         undiverged = self._undiverged.pop(end.test, {})
         if end.lasting != self._baseline.ends[self._round, end.test].lasting:
             self._is_off = True
-            self._parents.suspects.append((self._round, end.test))
+            self._left.suspects.append((self._round, end.test))
         if self._is_off:
             return
         found = observation(end, self._places)
@@ -519,19 +487,19 @@ class _ForkParent:
         own = replace(end, hits=0, acted=0, wall=0.0, cpu=0.0, trace=(), recording=None)
         self._own_ends.append(own)
         for mutant in undiverged.keys() & self._open.keys():
-            self._open[mutant].ends.setdefault(end.test, replace(own, hits=undiverged[mutant]))
-            self._open[mutant].run.observations.setdefault(end.test, found)
+            self._open[mutant].own.setdefault(end.test, replace(own, hits=undiverged[mutant]))
+            self._open[mutant].observations.setdefault(end.test, found)
         for mutant in self._waiting.pop(len(self._own_ends) - 1, set()) & self._open.keys():
             yield from self._settle(mutant)
 
     def _settle(self, mutant: str) -> Iterator[Outcome]:
         """Yield the mutant's outcome if all that it depends on is known."""
         fork = self._open[mutant]
-        is_dead = fork.run.death is not None
-        is_over = is_dead or fork.run.exit_code is not None
+        is_dead = fork.death is not None
+        is_over = is_dead or fork.exit_code is not None
         if not is_over and (not fork.is_decided or self._campaign.request.every_test):
             return
-        died_in = fork.run.death.test if fork.run.death is not None else None
+        died_in = fork.death.test if fork.death is not None else None
         forked = fork.forked if fork.forked is not None else self._numbers.get(died_in or "", -1)
         # a survivor is compared with the original in all tests: those that the parent runs later, too
         last = forked if fork.is_decided or is_dead else len(self._tests) - 1
@@ -540,10 +508,9 @@ class _ForkParent:
         else:
             self._waiting.setdefault(last, set()).add(mutant)
 
-    def _judged(self, fork: _ForkedRun, shared: int) -> Outcome:
+    def _judged(self, run: _ForkedRun, shared: int) -> Outcome:
         """The outcome of a mutant that has so many tests from its parent."""
-        run = fork.run
-        ends = {end.test: end for end in self._own_ends[:shared]} | fork.ends
+        ends = {end.test: end for end in self._own_ends[:shared]} | run.own
         run.ends = [ends[test] for test in self._tests if test in ends]
         run.wall = sum(end.wall for end in run.ends)
         if run.exit_code is not None:

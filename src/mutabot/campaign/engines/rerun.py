@@ -28,18 +28,8 @@ from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import VERIFIED, Request
 from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.errors import UnstableError
-from mutabot.journal.records import (
-    FLAKY,
-    REPEATS,
-    VERIFICATION,
-    Disagreement,
-    Flaky,
-    Repeated,
-    Repeats,
-    Verification,
-)
+from mutabot.journal import records
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.model.codec import to_data
 from mutabot.model.outcome import in_words, same_end
 
 from .engine import replay
@@ -48,9 +38,9 @@ from .engine import replay
 Key = tuple[str, int]
 #: so many kills of a test, or this share of what it judges, could be failures at random
 _FEW, _SHARE = 2, 0.1
-#: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
-SHARE, SECONDS = 0.05, 1.0
-#: the same once a kill has not come out again, and for what is left to chance
+#: repeats of kills in doubt may take this share of the time that the campaign has taken
+SHARE = 0.05
+#: the same once a kill has not come out again, and for what is left to chance; or so many seconds
 MOST_SHARE, MOST_SECONDS = 0.1, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
 RACES = 3
@@ -70,13 +60,11 @@ class Doubts:
     baseline: Baseline
     mutants: Mapping[str, Mutant]
     outcomes: Mapping[Key, Outcome]
-    unreliable: set[str] = field(default_factory=set)
+    unreliable: set[str] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.unreliable.update(self.baseline.doubted, (test for _, test in self.baseline.inexact))
-        self.unreliable.update(
-            test for (_, test), why in self.baseline.unstable.items() if not why.startswith(FAILS)
-        )
+        flaky = (test for (_, test), why in self.baseline.unstable.items() if not why.startswith(FAILS))
+        self.unreliable = {*self.baseline.doubted, *(test for _, test in self.baseline.inexact), *flaky}
 
     def kills(self) -> list[Key]:
         """All kills by a test that ended."""
@@ -118,11 +106,8 @@ class Doubts:
             if test == outcome.test or test in self.baseline.tests_reaching(key[1], self.mutants[key[0]])
         )
         few = (keys for test, keys in lone.items() if len(keys) < judged[test])
-        return {key for keys in few if len(keys) <= self._most(judged[self._test(keys[0])]) for key in keys}
-
-    @staticmethod
-    def _most(judged: int) -> float:
-        return max(_FEW, _SHARE * judged)
+        most = {test: max(_FEW, _SHARE * count) for test, count in judged.items()}
+        return {key for keys in few if len(keys) <= most[self._test(keys[0])] for key in keys}
 
     def _ran(self, key: Key) -> tuple[str, ...]:
         """The tests of the suite that a mutant ran."""
@@ -133,7 +118,7 @@ class Doubts:
 
     def cost(self, key: Key) -> float:
         """Seconds that the tests of a repeat take on the original."""
-        return sum(self.baseline.ends[key[1], test].wall for test in self._ran(key))
+        return self.baseline.seconds(key[1], self._ran(key))
 
     def _test(self, key: Key) -> str:
         return self.outcomes[key].test or ""
@@ -149,7 +134,7 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
     ``spent``: seconds that the campaign has taken until now.
     """
     request, journal = campaign.request, writer.journal
-    journal.set_meta(FLAKY, to_data(flaky_of(campaign.baseline)))
+    journal.set_meta(records.FLAKY, flaky_of(campaign.baseline))
     by_id = {mutant.id: mutant for mutant in mutants}
     outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
     reruns = _Reruns(campaign, writer, Doubts(campaign.baseline, by_id, outcomes))
@@ -157,8 +142,8 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
     if count := default if request.verify is None else request.verify:
         reruns.verify(count)
     if request.repeats:
-        reruns.repeat(max(SHARE * spent, SECONDS), max(MOST_SHARE * spent, MOST_SECONDS))
-    journal.set_meta(REPEATS, to_data(reruns.summary()))
+        reruns.repeat(SHARE * spent, max(MOST_SHARE * spent, MOST_SECONDS))
+    journal.set_meta(records.REPEATS, reruns.summary())
 
 
 @dataclass(slots=True)
@@ -184,7 +169,7 @@ class _Reruns:
         What was found first stays, unless it was over a simulation.
         """
         real, seed = self.campaign.real, self.campaign.request.seed
-        left, checked, wrong = dict(self.doubts.outcomes), 0, list[Disagreement]()
+        left, checked, wrong = dict(self.doubts.outcomes), 0, list[records.Disagreement]()
         if real is not None:
             left = {
                 key: one for key, one in left.items()
@@ -203,8 +188,8 @@ class _Reruns:
             left = {key: one for key, one in left.items() if key not in self.found}
             if real is None or not differing:
                 break
-        result = Verification(count, checked, tuple(wrong))
-        self.writer.journal.set_meta(VERIFICATION, to_data(result))
+        result = records.Verification(count, checked, tuple(wrong))
+        self.writer.journal.set_meta(records.VERIFICATION, result)
         where = "" if real is None else " over the real middleware"
         self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree{where}")
 
@@ -256,19 +241,21 @@ class _Reruns:
         done = self.settled.union(changed)
         return [key for key in found if key not in done and self.times[key] < times[key]]
 
-    def summary(self) -> Repeats:
+    def summary(self) -> records.Repeats:
         """How many outcomes of each kind were repeated, and how many of these changed."""
         kills = self.doubts.kills()
         certain = {key for key in kills if key not in self.found and self.doubts.is_certain(key)}
         doubted = set(self.doubts.in_doubt()) - certain
         others = [key for key in kills if key not in certain and key not in doubted]
         survivors = [key for key, one in self.doubts.outcomes.items() if one.verdict is Verdict.SURVIVED]
-        return Repeats(self._counted(doubted), self._counted(others), len(certain), self._counted(survivors))
+        return records.Repeats(
+            self._counted(doubted), self._counted(others), len(certain), self._counted(survivors)
+        )
 
-    def _counted(self, keys: Iterable[Key]) -> Repeated:
+    def _counted(self, keys: Iterable[Key]) -> records.Repeated:
         keys = list(keys)
         looked = [key for key in keys if key in self.found]
-        return Repeated(len(keys), len(looked), sum(map(self._is_changed, looked)))
+        return records.Repeated(len(keys), len(looked), sum(map(self._is_changed, looked)))
 
     def _run(
         self, keys: Sequence[Key], until: float | None = None, over: Campaign | None = None
@@ -322,18 +309,18 @@ def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
     )  # fmt: skip
 
 
-def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement:
+def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> records.Disagreement:
     words = in_words(first), in_words(second)
     if words[0] == words[1]:  # they differ in a later line of the message
         words = f"{first.verdict}: {first.message}", f"{second.verdict}: {second.message}"
-    return Disagreement(mutant.id, mutant.number, first.round, *words)
+    return records.Disagreement(mutant.id, mutant.number, first.round, *words)
 
 
-def flaky_of(baseline: Baseline) -> Flaky:
+def flaky_of(baseline: Baseline) -> records.Flaky:
     """The tests that are known to be flaky now: the fork parents give the second opinion."""
     lines = [f"{test} in round {round + 1}: {why}" for (round, test), why in baseline.unstable.items()]
     known = sum(len(baseline.ran(round)) for round in range(len(baseline.tests)))
-    return Flaky(tuple(lines), known + len(lines))
+    return records.Flaky(tuple(lines), known + len(lines))
 
 
 def refuse_flaky(request: Request, baseline: Baseline) -> None:

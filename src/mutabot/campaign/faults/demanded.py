@@ -2,42 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from mutabot.faults import Planted, Project
-from mutabot.frozen import frozen
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.graded import Demand, is_same, wanted_magnitudes
 
-
-@frozen
-class FaultLadder:
-    """One graded fault at one site, of one quantity, in one direction.
-
-    Attributes:
-        id: what its mutants' ids have in common.
-        mutants: by rising magnitude.
-    """
-
-    id: str
-    mutants: tuple[Mutant, ...]
+#: graded faults, each at one site, of one quantity, in one direction: what the ids of its mutants have in
+#: common, and these by rising magnitude
+Ladders = Mapping[str, Sequence[Mutant]]
 
 
-def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], list[FaultLadder]]:
+def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], Ladders]:
     """The mutants that stand alone, and the ladders."""
-    alone: list[Mutant] = []
     found: dict[str, list[Mutant]] = {}
     for mutant in mutants:
-        if mutant.ladder:
-            found.setdefault(mutant.ladder, []).append(mutant)
-        else:
-            alone.append(mutant)
-    ladders = [
-        FaultLadder(name, tuple(sorted(those, key=lambda one: one.magnitude or 0.0)))
-        for name, those in found.items()
-    ]
-    return alone, ladders
+        found.setdefault(mutant.ladder, []).append(mutant)
+    alone = found.pop("", [])
+    return alone, {name: sorted(those, key=lambda one: one.magnitude or 0.0) for name, those in found.items()}
 
 
 def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]:
@@ -56,11 +39,11 @@ def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]
         if one.reason is not None or one.mutant.family in families or wanted.get(one.mutant.ladder)
     ]
     places = {one.mutant.ladder: one for one in reversed(found) if one.reason is None}
-    for ladder in ladders:
+    for name, mutants in ladders.items():
         found += [
-            replace(places[ladder.id], mutant=_at(ladder.mutants[0], size))
-            for size in wanted.get(ladder.id, ())
-            if not any(is_same(one.magnitude or 0.0, size) for one in ladder.mutants)
+            replace(places[name], mutant=_at(mutants[0], size))
+            for size in wanted.get(name, ())
+            if not any(is_same(one.magnitude or 0.0, size) for one in mutants)
         ]
     return found
 
@@ -68,7 +51,7 @@ def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]
 def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
     """These mutants with an order by which those with sizes come last, ladder by ladder."""
     _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
-    steps = [mutant.id for ladder in ladders for mutant in ladder.mutants]
+    steps = [mutant.id for mutants in ladders.values() for mutant in mutants]
     order = {mutant: (1, number) for number, mutant in enumerate(steps)}
     return [
         replace(one, order=order[one.mutant.id]) if one.reason is None and one.mutant.id in order else one
@@ -77,15 +60,14 @@ def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
 
 
 def demanded_of(
-    ladders: Sequence[FaultLadder], demands: Sequence[Demand], vocabulary: Vocabulary
+    ladders: Ladders, demands: Sequence[Demand], vocabulary: Vocabulary
 ) -> dict[str, tuple[float, ...]]:
     """The demanded magnitudes of each ladder, by its id."""
     found = {}
-    for ladder in ladders if demands else ():
-        first = ladder.mutants[0]
+    for name, (first, *_) in ladders.items() if demands else ():
         quantity = vocabulary.quantity(first.operation, first.pattern, first.quantity)
         kind = quantity.kind if quantity is not None else None
-        found[ladder.id] = wanted_magnitudes(demands, first, kind)
+        found[name] = wanted_magnitudes(demands, first, kind)
     return found
 
 

@@ -1,17 +1,387 @@
-"""All providers of faults: the core's own, and those of packages."""
+"""All providers of faults, those of the core and of packages; and what the core's own plant in calls.
+
+Operators at places make mutants, at every call or at moments; what cannot matter is left out, with the
+reason.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from random import Random
+from typing import Any, ClassVar
 
-from mutabot.errors import ExtensionError, unknown_name_text
-from mutabot.families import OF_CALLS, ROBOT
-from mutabot.faults import FaultProvider, Preparation, Project, brought_providers
-from mutabot.operators.operator import Rule
+from mutabot.campaign.baseline.baseline import Baseline, Hit, NoAnswerError, RecordedAnswers, idle_of
+from mutabot.campaign.faults.demanded import ladders_last, with_demanded
+from mutabot.errors import ExtensionError, OperatorError, unknown_name_text
+from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_CALLS, ROBOT
+from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project, brought_providers
+from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
+from mutabot.model.mutant import Place, When
+from mutabot.model.quantity import is_number, is_reading_of
+from mutabot.operators import Need, Operator, Subject, load_all, operator
+from mutabot.operators.operator import Rule, with_operation
+from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
+from mutabot.operators.registry import operator as operator_of
 from mutabot.operators.registry import operator as operator_on_calls
+from mutabot.operators.value import NOT_PASSED, NOT_RETURNED
 
-from .calls import CallFaults, MessageFaults
+
+def at_moments(
+    planted: Sequence[Planted], baseline: Baseline, vocabulary: Vocabulary, wanted: Sequence[Moment | None]
+) -> list[Planted]:
+    """Each mutant at each of these moments; None is every call."""
+    found = [one for one in planted if one.reason is not None]
+    for one in planted:
+        for moment in wanted if one.reason is None else ():
+            made = one.mutant if moment is None else _at(one.mutant, moment, baseline)
+            reason = _why_not(made, vocabulary, baseline)
+            order = one.order if reason is None else (1, *one.order[1:])  # left out here: behind the others
+            found.append(replace(one, mutant=made, reason=reason, order=order))
+    return found
+
+
+def _at(mutant: Mutant, moment: Moment, baseline: Baseline) -> Mutant:
+    if moment.when is When.ONCE:
+        counts = {f"{round} {test}": count for (round, test), count in _calls_at(mutant, baseline).items()}
+        moment = replace(moment, calls=counts)
+    return replace(mutant, moment=moment, description=f"{mutant.description}, {moment.words}")
+
+
+def _why_not(mutant: Mutant, vocabulary: Vocabulary, baseline: Baseline) -> str | None:
+    moment = mutant.moment
+    if moment is None:
+        return None
+    if Need.MEMORY in operator(mutant.operator).needs:
+        return "what it does to a call depends on earlier ones, so that it acts at all of them"
+    if moment.asks_time and vocabulary.clock is None:
+        return "the vocabulary names no clock"
+    most = max(_calls_at(mutant, baseline).values(), default=0)
+    if moment.first > most and not moment.asks_time:
+        return f"no test makes call {moment.first:g} here; the most are {most}"
+    return None
+
+
+def _calls_at(mutant: Mutant, baseline: Baseline) -> Counter[tuple[int, str]]:
+    """How many calls the site has in each test of each round."""
+    return Counter(hit.where for hit in baseline.hits.get(Place.of(mutant), ()))
+
+
+#: why a speed or ratio is not reversed
+NO_SIGN = (
+    "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an axis, "
+    "or a range or clip that goes below 0"
+)
+
+
+def _has_negative(baseline: Baseline, place: Place, subject: Subject) -> bool:
+    """Whether any call of the same command has a negative value of the subject's quantity."""
+    command = place.operation, place.pattern
+    same = (hits for other, hits in baseline.hits.items() if (other.operation, other.pattern) == command)
+    values = (_value(subject, hit) for hits in same for hit in hits)
+    items = (item for value in values for item in (value if isinstance(value, list | tuple) else [value]))
+    return any(is_number(item) and item < 0 for item in items)
+
+
+_LOST_WRITE = (
+    "the program writes to what the call returns, which is the robot's own memory: "
+    "a mutant hands out a copy, and what is written to that is lost"
+)
+#: recorded calls per place that are tried out; calls of one place are much alike
+TRIED = 200
+
+
+class CallFaults(FaultProvider):
+    """Operators on calls, which act where a call is intercepted (``mutabot/runtime/calls``)."""
+
+    name = CALLS
+    families: ClassVar[tuple[str, ...]] = (ROBOT, GRADED, CATALOGUE)
+    location = "operation"
+    needs_vocabulary = True
+    numbered_with = CALLS
+
+    def rules(self) -> Sequence[Operator]:
+        """All operators on calls but those of messages, also those that packages bring."""
+        return [rule for rule in load_all() if rule.family != MIDDLEWARE]
+
+    def is_asked_for(self, project: Project) -> bool:
+        """It may be for an operator that a package brings, whose family is its own; or for a demand."""
+        return any(_is_asked_for(rule, project) for rule in self.rules())
+
+    def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
+        """The mutants of its operators at all places that the tests reach.
+
+        Those with sizes come behind all others, whose numbers are the same with and without them.
+        """
+        assert isinstance(original, Baseline)
+        operators = [rule for rule in self.rules() if _is_asked_for(rule, project)]
+        found = list(_at_places(original, project.vocabulary, operators, self.name))
+        if project.moments != (None,):
+            found = at_moments(found, original, project.vocabulary, project.moments)
+        return Planned(ladders_last(with_demanded(found, project)))
+
+    def draws(self, operator: str) -> bool:
+        """Whether an operator of its own draws numbers anew for each round."""
+        return operator_of(operator).draws
+
+    def is_raced(self, operator: str) -> bool:
+        """Whether equal runs with a fault of this operator may end differently."""
+        return operator_of(operator).is_raced
+
+
+class MessageFaults(CallFaults):
+    """Operators on what goes over a middleware, as messages, requests and settings do."""
+
+    name = MESSAGES
+    families = (MIDDLEWARE,)
+
+    def rules(self) -> Sequence[Operator]:
+        """The operators on messages."""
+        return [rule for rule in load_all() if rule.family == MIDDLEWARE]
+
+
+def _is_asked_for(rule: Operator, project: Project) -> bool:
+    return rule.family in project.families or (bool(project.demands) and rule.has_sizes)
+
+
+def _at_places(
+    baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
+) -> Iterator[Planted]:
+    """All mutants of these operators at all places that the tests reach, and those that are left out."""
+    taken: set[str] = set()
+    operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in baseline.hits})
+    ranks = {rule.name: rank for rank, rule in enumerate(load_all())}
+    for index, (place, hits) in enumerate(baseline.hits.items()):
+        operation = vocabulary.operation(place.operation)
+        if operation is None:
+            continue
+        is_shared = operations_at[place.site] > 1
+        for subject, rule in _subjects(operators, operation, place):
+            mutant = _distinct(_mutant(rule, subject, place, provider), taken)
+            seen, foreseen = _foresee(rule, subject, hits)
+            needs = rule.needs_of(subject)
+            unmet = {need: _why_unmet(need, subject, place, baseline, vocabulary) for need in needs}
+            later = (unmet.get(need) for need in (Need.CLOCK, Need.WAIT, Need.SIGN))
+            reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), foreseen, *later)
+            reason = next(filter(None, reasons), None)
+            if reason is None and baseline.unread.get(place, False) and rule.only_reads(subject):
+                reason = "nobody reads what the call returns: it is a statement by itself"
+            mutant = replace(
+                mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
+            )
+            is_read_alone = subject.quantity in subject.read and subject.quantity not in subject.written
+            if place in baseline.written_through and is_read_alone:
+                reason = _LOST_WRITE
+            if Need.IDLE in rule.needs and reason is None:
+                try:
+                    answers = _answers(baseline, place, of_any=Need.ERROR in rule.needs)
+                    mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
+                except NoAnswerError as error:
+                    reason = str(error)
+            yield Planted(mutant, reason, (0, index, ranks[rule.name]))
+
+
+def _answers(baseline: Baseline, place: Place, *, of_any: bool) -> RecordedAnswers:
+    """What calls of a place returned; where all of them raised, what the same command returned elsewhere.
+
+    That is taken for what it answers here if it returned nothing wherever it returned; or, with ``of_any``,
+    whatever it was.
+    """
+    own = baseline.answers[place]
+    if own.first:
+        return own
+    others = [
+        answers
+        for other, answers in baseline.answers.items()
+        if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
+    ]
+    is_told = others and (of_any or all(one.is_nothing for one in others))
+    return others[0] if is_told else own
+
+
+def _subjects(
+    operators: Iterable[Operator], operation: Operation, place: Place
+) -> Iterator[tuple[Subject, Operator]]:
+    pattern = operation.pattern(place.pattern)
+    for rule in operators:
+        if place.site.role is Role.ORACLE and Need.PROGRAM in rule.needs:
+            continue
+        try:
+            subjects = list(rule.subjects(operation, pattern))
+        except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
+            raise OperatorError(f"operator {rule.name!r} fails on {operation.target}: {error!r}") from error
+        for subject in subjects:
+            yield subject, rule
+
+
+def _mutant(rule: Operator, subject: Subject, place: Place, provider: str) -> Mutant:
+    return Mutant(
+        number=0,
+        family=rule.family,
+        operator=rule.name,
+        site=place.site,
+        operation=place.operation,
+        pattern=place.pattern,
+        quantity=subject.quantity.name if subject.quantity is not None else None,
+        variant=subject.variant,
+        description="",
+        magnitude=subject.magnitude,
+        unit=subject.unit,
+        direction=subject.direction,
+        has_sizes=rule.has_sizes,
+        provider=provider,
+    )
+
+
+def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
+    """Two operations at one site (the object decides) may have quantities of the same name.
+
+    So may one operation whose site nodes of the program share with those of the oracle.
+    """
+    if mutant.id in taken:
+        mutant = replace(mutant, variant=with_operation(mutant.variant, mutant.operation))
+    taken.add(mutant.id)
+    return mutant
+
+
+#: a recorded value of the subject, and what it would become; None where nobody knows beforehand
+_Seen = tuple[Any, Any]
+
+
+def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
+    """What the mutant would do to the recorded calls, and why it is left out, if it is."""
+    least, most = rule.least_calls(subject), max(Counter(hit.where for hit in hits).values(), default=0)
+    if most < least:
+        return (None, None), f"takes {least} calls in a test, and no test makes more than {most}"
+    if rule.is_chance(subject):
+        return (_value(subject, hits[0]), None), None
+    last: _Seen = (None, None)
+    middleware = rule.middleware(subject, Random(1))
+    away = ""
+    where = None
+    for hit in hits[:TRIED]:
+        before = _value(subject, hit)
+        if Need.MEMORY not in rule.needs or hit.where != where:
+            where = hit.where
+            middleware = rule.middleware(subject, Random(1))
+        try:
+            passage = _rehearsal(rule, subject, hit, middleware)
+        except LookupError:  # it asks where the robot is, which only the run can tell
+            return (before, None), None
+        if passage.acted:
+            return (before, _changed(subject, passage)), None
+        away = away or passage.away
+        last = (before, before) if last[0] is None else last
+    if away and (subject.quantity is None or subject.quantity.kind is Kind.SETTING):
+        return last, f"would change nothing in {_calls(len(hits))}: {away}"
+    return last, _reason(subject, last[0], len(hits))
+
+
+def _why_unmet(
+    need: Need, subject: Subject, place: Place, baseline: Baseline, vocabulary: Vocabulary
+) -> str | None:
+    """Why what an operator needs is not to be had; None if it is."""
+    match need:
+        case Need.ERROR if not baseline.answers[place].has_raised:
+            return "no call raises in the baseline"
+        case Need.PLACE if not _is_told(subject, vocabulary):
+            return f"{subject.current or 'no reading'} does not tell where it is"
+        case Need.CLOCK if vocabulary.clock is None:
+            return "the vocabulary names no clock"
+        case Need.WAIT if vocabulary.wait is None and subject.operation.named is None:
+            return "the vocabulary does not say what lets the program's time pass (wait = …)"
+        case Need.SIGN if not _has_negative(baseline, place, subject):
+            return NO_SIGN
+    return None
+
+
+def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
+    """Whether the vocabulary names a reading that tells where the subject's quantity is."""
+    reading = vocabulary.operation(subject.current or "")
+    if reading is None or subject.quantity is None:
+        return False
+    return any(is_reading_of(part, subject.quantity) for part in reading.readings)
+
+
+def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> CallRecord:
+    payload = object() if Need.MEMORY in rule.needs else None  # no two messages need be the same
+    call = Call(subject.operation, subject.pattern, hit.written, idle=Reply(), payload=payload)
+    try:
+        passage = rehearse(middleware, call, hit.read, payload=payload, operator=rule.name)
+    except (LookupError, OperatorError):
+        raise
+    except Exception as error:  # as above: a plug-in's own fault
+        raise OperatorError(
+            f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}"
+        ) from error
+    _check_promises(rule, subject, passage)
+    return passage
+
+
+def _check_promises(rule: Operator, subject: Subject, passage: CallRecord) -> None:
+    broken = None
+    if rule.does_nothing and passage.performed:
+        broken = "declares does_nothing, but makes the call"
+    elif Need.IDLE not in rule.needs and not passage.performed and passage.received is passage.call.idle:
+        broken = "answers with call.idle, but Need.IDLE is none of its needs"
+    if broken is not None:
+        text = f"operator {rule.name!r} {broken} (on {subject.operation.target})"
+        raise OperatorError(text)
+
+
+def _value(subject: Subject, hit: Hit) -> Any:
+    if subject.quantity is None:
+        return None
+    return {**hit.read, **hit.written}.get(subject.quantity.name)
+
+
+def _changed(subject: Subject, passage: CallRecord) -> Any:
+    name = subject.quantity.name if subject.quantity is not None else ""
+    if passage.changed_reading and passage.received is not None:
+        return passage.received.values.get(name)
+    return passage.performed[0].values.get(name) if passage.performed else None
+
+
+def _reason(subject: Subject, value: Any, hits: int) -> str:
+    calls, quantity = _calls(hits), subject.quantity
+    if quantity is None:
+        return f"would change nothing in {calls}"
+    if value is None and hits == 1:
+        return NOT_PASSED if subject.is_written else NOT_RETURNED
+    if value is None:
+        verb, what = ("passes", "argument") if subject.is_written else ("returns", "value")
+        return f"none of the {hits} calls {verb} this {what}"
+    within = " within the values that the vocabulary allows" if quantity.range or quantity.values else ""
+    return f"would change nothing in {calls}{within} (value {quantity.text(value)})"
+
+
+def _calls(hits: int) -> str:
+    return "the call" if hits == 1 else f"any of {hits} calls"
+
+
+def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:
+    """What the mutant does, in one line; ``is_shared``: whether the site reaches several operations."""
+    operation, text = subject.operation, place.site.text
+    if operation.named is not None:  # what is done on a middleware, and who hears it
+        is_callback = text == "lambda" or text.startswith("def ")
+        what = f"{text}, {operation.target}" if is_callback else operation.target
+    else:
+        what = text if _names(text, operation.qualname, is_shared=is_shared) else f"{text} ({operation.name})"
+    if subject.pattern is not None:
+        name = subject.pattern.name
+        what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
+    return f"{what}: {rule.describe(subject, *seen)}"
+
+
+def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
+    """Whether the text of a call says which operation it is: a variable, a table or a wrapper may not."""
+    name = qualname if is_shared else qualname.rpartition(".")[2]
+    before = r"(?<![\w.])" if is_shared else r"\b"
+    return re.search(f"{before}{re.escape(name)}$", text) is not None
+
 
 _OWN: tuple[FaultProvider, ...] = (CallFaults(), MessageFaults())
 
@@ -57,8 +427,8 @@ def family_of(mutant: str) -> str:
 def rules_of(families: Collection[str]) -> list[Rule]:
     """The operators of the providers of these families; of other packages nothing is loaded."""
     known = _OWN if set(families) <= set(OF_CALLS) else all_providers()
-    brought = [one for one in known if one not in _OWN and not set(one.families).isdisjoint(families)]
-    return [rule for one in (*_OWN, *brought) for rule in one.rules()]
+    wanted = (one for one in known if one in _OWN or not set(one.families).isdisjoint(families))
+    return [rule for one in wanted for rule in one.rules()]
 
 
 def operators_of_packages() -> dict[str, str]:

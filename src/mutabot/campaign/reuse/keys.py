@@ -49,7 +49,7 @@ _REACHING, _SUITE, _UNTIL = "which tests reach it", "which tests there are", "th
 _ASIDE = "which tests are set aside"
 
 
-class Tree:
+class SourceTree:
     """The Python files of a project at one moment.
 
     Args:
@@ -75,7 +75,7 @@ class Tree:
         files = {name: self.file(name) for name in self.digests}
         return {name: file.said if file is not None else None for name, file in files.items()}
 
-    def moved(self, text: str, new: Tree) -> str | None:
+    def moved(self, text: str, new: SourceTree) -> str | None:
         """A text with the places that it names as they are in a new tree; None if one of them is gone."""
         gone = False
 
@@ -116,8 +116,8 @@ class Was:
     common: Parts | None
     place: Parts | None
     own: str
-    tree: Tree
-    found_in: Tree
+    tree: SourceTree
+    found_in: SourceTree
     executed: Executed | None
     notes: Parts
 
@@ -162,7 +162,7 @@ class Dependencies:
         self._made: dict[tuple[int, ...], tuple[tuple[object, ...], list[str]]] = {}
         self._groups: dict[tuple[str, ...], tuple[str, ...]] = {}
         code = {name: digest for name, digest in self.files.items() if name in self.texts}
-        self.tree = Tree(code, lambda name, digest: self.texts.get(name))
+        self.tree = SourceTree(code, lambda name, digest: self.texts.get(name))
         self._tree = self._stored(code)
         self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self.texts},
@@ -193,7 +193,7 @@ class Dependencies:
         self,
         key: str,
         parts: Callable[[str], Parts | None],
-        tree: Callable[[str], Tree],
+        tree: Callable[[str], SourceTree],
     ) -> Was:
         """What an outcome with this key depended on.
 
@@ -204,11 +204,7 @@ class Dependencies:
         common, place, own, files, executed = (*key.split(), *[""] * 5)[:5]  # a journal may hold anything
         found_in = self.tree if files == self._tree else tree(files)
         units = parts(executed)
-        lines = (
-            {}
-            if units is None
-            else {k: v for k, v in units.items() if k == ALL_FILES or k in found_in.digests}
-        )
+        lines = {k: v for k, v in (units or {}).items() if k == ALL_FILES or k in found_in.digests}
         return Was(
             self.common if common == self._common else parts(common),
             parts(place),
@@ -333,11 +329,8 @@ class Dependencies:
     def _differing_units(self, was: Was, mutant: Mutant, round: int) -> list[str]:
         is_all = was.executed is None or ALL_FILES in was.executed
         whole, until = self.asked(was)
-        tests = (
-            self._baseline.tests_reaching(round, mutant)
-            if is_all
-            else self.tests(mutant, round, whole=whole, until=until)
-        )
+        tests = self.tests(mutant, round, whole=whole, until=until)
+        tests = self._baseline.tests_reaching(round, mutant) if is_all else tests
         group = self._groups.setdefault((str(round), *tests), (str(round), *tests))
 
         def differing() -> list[str]:
@@ -368,22 +361,21 @@ class Dependencies:
             found += [f"{file.shown(unit)} is executed now" for unit in sorted(new)]
         return found
 
-    def _names_of_all(self, tree: Tree, tests: Iterable[str]) -> dict[str, set[str] | None]:
+    def _names_of_all(self, tree: SourceTree, tests: Iterable[str]) -> dict[str, set[str] | None]:
         """All units that there were or are, bar those of other tests."""
         own = {(self.file_of(test), _function_of(test)) for test in tests}
+
+        def counts(name: str, unit: str) -> bool:
+            is_test = is_test_file(name) and unit.rpartition(".")[2].startswith("test")
+            return not is_test or (name, unit) in own
+
         found: dict[str, set[str] | None] = {}
         for name in {*tree.digests, *self.tree.digests}:
             files = [file for file in (tree.file(name), self.tree.file(name)) if file is not None]
-            units = {unit for file in files for unit in file.said}
-            found[name] = {
-                unit
-                for unit in units
-                if not (is_test_file(name) and unit.rpartition(".")[2].startswith("test"))
-                or (name, unit) in own
-            }
+            found[name] = {unit for file in files for unit in file.said if counts(name, unit)}
         return found
 
-    def is_of(self, test: str, tree: Tree) -> bool:
+    def is_of(self, test: str, tree: SourceTree) -> bool:
         """Whether a test of now was there in a tree; one that is no function is taken for that."""
         file, name = self.file_of(test), _function_of(test)
         now, then = self.tree.file(file), tree.file(file)
@@ -454,14 +446,11 @@ def _lines(text: str) -> tuple[int, ...]:
 
 def _names(was: Was) -> dict[str, set[str] | None]:
     """The names of the units that were executed; None for a file of which all counts."""
-    found: dict[str, set[str] | None] = {}
-    for name, lines in (was.executed or {}).items():
-        file = was.found_in.file(name)
-        found[name] = file.names_at(lines) if file is not None else None
-    return found
+    files = {name: (was.found_in.file(name), lines) for name, lines in (was.executed or {}).items()}
+    return {name: None if file is None else file.names_at(lines) for name, (file, lines) in files.items()}
 
 
-def _differing(names: Mapping[str, set[str] | None], old: Tree, new: Tree) -> list[str]:
+def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: SourceTree) -> list[str]:
     """Which of these units say something else in two trees, in words; what is new last."""
     found, made = [], []
     for name in sorted(names):
@@ -485,23 +474,13 @@ def _differing(names: Mapping[str, set[str] | None], old: Tree, new: Tree) -> li
 def changes(old: Parts, new: Parts) -> list[str]:
     """What differs, in words, files of the project first."""
     found = []
-    for name in sorted({*old, *new}, key=lambda name: (_is_setting(old, new, name), name)):
+    for name in {*old, *new}:
         before, now = old.get(name), new.get(name)
-        if before == now:
-            continue
-        if before is None:
-            found.append(f"{name} is new")
-        elif now is None:
-            found.append(f"{name} is gone")
-        elif _is_setting(old, new, name):
-            found.append(f"{name} is {now}, was {before}")
-        else:
-            found.append(f"{name} changed")
-    return found
-
-
-def _is_setting(old: Parts, new: Parts, name: str) -> bool:
-    return not any(parts.get(name, "").startswith(_HASH) for parts in (old, new))
+        is_setting = not any(value is not None and value.startswith(_HASH) for value in (before, now))
+        what = f"is {now}, was {before}" if is_setting else "changed"
+        what = "is new" if before is None else "is gone" if now is None else what
+        found += [(is_setting, name, what)] if before != now else []
+    return [f"{name} {what}" for _, name, what in sorted(found)]
 
 
 def _settings(request: Request) -> dict[str, str]:
@@ -560,34 +539,23 @@ def _vocabulary_parts(vocabulary: Vocabulary) -> dict[str, str]:
 
 def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
     """The entry of an operation, and those of the operations that its mutants need."""
-    return {
-        f"{operation.target} in the vocabulary": _HASH + _digest(_meaning(operation))
-        for name in _operations_with(vocabulary, target)
-        if (operation := vocabulary.operation(name)) is not None
-    }
-
-
-def _operations_with(vocabulary: Vocabulary, target: str) -> list[str]:
-    """An operation, and those that its mutants need."""
-    found: dict[str, None] = {}
+    found: dict[str, str] = {}
     waiting = [target]
     while waiting:
         operation = vocabulary.operation(waiting.pop())
-        if operation is not None and operation.target not in found:
-            found[operation.target] = None
+        name = f"{operation.target} in the vocabulary" if operation is not None else ""
+        if operation is not None and name not in found:
+            found[name] = _HASH + _digest(_meaning(operation))
             waiting += [*operation.currents, *operation.opposites]
-    return list(found)
+    return found
 
 
 def _meaning(value: Any) -> Any:
     """What an entry says, without the line it stands in."""
-    return _without_source(to_data(value))
-
-
-def _without_source(data: Any) -> Any:
+    data = to_data(value)
     if isinstance(data, dict):
-        return {key: _without_source(item) for key, item in data.items() if key != "source"}
-    return [_without_source(item) for item in data] if isinstance(data, list) else data
+        return {key: _meaning(item) for key, item in data.items() if key != "source"}
+    return [_meaning(item) for item in data] if isinstance(data, list) else data
 
 
 def versions() -> dict[str, str]:

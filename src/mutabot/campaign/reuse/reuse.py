@@ -1,21 +1,31 @@
 """Reuse: which outcomes of earlier campaigns still hold, and why the others are run again.
 
-What is taken over names lines as they are now.
+What is taken over names lines as they are now. Since a revision, only those mutants are run that the changes
+can have altered. A revision is seen as a campaign would have seen it. Git is asked by its own program: it is
+where there are revisions, and nothing else reads all repositories.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
 
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Progress, Request
-from mutabot.errors import in_short
+from mutabot.campaign.reuse.keys import Dependencies, SourceTree, Was, tool_table
+from mutabot.errors import JournalError, UsageError, in_short
+from mutabot.frozen import frozen
+from mutabot.journal.files import find_journal, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import Kept
+from mutabot.journal.records import SINCE, Kept, Since
 from mutabot.model import Mutant, Verdict
+from mutabot.repository import GitError, git, unignored
 
-from .keys import Dependencies, Parts, Tree, Was
+from .snapshot import WRITTEN, State, counts_by_name, digest_of, is_note, own_files, read
 
 Pair = tuple[str, int]
 #: names that are given before it is said how many more there are
@@ -33,15 +43,10 @@ class Earlier:
     def __init__(self, now: Dependencies, journal: JournalReader) -> None:
         self.kept = journal.found()
         self._now, self._journal = now, journal
-        self._parts: dict[str, Parts | None] = {}
-        self._trees: dict[str, Tree] = {}
-        self._was: dict[str, Was] = {}
-
-    def was(self, key: str) -> Was:
-        """What an outcome with this key depended on."""
-        if key not in self._was:
-            self._was[key] = self._now.was(key, self._parts_of, self._tree)
-        return self._was[key]
+        parts = cache(journal.parts)
+        tree = cache(lambda digest: SourceTree(parts(digest) or {}, lambda name, text: journal.text(text)))
+        #: what an outcome with this key depended on
+        self.was = cache(lambda key: now.was(key, parts, tree))
 
     def why(self, pair: Pair, mutant: Mutant, *, is_known: bool = True) -> str | None:
         """Why an outcome may come out otherwise now, in words; None if it cannot. There is one."""
@@ -66,20 +71,9 @@ class Earlier:
             return False
         return self.was(self.kept[row.mutant, row.round].key).tree.said != self._now.tree.said
 
-    def _parts_of(self, digest: str) -> Parts | None:
-        if digest not in self._parts:
-            self._parts[digest] = self._journal.parts(digest)
-        return self._parts[digest]
 
-    def _tree(self, digest: str) -> Tree:
-        if digest not in self._trees:
-            parts = self._parts_of(digest) or {}
-            self._trees[digest] = Tree(parts, lambda name, text: self._journal.text(text))
-        return self._trees[digest]
-
-
-#: why an outcome is not taken over although it holds
-GONE = "a line that they name is gone"
+#: why an outcome is not taken over although it holds, or although nothing that it depends on has changed
+GONE, _UNSOUND = "a line that they name is gone", "they ended in an error or unstable"
 
 
 @dataclass(slots=True)
@@ -194,7 +188,7 @@ def text_of(found: Reused) -> str:
     parts += reasons_in_words(found.why.values())
     unsound = len(found.unsound - found.why.keys())
     if unsound:
-        parts.append(f"{unsound} run again: they ended in an error or unstable")
+        parts.append(f"{unsound} run again: {_UNSOUND}")
     if found.first:
         is_all = not (reused or found.why or unsound)
         parts.append(f"{found.first} {'run for the first time' if is_all else 'not run before'}")
@@ -207,3 +201,250 @@ def reasons_in_words(why: Iterable[str]) -> list[str]:
     parts = [f"{count} run again: {reason}" for reason, count in counts.most_common(_SHOWN)]
     rest = sum(count for _, count in counts.most_common()[_SHOWN:])
     return [*parts, *([f"{rest} run again for other reasons"] if rest else [])]
+
+
+_OPTION = "--since"
+
+
+@frozen
+class Revision:
+    """A revision of the repository that a project lies in.
+
+    Attributes:
+        project: the project's folder.
+        top: the repository's folder.
+        ref: the revision as the user named it.
+        commit: its commit.
+        changed: files of the repository, relative to it, that are not now as they were then, also untracked
+            ones; and whether they were there.
+    """
+
+    project: Path
+    top: Path
+    ref: str
+    commit: str
+    changed: dict[str, bool]
+
+    @classmethod
+    def find(cls, project: Path, ref: str) -> Revision:
+        """Look it up. Raises UsageError, saying what to do."""
+        project = project.resolve()
+        try:
+            top = Path(_text(project, "rev-parse", "--show-toplevel").removesuffix("\n"))
+        except _FailedError as error:
+            hint = "without a revision, `mutabot run` itself runs what has changed"
+            raise UsageError(f"{_OPTION}: {project} is in no repository of git ({error}); {hint}") from error
+        commit = _commit(project, ref)
+        words = _text(top, "diff", "--name-status", "--no-renames", "-z", commit, "--").split("\0")[:-1]
+        changed = {name: status != "A" for status, name in zip(words[::2], words[1::2], strict=True)}
+        for name in unignored(top):
+            changed.setdefault(name, False)
+        return cls(project, top.resolve(), ref, commit, changed)
+
+    @property
+    def short(self) -> str:
+        """``main (1a2b3c4)``."""
+        abbreviated = self.commit[:7]
+        return self.ref if self.ref.startswith(abbreviated) else f"{self.ref} ({abbreviated})"
+
+    def is_changed(self, path: Path) -> bool:
+        """Whether a file is not as it was; one outside of the repository is taken for unchanged."""
+        return self._name(path) in self.changed
+
+    def read(self, path: Path) -> bytes | None:
+        """What a file held then; None if it was not there. What lies outside of the repository is as now."""
+        name = self._name(path)
+        if name not in self.changed:
+            return read(path)
+        return _git(self.top, "cat-file", "blob", f"{self.commit}:{name}") if self.changed[name] else None
+
+    def gone(self) -> list[str]:
+        """Files of the project, relative to it, that were there and are not any more."""
+        folder = self.project.relative_to(self.top).as_posix()
+        prefix = "" if folder == "." else f"{folder}/"
+        there = (name for name, was_there in self.changed.items() if was_there and name.startswith(prefix))
+        return [name for one in there if not (self.project / (name := one.removeprefix(prefix))).is_file()]
+
+    def _name(self, path: Path) -> str:
+        folder = path.parent.resolve()  # a link in the project is a file of its own
+        try:
+            return (folder / path.name).relative_to(self.top).as_posix()
+        except ValueError:
+            return ""
+
+
+def _commit(project: Path, ref: str) -> str:
+    if ref.startswith("-"):
+        raise UsageError(f"{_OPTION} {ref}: that is no name of a revision")
+    try:
+        return _text(project, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}").strip()
+    except _FailedError as error:
+        if _text(project, "rev-parse", "--is-shallow-repository").strip() == "true":
+            raise UsageError(
+                f"{_OPTION} {ref}: this clone is shallow and does not hold that revision; fetch it: `git "
+                "fetch --unshallow`, in GitHub Actions `fetch-depth: 0` of actions/checkout, in GitLab "
+                "`GIT_DEPTH: 0`"
+            ) from error
+        hint = f"; `git fetch origin {ref}` and origin/{ref}?" if "/" not in ref else ""
+        raise UsageError(f"{_OPTION} {ref}: git knows no such revision{hint}") from error
+
+
+class _FailedError(UsageError):
+    """Git has failed."""
+
+
+def _text(folder: Path, *command: str) -> str:
+    return _git(folder, *command).decode("utf-8", "surrogateescape")
+
+
+def _git(folder: Path, *command: str) -> bytes:
+    """What git says. Raises UsageError if it says nothing."""
+    try:
+        done = git(folder, *command)
+    except GitError as error:
+        raise UsageError(f"{_OPTION} needs git: {error}") from error
+    if done.returncode:
+        said = done.stderr.decode("utf-8", "replace").strip()
+        raise _FailedError(f"{_OPTION}: git {command[0]}: {said or f'exit code {done.returncode}'}")
+    return done.stdout
+
+
+def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependencies:
+    """What the same outcomes depended on at a revision, if its configuration was that of now."""
+    root = campaign.request.root
+
+    def digests_then(known: Mapping[str, str]) -> dict[str, str]:
+        other = {
+            name: revision.read(root / name)
+            for name, digest in known.items()
+            if digest != WRITTEN and revision.is_changed(root / name)
+        }
+        same = {name: digest for name, digest in known.items() if name not in other}
+        return same | {name: digest_of(text) for name, text in other.items() if text is not None}
+
+    gone = {name: "" for name in revision.gone() if counts_by_name(name) and not is_note(name)}
+    own = own_files(campaign.request)
+    files = digests_then({**now.files, **{name: digest for name, digest in gone.items() if name not in own}})
+    texts = {name: revision.read(root / name) or b"" for name in files if name.endswith(".py")}
+    tree = SourceTree({name: files[name] for name in texts}, lambda name, digest: texts[name])
+    absent = {test for _, test in campaign.baseline.ends if not now.is_of(test, tree)}
+    state = State(files, digests_then(now.notes), texts)
+    return Dependencies(campaign.request, campaign.baseline, state, revision.read, absent)
+
+
+def _other_configuration(revision: Revision, request: Request) -> str | None:
+    """A file of the configuration or vocabulary that says something else now; None if there is none."""
+    files = [request.configuration.file, *request.configuration.vocabulary]
+    changed = [name for name in files if revision.is_changed(request.root / name)]
+    for name in changed:
+        texts = revision.read(request.root / name), read(request.root / name)
+        tables = [tool_table(text, "mutabot") if name == "pyproject.toml" else text for text in texts]
+        if tables[0] != tables[1]:
+            return name
+    return None
+
+
+def open_others(request: Request, progress: Progress) -> list[JournalReader]:
+    """The journal that was named beside the project's own, if it can be read.
+
+    Raises UsageError if there is none and nothing else says what to run, and JournalError for one that git
+    tracks.
+    """
+    if request.other_journal is None:
+        return []
+    path = find_journal(request.other_journal) if request.other_journal.is_dir() else request.other_journal
+    own = request.journal_path
+    if path.is_file() and own.is_file() and path.samefile(own):
+        return []
+    refuse_tracked(path)  # before all that might only be noted
+    try:
+        return [JournalReader.open(path)]
+    except JournalError as error:
+        if request.since is None:
+            raise UsageError(f"--journal: {error}") from error
+        progress.note(f"--journal: {error}; nothing is taken over from it")
+        return []
+
+
+def altered_since(
+    revision: Revision, campaign: Campaign, now: Dependencies, found: Reused, mutants: Sequence[Mutant]
+) -> dict[Pair, str]:
+    """Mutants and rounds that are not taken over and that the changes can have altered, and why.
+
+    Of a mutant that no journal knows, all counts that its tests execute of the original, and what no test
+    does: a mutant might. Where the configuration or the vocabulary has changed, everything counts as changed.
+    """
+    request = campaign.request
+    pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
+    left = [(mutant, round) for mutant, round in pairs if (mutant.id, round) not in found.done]
+    other = _other_configuration(revision, request)
+    if other is not None:
+        return {(mutant.id, round): f"{other} changed" for mutant, round in left}
+    then = _then(revision, campaign, now)
+    altered: dict[Pair, str] = {}
+    for mutant, round in left:
+        pair = (mutant.id, round)
+        known = next((one.was(one.kept[pair].key) for one in found.sources if pair in one.kept), None)
+        whole, until = now.asked(known) if known is not None else (False, "")
+        was = Was(
+            then.common,
+            then.place(mutant, round, whole, until),
+            then.own(mutant, round),
+            then.tree,
+            known.found_in if known is not None else now.tree,
+            known.executed if known is not None else now.executed_by(mutant, round),
+            {name: then.notes.get(name, "") for name in known.notes} if known is not None else {},
+        )
+        why = now.why(was, mutant, round)
+        if why:
+            altered[pair] = in_short(why)
+        elif pair in found.why and (whole or found.why[pair] == GONE):
+            altered[pair] = found.why[pair]  # as without a revision
+    return altered
+
+
+def only_altered(
+    journal: Journal,
+    revision: Revision,
+    altered: Mapping[Pair, str],
+    found: Reused,
+    plan: Plan,
+    rounds: int,
+    progress: Progress,
+) -> Plan:
+    """The plan without mutants of which nothing is known nor run.
+
+    What the changes cannot have altered is not run, also where no journal holds an outcome of it: ``found``
+    says so from then on.
+    """
+    pairs = [(mutant.id, round) for round in range(rounds) for mutant in plan.mutants]
+    left = [pair for pair in pairs if pair not in found.done and pair not in altered]
+    why = found.why | dict.fromkeys(found.unsound, _UNSOUND)
+    reasons = Counter(why.get(pair, "no journal holds an outcome of them") for pair in left)
+    since = Since(
+        ref=revision.ref,
+        commit=revision.commit,
+        run=dict(Counter(altered.values()).most_common()),
+        taken_over=len(found.done),
+        not_judged=dict(reasons.most_common()),
+    )
+    _tell(since, revision.short, progress)
+    journal.set_meta(SINCE, since)
+    known = {mutant for mutant, _ in found.done | altered.keys()}
+    journal.keep_planned(known)
+    found.done.update(left)
+    return replace(plan, mutants=[mutant for mutant in plan.mutants if mutant.id in known])
+
+
+def _tell(since: Since, short: str, progress: Progress) -> None:
+    """Print what is run and what is not, by the kind of reason."""
+    total = sum(since.run.values())
+    unjudged = sum(since.not_judged.values())
+    progress.note(
+        f"since {short}: {total} to run, {since.taken_over} taken over"
+        + (f", {unjudged} not judged" if unjudged else "")
+    )
+    for why, count in since.run.items():
+        progress.note(f"  {count} to run: {why}")
+    for why, count in since.not_judged.items():
+        progress.note(f"  {count} not judged; their tests execute nothing that has changed: {why}")

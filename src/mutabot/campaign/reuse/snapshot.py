@@ -1,18 +1,22 @@
 """Which files of a project outcomes depend on, and what these hold, by content.
 
 All that tests could import or read, as far as anybody can tell. Of texts and logs, which people and tools
-leave everywhere, only those that something has to do with.
+leave everywhere, only those that something has to do with: which files are opened while the baseline runs, by
+whatever process, the kernel tells.
 """
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import os
 import re
 import stat
-from collections.abc import Iterator, Mapping, Set
+import struct
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from types import TracebackType
 from typing import Any
 
 from mutabot.campaign.request import Request
@@ -66,16 +70,10 @@ def own_files(request: Request) -> set[str]:
     configuration = request.configuration
     named = (configuration.selection or "", *configuration.vocabulary)
     own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
-    lists = [Path(word[1:]) for word in (*request.only, *request.skip) if word.startswith("@")]
-    own |= {_relative(file, request.root) for file in lists}
+    others = [word[1:] for word in (*request.only, *request.skip) if word.startswith("@")]
     if request.other_journal is not None:
-        name = _relative(request.other_journal, request.root)
-        own |= {name, f"{name}-wal", f"{name}-shm", f"{name}.lock"}
-    return own
-
-
-def _relative(path: Path, root: Path) -> str:
-    return Path(os.path.relpath(path.resolve(), root)).as_posix()
+        others += [f"{request.other_journal}{end}" for end in ("", "-wal", "-shm", ".lock")]
+    return own | {Path(os.path.relpath(Path(name).resolve(), request.root)).as_posix() for name in others}
 
 
 def _is_report(path: Path) -> bool:
@@ -118,6 +116,11 @@ class Snapshot:
 
     files: Mapping[str, _File]
 
+    @property
+    def digests(self) -> dict[str, str]:
+        """What all files hold."""
+        return {name: file.digest for name, file in self.files.items()}
+
     @classmethod
     def take(cls, root: Path, before: Snapshot | None = None) -> Snapshot:
         """Read all files; those that the system says are untouched since ``before`` need not be read."""
@@ -140,25 +143,18 @@ class Snapshot:
 
     def edited_since(self, before: Mapping[str, str]) -> list[str]:
         """Files that had another digest, or are gone."""
-        return [name for name, was in before.items() if was not in (WRITTEN, self._digest(name))]
+        now = self.digests
+        return [name for name, was in before.items() if was not in (WRITTEN, now.get(name))]
 
     def edited_programs(self, before: Snapshot) -> list[str]:
         """Python files of ``before`` that have another content now, or are gone."""
-        programs = {name: file.digest for name, file in before.files.items() if name.endswith(".py")}
+        programs = {name: digest for name, digest in before.digests.items() if name.endswith(".py")}
         return self.edited_since(programs)
 
     def touched_since(self, before: Snapshot) -> set[str]:
         """Files that were written since ``before``, be it with the same content."""
-        known = before.files
-        return {
-            name
-            for name, file in self.files.items()
-            if name not in known or known[name].status != file.status
-        }
-
-    def _digest(self, name: str) -> str | None:
-        file = self.files.get(name)
-        return file.digest if file is not None else None
+        known = {name: file.status for name, file in before.files.items()}
+        return {name for name, file in self.files.items() if file.status != known.get(name)}
 
 
 def counts_by_name(name: str) -> bool:
@@ -235,7 +231,7 @@ class State:
             before, after: the files before and after the baseline.
             opened: the files that were opened meanwhile; None if that is not known.
         """
-        digests = {name: file.digest for name, file in after.files.items()}
+        digests = after.digests
         files = counted(request, digests, after.touched_since(before), opened)
         notes = {name: digest for name, digest in digests.items() if name not in files}
         found = {name: read(request.root / name) for name in files if name.endswith(".py")}
@@ -248,3 +244,69 @@ def read(path: Path) -> bytes | None:
         return path.read_bytes()
     except OSError:
         return None
+
+
+_IN_OPEN, _IN_Q_OVERFLOW, _IN_ONLYDIR = 0x20, 0x4000, 0x01000000
+_EVENT = struct.Struct("iIII")  # watch, mask, cookie, length of the name that follows
+_BYTES = 1 << 16
+
+
+class OpenedFiles:
+    """Notes which files in some folders are opened; use as a context manager.
+
+    Args:
+        root: the project's folder.
+        folders: the folders in it to look at, relative to it.
+
+    Attributes:
+        opened: the files, relative to the root, once the watch is over; None where the kernel could not tell
+            about all of them.
+    """
+
+    def __init__(self, root: Path, folders: Iterable[str]) -> None:
+        self.opened: set[str] | None = None
+        self._root, self._names = root, sorted(folders)
+        self._folders: dict[int, str] = {}
+        self._descriptor = -1
+
+    def __enter__(self) -> OpenedFiles:
+        libc = ctypes.CDLL(None, use_errno=True)
+        self._descriptor = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
+        if self._descriptor < 0:
+            return self
+        for name in self._names:
+            folder = self._root / name
+            watch = libc.inotify_add_watch(self._descriptor, os.fsencode(folder), _IN_OPEN | _IN_ONLYDIR)
+            if watch < 0 and folder.is_dir():
+                self._close()  # too many folders for the kernel
+                return self
+            self._folders[watch] = "" if name == "." else f"{name}/"
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._descriptor >= 0:
+            self.opened = self._read()
+            self._close()
+
+    def _close(self) -> None:
+        os.close(self._descriptor)
+        self._descriptor = -1
+
+    def _read(self) -> set[str] | None:
+        found: set[str] = set()
+        while True:
+            try:
+                data = os.read(self._descriptor, _BYTES)
+            except BlockingIOError:
+                return found
+            position = 0
+            while position < len(data):
+                watch, mask, _, length = _EVENT.unpack_from(data, position)
+                position += _EVENT.size + length
+                if mask & _IN_Q_OVERFLOW:
+                    return None
+                name = data[position - length : position].rstrip(b"\0")
+                if name:
+                    found.add(self._folders.get(watch, "") + os.fsdecode(name))

@@ -29,7 +29,7 @@ from mutabot.journal.files import HOME, JOURNAL, is_written, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.recordings import Recordings
 from mutabot.model import Mutant
-from mutabot.model.codec import from_data, to_data
+from mutabot.model.codec import to_data
 
 #: how much more than its part a shard takes before a piece goes elsewhere
 _SLACK = 1.05
@@ -82,7 +82,7 @@ def write_shard(
     if shard is not None:
         depends = {**dependencies.everything, **_asked(dependencies.request)} if dependencies else None
         said = records.ShardOf(shard.number, shard.of, tuple(one.number for one in part.mutants), depends)
-        journal.set_meta(records.SHARD, to_data(said))
+        journal.set_meta(records.SHARD, said)
 
 
 def _asked(request: Request) -> dict[str, str]:
@@ -98,13 +98,10 @@ def _cost_of(mutants: list[Mutant], baseline: Baseline) -> float:
 
 
 def _cost(mutant: Mutant, baseline: Baseline) -> float:
-    total = 0.0
-    for round in range(len(baseline.tests)):
-        total += _START
-        for test in baseline.tests_judging(round, mutant):
-            simulated, operations = cost(baseline.ends[round, test])
-            total += simulated + _OPERATION * operations
-    return total
+    rounds = range(len(baseline.tests))
+    tests = [(round, test) for round in rounds for test in baseline.tests_judging(round, mutant)]
+    costs = [cost(baseline.ends[key]) for key in tests]
+    return _START * len(rounds) + sum(simulated + _OPERATION * count for simulated, count in costs)
 
 
 # One journal of all
@@ -133,18 +130,6 @@ class ShardJournal:
     meta: Mapping[str, Any]
     shard: records.ShardOf
     mutants: tuple[Mutant, ...]
-
-    @classmethod
-    def of(cls, path: Path, journal: JournalReader) -> ShardJournal:
-        """What is in the journal. Raises MergeError if that is no shard."""
-        meta = journal.meta()
-        if records.SHARD not in meta:
-            raise MergeError(
-                f"{path} holds a whole campaign, not a shard: shards come from `mutabot run --shard 1/8`"
-            )
-        return cls(
-            path, journal, meta, from_data(records.ShardOf, meta[records.SHARD]), tuple(journal.mutants())
-        )
 
     @property
     def words(self) -> str:
@@ -231,7 +216,13 @@ def _opened(stack: ExitStack, path: Path) -> ShardJournal:
     refuse_tracked(path)
     if is_written(path):
         raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
-    return ShardJournal.of(path, stack.enter_context(JournalReader.open(path)))
+    journal = stack.enter_context(JournalReader.open(path))
+    meta = journal.meta()
+    if records.SHARD not in meta:
+        raise MergeError(
+            f"{path} holds a whole campaign, not a shard: shards come from `mutabot run --shard 1/8`"
+        )
+    return ShardJournal(path, journal, meta, meta[records.SHARD], tuple(journal.mutants()))
 
 
 def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
@@ -281,17 +272,13 @@ def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
         if values:
             found[key] = together(values)
     for key in (records.ALTERED, records.FLAKY, records.VERIFICATION, records.REPEATS):
-        said = [from_data(records.FACTS[key], meta[key]) for meta in metas if key in meta]
-        if said:
-            found[key] = (
-                to_data(_flaky(said)) if key == records.FLAKY else _summed([to_data(one) for one in said])
-            )
+        said = [meta[key] for meta in metas if key in meta]
+        if said and key == records.FLAKY:
+            tests = dict.fromkeys(test for one in said for test in one.tests)
+            found[key] = records.Flaky(tuple(tests), max(one.known for one in said))
+        elif said:
+            found[key] = _summed([to_data(one) for one in said])
     return found
-
-
-def _flaky(said: Sequence[records.Flaky]) -> records.Flaky:
-    tests = dict.fromkeys(test for one in said for test in one.tests)
-    return records.Flaky(tuple(tests), max(one.known for one in said))
 
 
 def _summed(said: Sequence[Any]) -> Any:

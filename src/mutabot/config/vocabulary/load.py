@@ -21,6 +21,7 @@ from .schema import VocabularyTable
 
 #: lists of targets at the top of a file
 _TARGETS = ("refusals", "checks", "failures")
+_OTHERS = {"clock": read_clock, "wait": read_wait, "probe": read_probe}
 _SHIPPED = Path(__file__).parent / "shipped"
 
 
@@ -85,12 +86,10 @@ class _Merged:
                     self._add_operation(at, operation)
         for name, targets in self.targets.items():
             targets.extend(getattr(table, name))
-        if table.clock is not None:
-            self._add_other(place / "clock", read_clock(place / "clock", table.clock), is_shipped)
-        if table.wait is not None:
-            self._add_other(place / "wait", read_wait(place / "wait", table.wait), is_shipped)
-        for at, raw in (place / "probe").each(table.probe):
-            self._add_other(at, read_probe(at, raw), is_shipped)
+        for key, read in _OTHERS.items():
+            for at, raw in (place / key).each(getattr(table, key)):
+                if raw is not None:
+                    self._add_other(at, read(at, raw), is_shipped)
 
     def _counts(self, what: str, is_shipped: bool) -> bool:
         """Whether a description is to be taken: the user's own, read first, go before shipped ones."""

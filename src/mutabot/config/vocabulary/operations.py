@@ -11,22 +11,10 @@ from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Prob
 from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.signature import parse_signature
 
+from . import schema
 from .patterns import in_cases, in_each_mode, name_of_cases, read_patterns, read_when
 from .quantities import bare_path, in_message, read_quantities
-from .schema import (
-    CALLABLE,
-    FORMS,
-    NAMING,
-    SIDES,
-    ClockTable,
-    OperationTable,
-    ProbeTable,
-    RefusedTable,
-    Sides,
-    WaitTable,
-    is_name,
-    read_idle,
-)
+from .schema import OperationTable, Sides
 
 #: forms that make the robot do something, unless the vocabulary says otherwise
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
@@ -44,11 +32,13 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
     """Read one ``[[operation]]``: a callable, or all that is done under a name. Mistakes are noted."""
     mistakes = len(place.errors)
     table = place.table(OperationTable, raw, salvage=True)
-    keys = [key for key in NAMING if table is not None and getattr(table, key) is not None]
+    keys = [key for key in schema.NAMING if table is not None and getattr(table, key) is not None]
     if len(keys) > 1:
         (place / keys[1]).error(f"an operation is known by one thing: either {keys[0]} or {keys[1]}")
     elif not keys and len(place.errors) == mistakes:
-        place.error(f"the key 'call' is missing, or another one that names it: {', '.join(NAMING[1:])}")
+        place.error(
+            f"the key 'call' is missing, or another one that names it: {', '.join(schema.NAMING[1:])}"
+        )
     if table is None or len(keys) != 1:
         return []
     if keys[0] in ("call", "method"):
@@ -56,7 +46,7 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
         return [_read_callable(place, table)]
     if keys[0] == "topic" and "direction" not in raw:
         place.error('a topic needs direction = "publish" or "receive"')
-    forms = FORMS.get((keys[0], table.direction if keys[0] == "topic" else None), ())
+    forms = schema.FORMS.get((keys[0], table.direction if keys[0] == "topic" else None), ())
     names = [Named(form, getattr(table, keys[0]), table.node, table.type) for form in forms]
     if names:
         _check_keys(place, table, keys[0], forms)
@@ -65,7 +55,7 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
 
 def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Sequence[Form] = ()) -> None:
     """Note keys that say nothing of an operation with such a name."""
-    sides = [SIDES[form] for form in forms if form in SIDES] if forms else [CALLABLE]
+    sides = [schema.SIDES[form] for form in forms if form in schema.SIDES] if forms else [schema.CALLABLE]
     fitting = {one for side in sides for one in (side.written, side.read) if one}
     writes = not forms or forms[0] in WRITTEN
     allowed = {key, *fitting, *(("type", "node") if forms else ("signature",))}
@@ -95,7 +85,7 @@ def _read_callable(place: DocumentPlace, table: OperationTable) -> Operation:
 def _of_any(table: OperationTable) -> dict[str, str]:
     """The names of methods as targets: whatever object has them."""
     names = {"current": table.current, "opposite": table.opposite}
-    return {key: f"{ANY}.{name}" for key, name in names.items() if name is not None and is_name(name)}
+    return {key: f"{ANY}.{name}" for key, name in names.items() if name is not None and schema.is_name(name)}
 
 
 def _check_self(place: DocumentPlace, operation: Operation) -> None:
@@ -121,7 +111,7 @@ def _read_operation(
 ) -> Operation:
     """Read one of the operations of an entry: a callable, or one form of a name on a middleware."""
     form = named.form if named is not None else None
-    sides = CALLABLE if form is None else SIDES.get(form, Sides(None, None))
+    sides = schema.CALLABLE if form is None else schema.SIDES.get(form, Sides(None, None))
     written = getattr(table, sides.written) if sides.written else None
     modes = in_each_mode(place / (sides.written or ""), written) if written else []
     described = [(cases, read_quantities(at, raw, sides, is_written=True)) for cases, at, raw in modes]
@@ -170,7 +160,7 @@ def _with_commands(
         current=table.current,
         opposite=table.opposite,
         refusals=tuple(table.refusals),
-        idle=read_idle(place / "idle", table.idle),
+        idle=schema.read_idle(place / "idle", table.idle),
         refused=_read_refused(place / "refused", table.refused, operation.named),
         message=_read_message(place, table, sides.root, operation),
         signature=table.signature,
@@ -287,7 +277,7 @@ def _read_refused(place: DocumentPlace, raw: Any, named: Named | None) -> tuple[
         return (Refused("", tuple(raw), action),)
     found = []
     for at, item in place.each(raw):
-        table = at.table(RefusedTable, item)
+        table = at.table(schema.RefusedTable, item)
         path = (at / "path").attempt(_path_in_answer, table.path) if table is not None else None
         if table is not None and path is not None:
             found.append(Refused(str(path), tuple(table.values), table.topic or action))
@@ -305,7 +295,7 @@ def _path_in_answer(text: str) -> Path:
 
 def read_clock(place: DocumentPlace, raw: dict[str, Any]) -> Clock | None:
     """Read ``clock = { tick = …, time or step = …, unit = … }``; None if it has mistakes, which are noted."""
-    table = place.table(ClockTable, raw)
+    table = place.table(schema.ClockTable, raw)
     if table is None:
         return None
     rooted = table.time != "" and not table.time.startswith((".", "["))
@@ -317,13 +307,13 @@ def read_clock(place: DocumentPlace, raw: dict[str, Any]) -> Clock | None:
 
 def read_wait(place: DocumentPlace, raw: dict[str, Any]) -> Wait | None:
     """Read ``wait = { call = …, unit = … }``; None if it has mistakes, which are noted."""
-    table = place.table(WaitTable, raw)
+    table = place.table(schema.WaitTable, raw)
     return Wait(table.call, table.unit, place.source("wait")) if table is not None else None
 
 
 def read_probe(place: DocumentPlace, raw: Any) -> Probe | None:
     """Read one ``[[probe]]``; None if it has mistakes, which are noted."""
-    table = place.table(ProbeTable, raw)
+    table = place.table(schema.ProbeTable, raw)
     if table is None:
         return None
     result = read_quantities(place / "result", table.result)

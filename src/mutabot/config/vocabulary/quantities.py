@@ -13,8 +13,8 @@ from mutabot.config.mistakes import DocumentPlace, shown
 from mutabot.errors import nearest_name
 from mutabot.model import Kind, Mode, Path, Quantity
 from mutabot.model.path import Step
-from mutabot.model.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
-from mutabot.model.units import QUATERNION_ORDERS, UNITS, Dimension, dimension_of, is_euler_order
+from mutabot.model.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN, is_number, measures_of
+from mutabot.model.units import OF_ANY, QUATERNION_ORDERS, UNITS, dimension_of, is_euler_order, units_of
 
 from .schema import CALLABLE, QuantityTable, Sides, is_target
 
@@ -250,7 +250,10 @@ def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]
 
 def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
     """Names that do not exist: the key, the name, and those that do."""
-    units, of_ladder = _units(table), table.ladder.unit if table.ladder is not None else None
+    units, of_ladder = (
+        units_of(DIMENSIONS.get(table.kind, ())),
+        table.ladder.unit if table.ladder is not None else None,
+    )
     if table.unit is not None and units and table.unit not in UNITS:
         yield "unit", table.unit, units
     if table.axis is not None and table.kind in _WITH_AXIS and _split_axes(table.axis) is None:
@@ -261,7 +264,13 @@ def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
 
 def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list[Rule]:
     """The rules of unit, mode, axis and order."""
-    a, kind, order, units, unit = _a(table.kind), table.kind, table.order, _units(table), _unit(table)
+    a, kind, order, units, unit = (
+        _a(table.kind),
+        table.kind,
+        table.order,
+        units_of(DIMENSIONS.get(table.kind, ())),
+        _unit(table),
+    )
     is_named = kind is Kind.OPENING and any(isinstance(one, str | bool) for one in table.values or ())
     is_target = kind in _MOVED and table.mode is Mode.TO
     is_position = is_written and is_target and kind is Kind.TRANSLATION
@@ -362,20 +371,11 @@ def _of_ladder(table: QuantityTable) -> list[Rule]:
     ]
 
 
-def _units(table: QuantityTable) -> tuple[str, ...]:
-    """The units of its values."""
-    dimensions = DIMENSIONS.get(table.kind, frozenset())
-    return tuple(name for name in UNITS if dimension_of(name) in dimensions)
-
-
 def _units_of_ladder(table: QuantityTable) -> tuple[str, ...]:
     """The units of faults in it: its own measure, a time or a share."""
-    own = DIMENSIONS.get(table.kind, frozenset())
     if table.unit in UNITS:
-        own = frozenset({dimension_of(table.unit)})
-    elif table.kind in WHOLE:
-        own = frozenset({Dimension.ANGLE})
-    return tuple(name for name in UNITS if dimension_of(name) in (*own, Dimension.TIME, Dimension.RATIO))
+        return units_of((dimension_of(table.unit), *OF_ANY))
+    return units_of((*measures_of(table.kind), *OF_ANY))
 
 
 def _fits(kind: Kind, value: Any) -> bool:
@@ -385,8 +385,7 @@ def _fits(kind: Kind, value: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    finite = isinstance(value, int | float) and abs(value) < float("inf")
-    return finite and not isinstance(value, bool)
+    return is_number(value) and abs(value) < math.inf
 
 
 def _a(kind: Kind) -> str:

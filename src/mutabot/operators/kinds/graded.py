@@ -146,12 +146,7 @@ class Offset(NumberOperator):
     examples = (
         changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm")),
         changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm")),
-        changed(
-            _ORIENT,
-            [0.0, 0.0, 30.0],
-            [0.0, 0.0, 50.0],
-            size=("z+", 20.0, "deg"),
-        ),
+        changed(_ORIENT, [0.0, 0.0, 30.0], [0.0, 0.0, 50.0], size=("z+", 20.0, "deg")),
         unchanged(_LIFT, 0.45, "0.55 m is outside the range [0, 0.5]", size=("+", 100.0, "mm")),
     )
 
@@ -173,12 +168,7 @@ class Scale(NumberOperator):
     name = "scale"
     examples = (
         changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
-        changed(
-            _FEEL,
-            0.3,
-            0.27,
-            size=("-", 10.0, "percent"),
-        ),
+        changed(_FEEL, 0.3, 0.27, size=("-", 10.0, "percent")),
         unchanged(_MOVE, 0.0, "nothing is no share of", size=("+", 5.0, "percent")),
     )
 
@@ -239,13 +229,7 @@ class Drift(NumberOperator):
     needs = frozenset({Need.CLOCK})
     of_written = False
     examples = (
-        changed(
-            _FEEL,
-            0.3,
-            0.32,
-            size=("+", 2.0, "mm/s"),
-            time=10.0,
-        ),
+        changed(_FEEL, 0.3, 0.32, size=("+", 2.0, "mm/s"), time=10.0),
         unchanged(_FEEL, 0.3, "no time has passed yet", size=("-", 2.0, "mm/s")),
     )
 
@@ -316,30 +300,6 @@ _PAUSE = writing("cell:Cell.wait", "seconds", Kind.DURATION, unit="s", range=(0.
 _HOME = Operation("robot:Arm.home")
 
 
-class Early(NumberOperator):
-    """A wait is shorter, so that what comes next comes too early.
-
-    Where: waits: arguments of kind `duration`.
-
-    Stands for: A wait that was measured on a faster machine: {timing}.
-    """
-
-    name = "early"
-    directions = ("-",)
-    of_read = False
-    examples = (
-        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms")),
-        unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
-    )
-
-    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
-        return ladder_in(quantity, Dimension.TIME) if quantity.kind is Kind.DURATION else None
-
-    def number(self, size: float, value: float, context: Context) -> float:
-        after = value + size
-        return after if after >= -1e-9 else value
-
-
 class Lag(CommandOperator):
     """Each command is carried out later; each reading was taken earlier. Needs a `wait` in the vocabulary,
     or a middleware.
@@ -378,3 +338,27 @@ class Lag(CommandOperator):
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         what = "is carried out" if subject.is_command else "comes"
         return f"{what} {subject.magnitude:g} {subject.unit} later"
+
+
+class Early(NumberOperator):
+    """A wait is shorter, so that what comes next comes too early.
+
+    Where: waits: arguments of kind `duration`.
+
+    Stands for: A wait that was measured on a faster machine: {timing}.
+    """
+
+    name = "early"
+    directions = ("-",)
+    of_read = False
+    examples = (
+        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms")),
+        unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
+        return ladder_in(quantity, Dimension.TIME) if quantity.kind is Kind.DURATION else None
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        after = value + size
+        return after if after >= -1e-9 else value

@@ -12,7 +12,6 @@ from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, wri
 from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.value import (
     NOT_PASSED,
-    NOT_TOLD,
     ValueOperator,
     ValuesOperator,
     is_number,
@@ -66,18 +65,9 @@ class Reverse(ValueOperator):
     name = "reverse"
     of_read = False
     examples = (
-        changed(
-            _MOVE,
-            {"dy": 0.2, "yaw": 0.0},
-            {"dy": -0.2, "yaw": 0.0},
-        ),
+        changed(_MOVE, {"dy": 0.2, "yaw": 0.0}, {"dy": -0.2, "yaw": 0.0}),
         changed(_MOVE, -0.9, 0.9),
-        changed(
-            _MOVE,
-            {"dy": 0.0, "yaw": 80},
-            {"dy": 0.0, "yaw": -80},
-            quantity="yaw",
-        ),
+        changed(_MOVE, {"dy": 0.0, "yaw": 80}, {"dy": 0.0, "yaw": -80}, quantity="yaw"),
         changed(_MOVE, [0.1, -0.2], [-0.1, 0.2]),
         changed(_TURN_TO, 90, 270),
         changed(_ORIENT, [0.0, 0.5, 0.0], [0.0, -0.5, 0.0]),
@@ -85,12 +75,7 @@ class Reverse(ValueOperator):
         unchanged(_STEP, 1.7, "−1.7 m is outside the range [−1, 1]"),
         unchanged(_ORIENT, [0.0, math.pi, 0.0], "half a turn the other way is the same orientation"),
         unchanged(_FACE, 180, "the targets 180 and −180 degrees are the same"),
-        changed(
-            _HIDDEN,
-            0.5,
-            0.1,
-            current={"pose.x": 0.3},
-        ),
+        changed(_HIDDEN, 0.5, 0.1, current={"pose.x": 0.3}),
         unchanged(_HIDDEN, 0.5, "the target is where the robot is", current={"pose.x": 0.5}),
         changed(_DRIVE, 0.4, -0.4),
         unchanged(_GO, 0.5, "−0.5 m/s is outside the range [−0.2, 1]"),
@@ -146,12 +131,7 @@ class ByTo(ValuesOperator):
         changed(_BY, -0.5, -0.75, current={"dx": 0.25}),
         changed(_TO, 0.5, 0.75, current={"x": 0.25}),
         unchanged(_BY, 0.5, "by and to agree at zero", current={"dx": 0.0}),
-        changed(
-            _HIDDEN,
-            0.5,
-            0.2,
-            current={"pose.x": 0.3},
-        ),
+        changed(_HIDDEN, 0.5, 0.2, current={"pose.x": 0.3}),
         unchanged(_NEAR, 0.5, "0.75 is out of range", current={"x": 0.25}),
     )
 
@@ -187,7 +167,7 @@ async def _value_and_place(values: Mapping[str, Value], context: Context) -> tup
     try:
         return value, await context.call.current(quantity)
     except NotToldError:
-        raise Unchanged(NOT_TOLD) from None
+        raise Unchanged("the position of the robot is not known yet") from None
 
 
 def _within_turn(quantity: Quantity, angle: float) -> float:

@@ -1,343 +1,27 @@
-"""Readings that are wrong, noisy, old, stuck, limited, lost, late or of something else."""
+"""Readings with the wrong sign or with noise, and labels that are misread."""
 
 from __future__ import annotations
 
-import copy
-import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
-from itertools import pairwise
 from random import Random
-from typing import ClassVar
 
-from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
+from mutabot.model import Kind, Quantity
 from mutabot.model.quantity import MEASURED, PLAIN, WHOLE, Value
-from mutabot.operators.command import CommandOperator, comes_by_itself
-from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged, whole
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
-from mutabot.operators.value import (
-    NOT_RETURNED,
-    Exchange,
-    ValueOperator,
-    disturbed,
-    is_alike,
-    is_number,
-    label,
-    like,
-    map_numbers,
-    middle_of,
-    next_of,
-    the_other_way,
-    within,
-)
-
-_NONE, _NAN = "none", "nan"
-_MEASURE = reading("laser:distance", Kind.DISTANCE, unit="m")
-_NEAR = reading("laser:near", Kind.DISTANCE, unit="m", range=(0.0, 2.0))
-_SEE = reading("camera:colour", Kind.LABEL, values=("red", "blue"))
-_OR_NAN = reading("laser:distance", Kind.DISTANCE, unit="m", missing=_NAN)
-_OR_NONE = reading("camera:colour", Kind.LABEL, values=("red", "blue"), missing=_NONE)
-_X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", missing="camera:NoImageError")
-_OR_ERROR = Operation("camera:locate", result=(_X,), command=False)
-_WHICH = Quantity("which", Path("which"), Kind.OUTPUT, values=("nut", "bolt", "washer"))
-_FIND = replace(_MEASURE, target="camera:distance_of", arguments=(_WHICH,))
-_CHANNELS = tuple(
-    Quantity(f".{name}", Path.parse(f".{name}", rooted=False), Kind.POSITION, name, "m", "world")
-    for name in "xy"
-)
-_LOCATE = Operation("camera:locate", result=_CHANNELS, command=False)
-#: seconds: a camera whose picture has to be worked out
-_LATE = 0.5
-
-
-class Dropout(CommandOperator):
-    """A reading drops out: the program gets None, not a number or an exception, as its `missing` says.
-
-    Where: read quantities whose vocabulary says what a reading gives that is not there: missing.
-
-    Stands for: A sensor that drops out or is misread: {sensors}.
-    """
-
-    name = "dropout"
-    family = CATALOGUE
-    examples = (
-        changed(_OR_NAN, 0.2, math.nan),
-        changed(_OR_NONE, "red", None),
-        Example(
-            Subject(_OR_ERROR, quantity=_X), replied={".x": 0.2}, performed=({},), fails="camera:NoImageError"
-        ),
-        unchanged(_OR_NAN, {}, "there is no reading anyway"),
-    )
-
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
-        raised: set[str] = set()
-        for quantity in whole.read:
-            if quantity.missing in (_NONE, _NAN):
-                yield replace(whole, quantity=quantity)
-            elif quantity.missing and quantity.missing not in raised and not comes_by_itself(operation):
-                raised.add(quantity.missing)  # the whole call raises; what comes by itself raises nothing
-                yield replace(whole, quantity=quantity)
-
-    def only_reads(self, subject: Subject) -> bool:
-        return quantity_of(subject).missing in (_NONE, _NAN)
-
-    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        quantity, reply = context.quantity, await proceed(call)
-        if quantity.name not in reply.values:
-            return reply.as_is(NOT_RETURNED)
-        if quantity.missing == _NONE:
-            return reply.with_value(quantity, None)
-        if quantity.missing != _NAN:
-            return reply.failing(quantity.missing or "")
-        nothing = map_numbers(reply.values[quantity.name], lambda _: math.nan)
-        if nothing is None:
-            return reply.as_is("its value is no number")
-        return reply.with_value(quantity, nothing)
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
-        gets = {_NONE: "reads None", _NAN: "reads not a number"}
-        what = gets.get(quantity.missing or "", f"raises {quantity.missing}")
-        return f"{what} instead of {label(quantity)} {quantity.text(before)}"
-
-
-class _Reading(ValueOperator):
-    """Changes a reading by those before it at its place, or by chance.
-
-    Stands for: A sensor that drops out or is misread: {sensors}.
-    """
-
-    family = CATALOGUE
-    needs = frozenset({Need.MEMORY})
-    of_written = False
-
-
-class OldReading(_Reading):
-    """A reading is that of the call before, or of five calls before, at the same place.
-
-    Where: read quantities, at places that a test calls more than once.
-    """
-
-    name = "old-reading"
-    kinds = frozenset(Kind)
-    variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
-    examples = (
-        changed(_MEASURE, 0.2, 0.3, "1", earlier=(0.5, 0.3)),
-        unchanged(_MEASURE, 0.2, "there is none so old yet", "5", earlier=(0.5,)),
-    )
-
-    def least_calls(self, subject: Subject) -> int:
-        return self.variants[subject.variant] + 1
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        context.memory.append(_kept(value))
-        old = context.memory.pop(0) if len(context.memory) > context.option else None
-        if old is None:
-            raise Unchanged("there is none so old yet")
-        return old
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        calls = "1 call" if subject.variant == "1" else f"{subject.variant} calls"
-        return f"reads the {label(quantity_of(subject))} of {calls} ago"
-
-
-class StuckReading(_Reading):
-    """From the second call on a place reads what it read first in the test.
-
-    Where: read quantities, at places that a test calls more than once.
-    """
-
-    name = "stuck-reading"
-    calls = 2
-    kinds = frozenset(Kind)
-    examples = (
-        changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
-        unchanged(_MEASURE, 0.2, "it is the first reading"),
-    )
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        if not context.memory:
-            context.memory.append(_kept(value))
-            raise Unchanged("it is the first reading")
-        return _kept(context.memory[0])
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return f"reads the first {label(quantity_of(subject))} again and again"
-
-
-def _kept(value: Value) -> Value:
-    """A value to be remembered: a copy, which nobody changes afterwards."""
-    return copy.copy(value) if hasattr(value, "__len__") and not isinstance(value, str | bytes) else value
-
-
-class Spike(_Reading):
-    """One reading in ten, by chance, jumps to the farther end of its range, or to ten times its value if it
-    has none.
-
-    Where: read numbers on a scale, but for orientations as a whole.
-    """
-
-    name = "spike"
-    by_chance = True
-    kinds = MEASURED - WHOLE
-    variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
-    examples = (
-        changed(_MEASURE, 0.2, 2.0, "10%", earlier=(0.2,)),
-        changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,)),
-        unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
-    )
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        context.by_chance()
-        limits = context.quantity.range
-        if limits is None:
-            return map_numbers(value, lambda number: like(number, 10.0 * number))
-        return map_numbers(value, lambda number: like(number, max(limits, key=lambda end: abs(end - number))))
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
-        jump = "the far end of its range" if quantity.range is not None else "10 times as much"
-        return f"reads {label(quantity)} {quantity.text(before)}, now and then {jump}"
-
-
-class SaturatedReading(_Reading):
-    """A reading is limited to the middle 80 % of its range, or without a range to 80 % of the first one at
-    its place in the test.
-
-    Where: read numbers on a scale, but for orientations as a whole.
-    """
-
-    name = "saturated-reading"
-    kinds = MEASURED - WHOLE
-    examples = (
-        changed(_NEAR, 1.9, 1.8),
-        changed(_MEASURE, -0.5, -0.4, earlier=(0.5,)),
-        unchanged(_NEAR, 1.0, "it is in the middle"),
-        unchanged(_MEASURE, 0.1, "it is less than 80 % of the first", earlier=(0.5,)),
-    )
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        quantity, memory = context.quantity, context.memory
-        if quantity.range is not None:
-            limits = middle_of(quantity, 0.8)
-        elif is_number(value):
-            if not memory:
-                memory.append(0.8 * abs(value))
-            limits = (-memory[0], memory[0])
-        else:
-            return None
-        return map_numbers(value, lambda number: within(number, limits))
-
-
-class SwappedChannels(Exchange):
-    """Neighbouring values of one kind that a call reads are exchanged.
-
-    Where: calls that read two quantities of one kind and unit.
-
-    Stands for: A sensor that drops out or is misread: {sensors}.
-    """
-
-    name = "swapped-channels"
-    examples = (
-        changed(_LOCATE, {".x": 0.4, ".y": 0.1}, {".x": 0.1, ".y": 0.4}, "y"),
-        unchanged(_LOCATE, 0.4, "it reads no y this time", "y"),
-    )
-
-    def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
-        groups: list[list[Quantity]] = []
-        for quantity in whole.read:
-            group = next((one for one in groups if is_alike(one[0], quantity)), None)
-            groups.append([quantity]) if group is None else group.append(quantity)
-        for group in groups:
-            yield from pairwise(group)
-
-
-class WrongObject(ValueOperator):
-    """A reading is that of another object, camera or channel.
-
-    Where: outputs with values that say what a call reads: written beside a result.
-
-    Stands for: A sensor that drops out or is misread: {sensors}.
-    """
-
-    name = "wrong-object"
-    family = CATALOGUE
-    of_read = False
-    examples = (
-        changed(_FIND, "washer", "nut", replied={"result": 0.3}),
-        unchanged(_FIND, "screw", "it is not one of the known values"),
-    )
-
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return bool(whole.read) and quantity.kind is Kind.OUTPUT and len(quantity.values or ()) > 1
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        return next_of(value, context.quantity)
-
-
-class ConfusedLabel(_Reading):
-    """A label or flag is read as the next of its values, with a probability of 30 %.
-
-    Where: read quantities of kind label or flag with two values or more.
-    """
-
-    name = "confused-label"
-    by_chance = True
-    variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
-    examples = (
-        changed(_SEE, "red", "blue", "30%"),
-        unchanged(_SEE, "red", "most are read rightly", "30%", earlier=("red",) * 3),
-    )
-
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1
-
-    def change(self, value: Value, context: Context) -> Value | None:
-        context.by_chance()
-        return next_of(value, context.quantity)
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return f"reads another {label(quantity_of(subject))}, with a probability of {subject.variant}"
-
-
-class LateReading(CommandOperator):
-    """The program gets a reading 0.5 s after it was taken. Needs a `wait`.
-
-    Where: calls that read and command nothing; the vocabulary says how time passes: wait.
-
-    Stands for: Something too early, too late or in the wrong order: {timing}.
-    """
-
-    name = "late-reading"
-    family = CATALOGUE
-    needs = frozenset({Need.WAIT})
-    fault = f"read {_LATE:g} s before the program gets it"
-    examples = (whole(_MEASURE, 0.2, 0.2, waited=_LATE),)
-
-    def fits(self, whole: Subject) -> bool:
-        return bool(whole.read) and not whole.is_command and not comes_by_itself(whole.operation)
-
-    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        reply = await proceed(call)
-        await call.wait(_LATE)
-        return reply
-
+from mutabot.model.units import convert, from_rotation_vector, product
+from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
+from mutabot.operators.operator import Context, Subject, quantity_of
+from mutabot.operators.value import ValueOperator, label, map_numbers, next_of, the_other_way, turned, within
 
 #: standard deviation where the vocabulary gives none: a clearly bad sensor, not a broken one (m, rad)
 DEFAULT_DEVIATION = {
-    Kind.POSITION: (0.02, "m"),
-    Kind.DISTANCE: (0.02, "m"),
-    Kind.ORIENTATION: (0.05, "rad"),
-    Kind.ANGLE: (0.05, "rad"),
-    Kind.ROTATION_VECTOR: (0.05, "rad"),
-    Kind.QUATERNION: (0.05, "rad"),
-    Kind.EULER: (0.05, "rad"),
+    **dict.fromkeys((Kind.POSITION, Kind.DISTANCE), (0.02, "m")),
+    **dict.fromkeys((Kind.ORIENTATION, Kind.ANGLE, *WHOLE), (0.05, "rad")),
 }
 #: up to this many labels, each other label is a mutant of its own; with more, only the next one is
 ALL_UP_TO = 4
 
+_SEE = reading("camera:colour", Kind.LABEL, values=("red", "blue"))
 _IN_MM = reading("laser:distance", Kind.DISTANCE, unit="mm")
 _LOOK = reading("camera:orientation", Kind.QUATERNION, order="wxyz")
 _NOISY = replace(LOCATE, result=(replace(X, noise=1.0),))
@@ -359,11 +43,7 @@ class Negate(ValueOperator):
     examples = (
         changed(LOCATE, 0.55, -0.55),
         changed(_IN_MM, 12, -12),
-        changed(
-            _LOOK,
-            [0.8, 0.6, 0.0, 0.0],
-            [0.8, -0.6, 0.0, 0.0],
-        ),
+        changed(_LOOK, [0.8, 0.6, 0.0, 0.0], [0.8, -0.6, 0.0, 0.0]),
         unchanged(LOCATE, 0.0, "a zero has no sign"),
         unchanged(LOCATE, {}, "the reading has no such part this time"),
     )
@@ -453,3 +133,10 @@ def deviation_of(quantity: Quantity) -> float:
         return quantity.noise
     amount, unit = DEFAULT_DEVIATION[quantity.kind]
     return quantity.from_unit(amount, unit)
+
+
+def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
+    """The orientation turned by a random rotation vector of this standard deviation in each part."""
+    sigma = convert(deviation, quantity.unit or "rad", "rad")
+    turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
+    return turned(quantity, value, lambda orientation: product(turn, orientation))

@@ -18,7 +18,7 @@ from typing import Any
 
 from mutabot.errors import UsageError
 from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
-from mutabot.evidence.tracks import TrackPath
+from mutabot.evidence.story import TrackPath
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
 from mutabot.model import By

@@ -117,6 +117,7 @@ def print_plan(
 ) -> None:
     """Print every planned mutant, a ladder in one line; ``everything`` adds ids and all that was left out."""
     ladders = Counter(mutant.ladder for mutant in mutants if mutant.ladder)
+    others = {name: f", and {count - 1} other magnitudes" for name, count in ladders.items() if count > 1}
     firsts = {mutant.ladder or mutant.id: mutant for mutant in reversed(mutants)}
     of_them = f" ({plural(len(ladders), 'ladder')} in one line each)" if ladders and not everything else ""
     rows = [
@@ -125,7 +126,7 @@ def print_plan(
             mutant.site.role.value,
             short_place(mutant.site.span),
             mutant.operator,
-            mutant.description + (f"\n{mutant.id}" if everything else _others(ladders[mutant.ladder] - 1)),
+            mutant.description + (f"\n{mutant.id}" if everything else others.get(mutant.ladder, "")),
         )
         for mutant in mutants
         if everything or mutant is firsts[mutant.ladder or mutant.id]
@@ -136,10 +137,6 @@ def print_plan(
         print_section(console, skipped(left_out))
     for item in left_out if everything else ():
         console.print(below(f"{item.id}  {item.description}: {item.reason}"))
-
-
-def _others(count: int) -> str:
-    return f", and {count} other magnitudes" if count > 0 else ""
 
 
 def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut]) -> dict[str, Any]:

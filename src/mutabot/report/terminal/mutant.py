@@ -1,4 +1,4 @@
-"""One mutant on the terminal: one screen about what tells most, or everything; and suggested checks."""
+"""One mutant on the terminal: one screen about what tells most, or everything; and its suggested check."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import effect_text, telling
 from mutabot.results.divergence import numbers_text
 from mutabot.results.results import MutantResult
-from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.results.suggested import Suggestion, Suggestions
 
 from .campaign import letters
 from .console import below, heading, make_table, mark_of, plain, print_section
@@ -174,33 +174,6 @@ def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
     ]
 
 
-#: lines of a section that are shown; --json has all
-_MOST = 10
-
-
-def print_suggestions(console: Console, found: Suggestions) -> None:
-    """Print each check with what it kills and how sure it is, the survivors that are left, and the diff."""
-    killed = {mutant for one in found.suggestions for mutant in one.kills}
-    survivors = plural(len(killed) + len(found.unsolved), "survivor")
-    text = f"{plural(len(found.suggestions), 'check')} for {len(killed)} of {survivors}"
-    console.print(Text(text, style="bold"))
-    for number, one in enumerate(found.suggestions, start=1):
-        print_section(console, Section(f"{number}  {one.test}", lines=[*lines_of(one, found)]))
-    left = [_left(one, found) for one in found.unsolved if not one.never]
-    never = [_left(one, found) for one in found.unsolved if one.never]
-    dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]
-    sections = {
-        f"No check found for {plural(len(left), 'survivor')}": left,
-        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": never,
-        f"{plural(len(dropped), 'check')} dropped, because verification failed": dropped,
-    }
-    for name, lines in sections.items():
-        if lines:
-            print_section(console, Section(name, lines=lines), _MOST)
-    if found.diff:
-        console.print(f"\n{found.diff.rstrip()}", soft_wrap=True)
-
-
 def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
     """Yield the assertion, what it kills, its tolerance, and its false alarms."""
     yield one.statement
@@ -228,10 +201,6 @@ def _kills(one: Suggestion, found: Suggestions) -> str:
             where = " in all rounds" if found.rounds > 1 else ""
         parts.append(", ".join(f"#{number}" for number in sorted(numbers)) + where)
     return "; ".join(parts)
-
-
-def _left(one: Unsolved, found: Suggestions) -> str:
-    return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
 
 
 def suggested_sections(result: MutantResult, found: Suggestions | None) -> Iterator[Section]:

@@ -1,20 +1,21 @@
-"""One mutant at work at its site."""
+"""One mutant at work at its site, and how the robot refuses calls, by exceptions and by data."""
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from functools import partial
+from fnmatch import fnmatchcase
+from functools import cache, partial
 from random import Random
 from typing import Any
 
-from mutabot.errors import OperatorError
-from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Role, Span
-from mutabot.model.answer import restore
-from mutabot.model.job import Idle
-from mutabot.model.operation import Refused
-from mutabot.operators import Need, Operator, Subject, operator
+from mutabot.errors import OperatorError, PathError
+from mutabot.model import Call, Moment, Mutant, Operation, Path, Proceed, Reply, Span
+from mutabot.model.answer import is_member, member_of, restore
+from mutabot.model.job import Idle, RefusedAt
+from mutabot.model.operation import Form, Refused
+from mutabot.operators import Need, Subject, operator
 from mutabot.operators.command import FatalFault
 from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import CallRecord, Carried, run_middleware
@@ -22,12 +23,138 @@ from mutabot.runtime.evidence import REFUSALS, Evidence, leaves
 from mutabot.runtime.interception import call_faults
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot
 from mutabot.runtime.interception.live import HandedCopies, copied, is_live
-from mutabot.runtime.interception.refusals import answered, heard, is_told_on, refused_of
 from mutabot.runtime.interception.trace import LOST
-from mutabot.runtime.targets.target import is_named
+from mutabot.runtime.targets.target import Place, is_named
+
+#: a call of a test: its site, operation and pattern, and its number among those of the site
+_Key = tuple[Span, str, str | None]
 
 
 @dataclass(slots=True)
+class RefusedCalls:
+    """The calls of the running test that the robot refuses in the original.
+
+    The baseline notes them. In all other runs they are known from it: a mutated call that is refused there
+    as well shows nothing but what the original shows.
+
+    Attributes:
+        on_refused: told of each one in the baseline; None in all other runs.
+    """
+
+    on_refused: Callable[[SiteCall], None] | None = None
+    _known: dict[_Key, frozenset[int]] = field(default_factory=dict)
+    _watched: dict[str, tuple[SiteCall, tuple[Refused, ...]]] = field(default_factory=dict)
+
+    def start(self, known: Iterable[RefusedAt]) -> None:
+        """A test begins, of which these are known."""
+        self._known = {(one.span, one.operation, one.pattern): frozenset(one.numbers) for one in known}
+        self._watched.clear()
+
+    def at(self, span: Span, operation: str, pattern: str | None) -> frozenset[int]:
+        """Return the numbers of the refused calls of a site."""
+        return self._known.get((span, operation, pattern), frozenset())
+
+    def has(self, made: SiteCall) -> bool:
+        """Whether this call of the original's is known to be one."""
+        pattern = made.call.pattern.text if made.call.pattern is not None else None
+        return made.number in self.at(made.site[0], made.call.operation.target, pattern)
+
+    def begins(self, made: SiteCall) -> None:
+        """Note that the original makes a call: as with mutated ones, what is refused from now on is this."""
+        if self.on_refused is None:
+            return
+        self._watched.pop(made.call.operation.target, None)
+        refused = refused_of(made.call)
+        if any(one.topic is not None for one in refused):  # nothing of the program's is kept without need
+            self._watched[made.call.operation.target] = (made, refused)
+
+    def returned(self, made: SiteCall, result: Any) -> None:
+        """Look whether the answer to a call of the original's says that the robot refuses it."""
+        if self.on_refused is not None and answered(made.call, result) is not None:
+            self.on_refused(made)
+
+    def heard(self, name: str, message: Any) -> None:
+        """Look whether a message says that the robot refuses a call of the original's."""
+        for target, (made, refused) in list(self._watched.items()):
+            if self.on_refused is not None and heard(refused, name, message) is not None:
+                del self._watched[target]
+                self.on_refused(made)
+
+
+def refused_of(call: Call) -> tuple[Refused, ...]:
+    """Return how the robot says that it refuses this command."""
+    own = call.pattern.refused if call.pattern is not None else ()
+    return own or call.operation.refused
+
+
+def answered(call: Call, result: Any) -> str | None:
+    """Return how the answer to a command says that it is refused, in words; None if it does not."""
+    for refused in refused_of(call):
+        if refused.topic is None:
+            found = _found(refused, result)
+            if found is not None:
+                return f"answered {found}"
+        elif _is_rejected(call, result) and "REJECTED" in refused.values:
+            return f"{refused.topic}: REJECTED"
+    return None
+
+
+def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
+    """Return how a message under this name refuses a command before it, in words; None if it does not.
+
+    Of an action, messages are its results, and the words by which its goals end.
+    """
+    for one in refused:
+        if one.topic is not None and fnmatchcase(name, one.topic):
+            found = _found(one, message)
+            if found is not None:
+                return f"{name}: {found}"
+    return None
+
+
+def _is_rejected(call: Call, result: Any) -> bool:
+    named = call.operation.named
+    return named is not None and named.form is Form.GOAL and getattr(result, "accepted", None) is False
+
+
+def _found(refused: Refused, start: Any) -> str | None:
+    path = _parsed(refused.path)
+    try:
+        value = path.get(start)
+    except PathError:  # another kind of answer, or of message
+        return None
+    if not any(_means(wanted, value) for wanted in refused.values):
+        return None
+    value = value.value if is_member(value) else _plain(value)
+    return " ".join(part for part in (str(path).lstrip("."), str(value)) if part)
+
+
+def _means(wanted: Any, value: Any) -> bool:
+    """Whether a value of the vocabulary stands for one of the robot's."""
+    if not is_member(value):
+        return _same(_plain(value), wanted)
+    member = member_of(type(value), wanted)
+    return member is not None and bool(member == value)
+
+
+def _same(value: Any, wanted: Any) -> bool:
+    """Whether they are equal; a truth value is no number."""
+    try:
+        return isinstance(value, bool) is isinstance(wanted, bool) and bool(value == wanted)
+    except Exception:  # a value of the user's may compare in any way
+        return False
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if hasattr(type(value), "tolist") else value
+
+
+@cache
+def _parsed(path: str) -> Path:
+    return Path.parse(path, rooted=False)
+
+
+@dataclass
 class ActiveMutant:
     """A mutant of calls that is at work.
 
@@ -43,6 +170,7 @@ class ActiveMutant:
         watched: how the robot says that it refuses the last mutated call of the running test.
         usual: numbers of the calls of its site in the running test that the robot refuses in the original.
         copies: whether its operator remembers calls and replies, so that it needs copies.
+        early: what it did before the first test, which counts in every test.
     """
 
     mutant: Mutant
@@ -51,36 +179,21 @@ class ActiveMutant:
     on_act: Callable[[], None]
     on_call: Callable[[bool], None]
     time: Callable[[], float | None] = lambda: None
-    evidence: Evidence = field(default_factory=Evidence)
-    rule: Operator = field(init=False)
-    watched: tuple[Refused, ...] = ()
-    usual: frozenset[int] = frozenset()
-    copies: bool = False
-    _told_by: tuple[Refused, ...] = ()
-    _commands: int = 0
-    _told: int = 0
-    _is_passed: bool = False
-    _middleware: Middleware | None = None
-    _idle: Idle | None = None
-    _moment: Moment | None = None
-    _test: tuple[int, str] = (0, "")
-    _early: Evidence = field(default_factory=Evidence)
-    _handed: HandedCopies | None = None
-    _due: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
-    _next: list[tuple[_MutatedCall, Call]] = field(default_factory=list)
 
-    def keep_import_evidence(self) -> None:
-        """Count what it did before the first test in every test."""
-        self._early = self.evidence
+    def __post_init__(self) -> None:
+        self.evidence, self.early = Evidence(), Evidence()
+        self._told_by: tuple[Refused, ...] = ()
+        self._commands, self._told, self._is_passed = 0, 0, False
+        self._forget()
 
-    def start(
-        self,
-        seed: int,
-        round: int = 0,
-        test: str = "",
-        moment: Moment | None = None,
-        usual: frozenset[int] = frozenset(),
-    ) -> None:
+    def _forget(self) -> None:
+        """Forget what is of one test."""
+        self.watched: tuple[Refused, ...] = ()
+        self._handed: HandedCopies | None = None
+        self._due: list[tuple[_MutatedCall, Call]] = []
+        self._next: list[tuple[_MutatedCall, Call]] = []
+
+    def start(self, seed: int, round: int, test: str, moment: Moment | None, usual: frozenset[int]) -> None:
         """Begin a new test; the mutant's randomness follows from ``seed`` alone.
 
         Args:
@@ -90,18 +203,16 @@ class ActiveMutant:
             usual: numbers of the calls of its site that the robot refuses in the original too.
         """
         self.usual = usual
-        self.evidence = replace(self._early, away=dict(self._early.away))
+        self.evidence = self.early.copy()
         self.rule = operator(self.mutant.operator)
         self.copies = Need.COPIES in self.rule.needs
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
         self._idle = Idle.of(self.mutant.idle) if Need.IDLE in self.rule.needs else None
         self._test = (round, test)
         self._moment = moment
-        self.watched = ()
-        self._handed = None
-        self._due, self._next = [], []
+        self._forget()
 
-    def is_here(self, site: tuple[Span, Role], call: Call) -> bool:
+    def is_here(self, site: Place, call: Call) -> bool:
         """Whether a call at this place is the mutant's, by its operation and text command."""
         own = self.mutant.site
         pattern = call.pattern.text if call.pattern is not None else None
@@ -114,7 +225,6 @@ class ActiveMutant:
         Unless the operation is async, nothing here suspends. Returns what the program receives, and the
         robot's last answer.
         """
-        assert self._middleware is not None
         self.look_back()
         self.evidence.hits += 1
         call = replace(made.call, payload=made.call.payload.copied()) if self.copies else made.call
@@ -182,7 +292,7 @@ class ActiveMutant:
 
     def heard(self, name: str, message: Any) -> None:
         """Look whether a message that came by says that the robot refuses what it was told."""
-        if not is_told_on(self._told_by, name):
+        if not any(one.topic is not None and fnmatchcase(name, one.topic) for one in self._told_by):
             return
         self._told += 1
         if self.watched:
@@ -217,13 +327,10 @@ class ActiveMutant:
         found = subject_of(self.rule, self.operation, pattern, mutant.quantity, mutant.variant)
         if mutant.magnitude is None:
             return found
-        return replace(  # a magnitude that is demanded need not be one of the operator's own
-            found,
-            variant=mutant.variant,
-            magnitude=mutant.magnitude,
-            unit=mutant.unit,
-            direction=mutant.direction,
-        )
+        # a magnitude that is demanded need not be one of the operator's own
+        magnitude, unit = mutant.magnitude, mutant.unit
+        found = replace(found, magnitude=magnitude, unit=unit, direction=mutant.direction)
+        return replace(found, variant=mutant.variant)
 
     def _idle_answer(self, idle: Idle, adapter: Adapter, call: Call) -> Reply:
         """Return what the command answers while the robot does nothing: what it answered in the baseline.
@@ -323,8 +430,8 @@ class _MutatedCall:
             result = await self._perform(call)
         except BaseException as error:
             self.raised = error.error if isinstance(error, Carried) else error
-            if is_changed:
-                self._judge(self.raised)
+            if is_changed and is_refusal(self.raised, mutant.refusals) and not self._is_usual:
+                mutant.evidence.refusals = with_refusal(mutant.evidence.refusals, self.raised)
             raise
         finally:
             if is_changed:
@@ -372,11 +479,6 @@ class _MutatedCall:
         self.mutant.note(self.passage)
         self.mutant.on_call(False)
         self.mutant.on_act()
-
-    def _judge(self, error: BaseException) -> None:
-        """Note what the robot raised, if it refuses the mutated call."""
-        if is_refusal(error, self.mutant.refusals) and not self._is_usual:
-            self.mutant.evidence.refusals = with_refusal(self.mutant.evidence.refusals, error)
 
 
 def is_refusal(error: BaseException, names: Iterable[str]) -> bool:

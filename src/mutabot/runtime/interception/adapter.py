@@ -19,16 +19,15 @@ from inspect import Parameter, Signature
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply, Role, Span, Vocabulary
+from mutabot.model import Call, NotToldError, Operation, Path, Pattern, Quantity, Reply, Vocabulary
 from mutabot.model.answer import NotKeptError, is_member, is_of_numpy, keep, name_of, restore
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
-from mutabot.model.path import Path
 from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
-from mutabot.runtime.targets.target import NOWHERE, Handler, Where, resolve
+from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where, resolve
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
@@ -147,14 +146,14 @@ class SiteCall:
         is_direct: whether the program itself makes the call, rather than a library that it calls.
     """
 
-    site: tuple[Span, Role]
+    site: Place
     call: Call
     number: int
     is_async: bool = False
     is_direct: bool = False
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(eq=False)
 class Adapter:
     """Translates the calls of one operation.
 
@@ -178,18 +177,15 @@ class Adapter:
     wait: Callable[[float], Awaitable[None]]
     handler: Handler = field(init=False)
     commands: int = 0
-    _message: Path | None = None
-    _declared: Signature | None = None
-    _own: Signature | None = None
-    _parts: dict[str, tuple[tuple[str, ...], tuple[Quantity, ...]]] = field(default_factory=dict)
-    _last_results: dict[str | None, Any] = field(default_factory=dict)
-    _last_written: dict[str | None, dict[str, Value]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         operation = self.operation
         self._message = Path.parse(operation.message, rooted=True) if operation.message is not None else None
         self._declared = parse_signature(operation.signature) if operation.signature is not None else None
         self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
+        self._own: Signature | None = None
+        self._last_results: dict[str | None, Any] = {}
+        self._last_written: dict[str | None, dict[str, Value]] = {}
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
@@ -314,8 +310,9 @@ class Adapter:
         if call is original:
             return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
-        wrapped = self._opposite(call) if call.reversed and not is_text else invocation.wrapped
         meant = call.pattern if call.pattern is not None else self.operation
+        opposite = meant.opposite if call.reversed and not is_text else None
+        wrapped = self._other(opposite, invocation) if opposite is not None else invocation.wrapped
         changed = changes(meant.arguments, original.values, call.values)
         args, kwargs = invocation.args, invocation.kwargs
         if invocation.values is not None and (changed or call.reversed):
@@ -376,12 +373,6 @@ class Adapter:
             given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
             text = f"{self.operation.signature} does not take the call ({', '.join(given)})"
             self._tell("signature", text)
-
-    def _opposite(self, call: Call) -> Callable[..., Any]:
-        target = call.pattern.opposite if call.pattern is not None else self.operation.opposite
-        assert target is not None
-        opposite: Callable[..., Any] = self._other(target, call.payload)
-        return opposite
 
     def _other(self, target: str, invocation: Invocation) -> Any:
         """Return another attribute of the same object, or of its module where that is not possible."""

@@ -16,8 +16,7 @@ from typing import Any, NoReturn
 from mutabot.model import Call, CallFault, Reply
 from mutabot.model.operation import ANSWERED, COMING
 from mutabot.runtime.interception.live import copied
-from mutabot.runtime.targets.messages import Delivery
-from mutabot.runtime.targets.target import MiddlewareControls, resolve
+from mutabot.runtime.targets.target import Delivery, MiddlewareControls, resolve
 
 #: says to a process that it was begun anew, by its id, which stays the same
 RESTARTED = "MUTABOT_RESTARTED"

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
+from types import CodeType, FrameType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any, cast
 
 import wrapt
@@ -26,14 +26,13 @@ from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 from mutabot.operators.passage import Carried, run
 from mutabot.runtime.evidence import Meter
-from mutabot.runtime.interception.active_mutant import ActiveMutant
+from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
 from mutabot.runtime.interception.live import is_live
-from mutabot.runtime.interception.refusals import RefusedCalls
 from mutabot.runtime.interception.trace import Locator, Recorder
-from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.observation.probes import Along
-from mutabot.runtime.targets.target import NOWHERE, Handler, Where
+from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -63,9 +62,7 @@ class Untracked:
         if self._returns is not None:
             self._was, self._returns.is_on = self._returns.is_on, False
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         _under_way.reset(self._token)
         if self._returns is not None:
             self._returns.is_on = self._was
@@ -86,7 +83,7 @@ class Dispatcher:
         meter: what the running test has used; None between tests: then nothing is noted.
         fork_parent: set while this process runs the original and forks for each mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
-        mutants: the mutants of calls that are at work: none for the original.
+        mutant: the mutant of calls that is at work; None for the original, and for other mutants.
         on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
         refused: the calls of the running test that the robot refuses in the original.
         given: where functions of the robot were handed on, for calls that no frame tells of.
@@ -102,11 +99,11 @@ class Dispatcher:
     turn: Callable[[], None] | None = None
     meter: Meter | None = None
     fork_parent: ForkParent | None = None
-    mutants: list[ActiveMutant] = field(default_factory=list)
+    mutant: ActiveMutant | None = None
     oracle_nodes: tuple[str, ...] = ()
     on_live: Callable[[SiteCall], None] | None = None
     refused: RefusedCalls = field(default_factory=RefusedCalls)
-    given: dict[Adapter, tuple[Span, Role] | None] = field(default_factory=dict)
+    given: dict[Adapter, Place | None] = field(default_factory=dict)
     calls: Counter[tuple[Span, str, str | None]] = field(default_factory=Counter)
 
     def handler(self, adapter: Adapter) -> Handler:
@@ -115,13 +112,7 @@ class Dispatcher:
         # how many ticks and sleeps of a rate there are is a matter of time
         is_counted = named is None or named.form not in (Form.TICK, Form.SLEEP)
 
-        def handle(
-            wrapped: Callable[..., Any],
-            instance: Any,
-            args: tuple[Any, ...],
-            kwargs: dict[str, Any],
-            where: Where = NOWHERE,
-        ) -> Any:
+        def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where = NOWHERE) -> Any:
             __tracebackhide__ = True
             if self.turn is not None:
                 self.turn()
@@ -134,7 +125,7 @@ class Dispatcher:
             if is_counted and not where.is_again:
                 self.meter.operations += 1
                 if self.meter.operations > self.meter.most:
-                    self.meter.exceed_operations()
+                    self.meter.exceed(f"more than {self.meter.most} operations")
             frame = sys._getframe(1)
             site = where.site or self._site(frame, where, adapter)
             if site is None:
@@ -147,11 +138,11 @@ class Dispatcher:
             on_its_way = self.dispatch(adapter, site, invocation, is_async, is_direct)
             if is_async:
                 return on_its_way
-            return run(on_its_way, operator=" and ".join(one.mutant.operator for one in self.mutants))
+            return run(on_its_way, operator=self.mutant.mutant.operator if self.mutant is not None else "")
 
         return handle
 
-    def _site(self, frame: FrameType, where: Where, adapter: Adapter) -> tuple[Span, Role] | None:
+    def _site(self, frame: FrameType, where: Where, adapter: Adapter) -> Place | None:
         node, code, locator = where.node, where.code, self.locator
         site = locator.locate(frame) if code is None else locator.locate_definition(code)
         if site is not None and node is not None and any(fnmatchcase(node, one) for one in self.oracle_nodes):
@@ -170,12 +161,7 @@ class Dispatcher:
         return frame is not None and self.locator.locate_definition(frame.f_code) is not None
 
     async def dispatch(
-        self,
-        adapter: Adapter,
-        site: tuple[Span, Role],
-        invocation: Invocation,
-        is_async: bool,
-        is_direct: bool,
+        self, adapter: Adapter, site: Place, invocation: Invocation, is_async: bool, is_direct: bool
     ) -> Any:
         """Let one call go its way.
 
@@ -198,24 +184,25 @@ class Dispatcher:
                 _under_way.reset(token)
                 token = _under_way.set(False)
                 return await self._leave_alone(invocation, is_async)
-            made = SiteCall(site, call, self._number(site[0], call), is_async, is_direct)
+            key = (site[0], call.operation.target, call.pattern.text if call.pattern is not None else None)
+            self.calls[key] += 1
+            made = SiteCall(site, call, self.calls[key], is_async, is_direct)
             try:
                 # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
                 #    original; a fork comes back from here as its mutant.
                 if self.fork_parent is not None:
                     self.fork_parent.fork_at(site[0], call, made.number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
-                mutant = next((one for one in self.mutants if one.is_here(site, call)), None)
-                if mutant is None:
-                    for one in self.mutants:
-                        one.passed_by(call)
+                mutant = self.mutant
+                if mutant is not None and mutant.is_here(site, call):
+                    result, reply = await mutant.apply(adapter, made)
+                else:
+                    if mutant is not None:
+                        mutant.passed_by(call)
                     reply = await self._perform(adapter, made)
                     result = reply.payload
-                else:
-                    result, reply = await mutant.apply(adapter, made)
-                if self.mutants and call.is_command and site[1] is Role.PROGRAM:
-                    for one in self.mutants:
-                        await one.catch_up(is_async)
+                if mutant is not None and call.is_command and site[1] is Role.PROGRAM:
+                    await mutant.catch_up(is_async)
                 # 4. The program receives the result.
                 return result
             finally:
@@ -226,12 +213,6 @@ class Dispatcher:
                 _under_way.reset(token)
             except ValueError:  # a coroutine that was given up is closed from elsewhere
                 pass
-
-    def _number(self, span: Span, call: Call) -> int:
-        """Count a call among those of its site in the running test, from 1."""
-        key = (span, call.operation.target, call.pattern.text if call.pattern is not None else None)
-        self.calls[key] += 1
-        return self.calls[key]
 
     async def _leave_alone(self, invocation: Invocation, is_async: bool) -> Any:
         """Make a call as if there were no handler around it."""

@@ -126,13 +126,9 @@ class HandedCopies:
 _Handed = tuple[Any, dict[Any, Any]]
 
 
-def _of_new_record() -> int:
-    one: _Handed = ([], {})
-    return sys.getrefcount(one[0])
-
-
+_record: _Handed = ([], {})
 #: references to a value that nothing but such a record holds
-_IN_RECORD = _of_new_record()
+_IN_RECORD = sys.getrefcount(_record[0])
 
 
 def _content(value: Any) -> dict[Any, Any]:

@@ -6,7 +6,7 @@ Whose call it is, and exactly where it stands: from the frames of the running pr
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import CodeType, FrameType
@@ -20,6 +20,7 @@ from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
 from mutabot.runtime.interception.adapter import SiteCall, call_context
+from mutabot.runtime.targets.target import Place
 
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
@@ -102,10 +103,6 @@ class Recorder:
         ended = began if ended is None else ended
         return RecordedCall(began, ended, site.operation, place, site.pattern, written, read, role)
 
-    def sites_of(self, trace: Iterable[Any]) -> tuple[SiteSeen, ...]:
-        """Return the sites that a trace refers to, those of processes below the tests as well."""
-        return tuple(self.sites[index] for index in sorted({hit[0] for hit in trace}))
-
 
 def seen_by(made: SiteCall) -> SiteSeen:
     """Return the site of a call, whose index is not known."""
@@ -170,14 +167,10 @@ def _can_be_lost(call: Call) -> bool:
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values as they are now: a program may change its lists and arrays later."""
-    return {
-        name: value.tolist()
-        if hasattr(type(value), "tolist")
-        else list(value)
-        if isinstance(value, list)
-        else value
-        for name, value in values.items()
+    found: dict[str, Any] = {
+        name: list(value) if isinstance(value, list) else value for name, value in values.items()
     }
+    return {name: one.tolist() if hasattr(type(one), "tolist") else one for name, one in found.items()}
 
 
 class Locator:
@@ -206,7 +199,7 @@ class Locator:
         # every other frame is Python's: asking its front end for each would cost each call
         self._interpreted = [one for one in front_ends() if one is not PYTHON]
 
-    def locate(self, frame: FrameType | None) -> tuple[Span, Role] | None:
+    def locate(self, frame: FrameType | None) -> Place | None:
         """Span and role of the call that is running in ``frame`` or the nearest frame around it."""
         interpreted = self._interpreted
         while frame is not None:
@@ -220,7 +213,7 @@ class Locator:
             frame = frame.f_back
         return None
 
-    def locate_definition(self, code: CodeType) -> tuple[Span, Role] | None:
+    def locate_definition(self, code: CodeType) -> Place | None:
         """Span and role of a function's definition; None for one of neither the program nor the oracle."""
         role = self.role(code.co_filename)
         if role is None:
@@ -239,7 +232,7 @@ class Locator:
     def _absolute(self, path: str) -> str:
         return os.path.realpath(os.path.join(self._root, path))
 
-    def _in_interpreter(self, frame: FrameType) -> tuple[Span, Role] | None:
+    def _in_interpreter(self, frame: FrameType) -> Place | None:
         """The same for a frame in which an interpreter carries out a file of the program or the oracle."""
         for front_end in self._interpreted:
             filename = front_end.file_of(frame)

@@ -9,28 +9,27 @@ which some systems and most containers refuse. Mount flags: <linux/mount.h>; clo
 
 from __future__ import annotations
 
-import ctypes
 import fcntl
 import os
-import random
 import re
 import shutil
 import stat
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
-from mutabot.frozen import frozen
-from mutabot.runtime.isolation.forkable import go_on_running, own_event_loops, running_loop
-from mutabot.runtime.isolation.namespaces import asks_for_id, keeps_ids
+from mutabot.runtime.isolation.forkable import asks_for_id, call, descriptors, keeps_ids, own_event_loops
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
-_MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
+_MS_BIND, _MS_REC, _MS_PRIVATE = 4096, 16384, 1 << 18
+_NO_MOUNTS = "this system allows no private mounts"
 _SHARED_MEMORY = "/dev/shm"
+#: where a process keeps what it prints, in its home
+LOG = "log.txt"
+#: where forks have their folders, there
+_FORKS = "forks"
 #: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
 #: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
 _LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
@@ -60,14 +59,17 @@ class PrivateFiles:
         root: absolute path of the project.
         home: the process's own folder, beside those of other processes, which it cannot touch.
         shared: the folder that stays common to all processes, but for those folders.
+
+    Attributes:
+        why_not: why its files are not private, in words; None if they are.
     """
 
     root: str
     home: str
     shared: str
+    why_not: str | None = "private_files is switched off"
     _own: str = ""
     _is_privileged: bool = False
-    _covered: list[str] = field(default_factory=list)
     _below: list[str] | None = None
     _bare: int = -1
 
@@ -80,19 +82,56 @@ class PrivateFiles:
         Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if
         it is done.
         """
+        place, self.why_not = os.getcwd(), None
         try:
             self._is_privileged = _enter_namespace()
             _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
             # forks begin where nothing is covered: to uncover it again takes as long as to cover it
             self._bare = os.open("/proc/self/ns/mnt", os.O_RDONLY | os.O_CLOEXEC)
-            _leave_namespace()
+            call("unshare", _CLONE_NEWNS, what=_NO_MOUNTS)
             self._lay()
         except OSError as error:
-            self._uncover()
-            return f"{error.strerror or error}"
-        with suppress(OSError):  # the same folder, but seen through its new layers
-            os.chdir(os.getcwd())
+            if self._bare >= 0:
+                self._go_back()
+                os.chdir(place)
+            self.why_not = f"{error.strerror or error}"
+        else:
+            with suppress(OSError):  # the same folder, but seen through its new layers
+                os.chdir(place)
+        return self.why_not
+
+    def forbids_fork(self) -> str | None:
+        """Why open files or missing namespaces forbid a fork right now; None if they do not."""
+        if self.why_not is not None:
+            return f"its files are not private: {self.why_not}"
+        folders = private_folders(self.root)
+        for path, mode in _written():
+            if is_below(path, self.home):
+                continue
+            if mode == os.O_RDWR:  # a database knows which file it has opened, and a fork has another one
+                return f"{path} is open for reading and writing"
+            if not any(is_below(path, one) for one in folders):
+                return f"{path} is open for writing"
+        if not keeps_ids() and (file := asks_for_id(self.root)) is not None:
+            return f"{file} asks for the process id, and a fork of an ordinary user has one of its own"
         return None
+
+    def enter(self, name: str) -> str:
+        """In a process that was just forked, while its parent waits: share nothing with it any more.
+
+        ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
+        cannot be kept apart.
+        """
+        folder, log = os.path.join(self.home, _FORKS, name), os.stat(os.path.join(self.home, LOG))
+        os.makedirs(folder)
+        self.go_on_apart(folder)
+        isolate_files(log)  # what leads to the parent's log leads nowhere
+        own_event_loops()
+        return folder
+
+    def _go_back(self) -> None:
+        """Go where nothing is covered; the working folder is the root then."""
+        call("setns", self._bare, _CLONE_NEWNS, what="there is no way back to the files on disk")
 
     def go_on_apart(self, folder: str) -> None:
         """In a process that was just forked, while its parent waits: go on with files of its own.
@@ -107,10 +146,9 @@ class PrivateFiles:
                 if os.listdir(upper):
                     copied = os.path.join(folder, _LAYERS, number)
                     os.makedirs(copied)
-                    copy_tree(upper, os.path.join(copied, _UPPER))
-        if _libc().setns(self._bare, _CLONE_NEWNS) != 0:
-            raise _last_error("there is no way back to the files on disk")
-        _leave_namespace()
+                    _copy(upper, os.path.join(copied, _UPPER), {})
+        self._go_back()
+        call("unshare", _CLONE_NEWNS, what=_NO_MOUNTS)
         if keeps_ids():
             _mount("proc", "/proc", None, 0, kind="proc")  # that of its process namespace
         self._own = folder
@@ -134,17 +172,13 @@ class PrivateFiles:
                     folder, lower = folders[number], lowers[number]
                     is_memory = in_memory and folder == os.path.realpath(_SHARED_MEMORY)
                     _lay_over(folder, lower, _layers(own, number, in_memory=is_memory))
-                    self._covered.append(folder)
                     # what is mounted in it comes back before the next folder, which may lie in such a one
                     for inner, descriptor in again:
                         if inner != folder and is_below(inner, folder):
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
-                            self._covered.append(inner)
             if beside != self.shared:
                 _lay_over(beside, others, _layers(own, len(folders), in_memory=in_memory))
-                self._covered.append(beside)
                 _mount(_path(home), self.home, None, _MS_BIND | _MS_REC)
-                self._covered.append(self.home)
 
     def _has_memory(self) -> bool:
         """Mount a file system in memory in the process's own folder, if that can hold layers."""
@@ -156,19 +190,7 @@ class PrivateFiles:
             _mount("tmpfs", folder, "mode=700", 0, kind="tmpfs")
         except OSError:
             return False
-        self._covered.append(folder)
         return True
-
-    def _uncover(self) -> None:
-        """Take back what was laid over these folders, the last first.
-
-        What lies on another cover goes with it. The kernel takes several milliseconds for each one.
-        """
-        libc = _libc()
-        while self._covered:
-            folder = self._covered.pop()
-            if not any(folder != one and is_below(folder, one) for one in self._covered):
-                libc.umount2(os.fsencode(folder), _MNT_DETACH)
 
 
 def may_be_private() -> bool:
@@ -183,17 +205,11 @@ def may_be_private() -> bool:
     return os.waitpid(pid, 0)[1] == 0
 
 
-def copy_tree(source: str, target: str) -> None:
-    """Copy the upper layer of an overlay: with what it deletes and hides, owners, times and rights."""
-    os.mkdir(target)
-    links: dict[tuple[int, int], str] = {}
-    with os.scandir(source) as entries:
-        for entry in entries:
-            _copy_entry(entry.path, f"{target}/{entry.name}", links)
-    _copy_status(source, target, os.stat(source))
+def _copy(source: str, target: str, links: dict[tuple[int, int], str]) -> None:
+    """Copy what is in the upper layer of an overlay: with what it deletes, owners, times and rights.
 
-
-def _copy_entry(source: str, target: str, links: dict[tuple[int, int], str]) -> None:
+    ``links`` takes files that have several names, by device and inode.
+    """
     status = os.lstat(source)
     identity = (status.st_dev, status.st_ino)
     if identity in links:
@@ -203,7 +219,7 @@ def _copy_entry(source: str, target: str, links: dict[tuple[int, int], str]) -> 
         os.mkdir(target)
         with os.scandir(source) as entries:
             for entry in entries:
-                _copy_entry(entry.path, f"{target}/{entry.name}", links)
+                _copy(entry.path, f"{target}/{entry.name}", links)
     elif stat.S_ISLNK(status.st_mode):
         os.symlink(os.readlink(source), target)
     elif stat.S_ISREG(status.st_mode):
@@ -232,20 +248,15 @@ def _copy_status(source: str, target: str, status: os.stat_result) -> None:
     os.utime(target, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
-def _leave_namespace() -> None:
-    """Go on in a copy of the mount namespace."""
-    if _libc().unshare(_CLONE_NEWNS) != 0:
-        raise _last_error("this system allows no private mounts")
-
-
 def _enter_namespace() -> bool:
     """Enter a mount namespace; True if that needed no user namespace."""
     user, group = os.geteuid(), os.getegid()
-    libc = _libc()
-    if libc.unshare(_CLONE_NEWNS) == 0:
+    try:
+        call("unshare", _CLONE_NEWNS)
+    except OSError:
+        call("unshare", _CLONE_NEWNS | _CLONE_NEWUSER, what=_NO_MOUNTS)
+    else:
         return True
-    if libc.unshare(_CLONE_NEWNS | _CLONE_NEWUSER) != 0:
-        raise _last_error("this system allows no private mounts")
     for name, text in (
         ("setgroups", "deny"),
         ("uid_map", f"{user} {user} 1"),
@@ -318,25 +329,13 @@ def _opened(paths: list[str]) -> Iterator[list[int]]:
             os.close(descriptor)
 
 
-@lru_cache(maxsize=1)  # ctypes makes a class for each
-def _libc() -> ctypes.CDLL:
-    return ctypes.CDLL(None, use_errno=True)
-
-
 def _path(descriptor: int) -> str:
     return f"/proc/self/fd/{descriptor}"
 
 
 def _mount(source: str, target: str, options: str | None, flags: int, kind: str = "") -> None:
-    libc = _libc()
-    data = options.encode() if options is not None else None
-    if libc.mount(os.fsencode(source), os.fsencode(target), kind.encode() or None, flags, data) != 0:
-        raise _last_error(f"{target} cannot be covered")
-
-
-def _last_error(what: str) -> OSError:
-    number = ctypes.get_errno()
-    return OSError(number, f"{what} ({os.strerror(number)})")
+    paths, data = (os.fsencode(source), os.fsencode(target)), options.encode() if options else None
+    call("mount", *paths, kind.encode() or None, flags, data, what=f"{target} cannot be covered")
 
 
 def is_below(path: str, folder: str) -> bool:
@@ -345,91 +344,20 @@ def is_below(path: str, folder: str) -> bool:
 
 
 _CHUNK = 1 << 16
-#: where forks have their folders, in that of the process
-_FORKS = "forks"
 #: device, inode, position and flags of an open file: descriptors that agree in them share one opening
 _Shared = tuple[int, int, int, int]
 
 
-class StateBeforeFork:
-    """What a fork changes in the child: the random state and the running event loop."""
-
-    def __init__(self) -> None:
-        # random registers a hook that seeds anew in every child
-        self._random: Any = random.getstate()
-        self._loop = running_loop()
-        sys.stdout.flush()
-        sys.stderr.flush()
-
-    def restore(self) -> None:
-        """In the child: put it back."""
-        random.setstate(self._random)
-        go_on_running(self._loop)
-
-
-@frozen
-class Isolation:
-    """How a forked process is kept apart from its parent.
-
-    Attributes:
-        log: device and inode of the parent's log; in a fork, what leads there leads nowhere.
-        home: the parent's own folder.
-        files: the parent's private files; None if its files are not private.
-        why_not: why they are not, in words, or None.
-    """
-
-    log: tuple[int, int]
-    home: str
-    files: PrivateFiles | None
-    why_not: str | None = None
-
-    def reason(self) -> str | None:
-        """Why open files or missing namespaces forbid a fork right now; None if they do not."""
-        if self.files is None:
-            return f"its files are not private: {self.why_not}"
-        folders = private_folders(self.files.root)
-        for path, mode in _written():
-            if is_below(path, self.files.home):
-                continue
-            if mode == os.O_RDWR:  # a database knows which file it has opened, and a fork has another one
-                return f"{path} is open for reading and writing"
-            if not any(is_below(path, one) for one in folders):
-                return f"{path} is open for writing"
-        if not keeps_ids() and (file := asks_for_id(self.files.root)) is not None:
-            return f"{file} asks for the process id, and a fork of an ordinary user has one of its own"
-        return None
-
-    def enter(self, name: str) -> str:
-        """In a process that was just forked, while its parent waits: share nothing with it any more.
-
-        ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
-        cannot be kept apart.
-        """
-        assert self.files is not None
-        folder = os.path.join(self.home, _FORKS, name)
-        os.makedirs(folder)
-        self.files.go_on_apart(folder)
-        isolate_files(self.log)
-        own_event_loops()
-        return folder
-
-
 def _written() -> Iterator[tuple[str, int]]:
     """Paths of the files that are open for writing and have a name, and how they are open."""
-    for descriptor, status in _descriptors():
+    for descriptor, status in descriptors():
         is_named = stat.S_ISREG(status.st_mode) and status.st_nlink > 0
         mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
         if is_named and mode != os.O_RDONLY:
             yield os.readlink(f"/proc/self/fd/{descriptor}"), mode
 
 
-def _descriptors() -> Iterator[tuple[int, os.stat_result]]:
-    for name in os.listdir("/proc/self/fd"):
-        with suppress(OSError):  # the descriptor of the listing itself
-            yield int(name), os.fstat(int(name))
-
-
-def isolate_files(log: tuple[int, int], instead: int | None = None) -> None:
+def isolate_files(log: os.stat_result, instead: int | None = None) -> None:
     """In a process that was just forked: stop reading and writing where its parent does.
 
     An open file has one position for parent and child; the child opens its own. Of a deleted temporary file,
@@ -437,14 +365,14 @@ def isolate_files(log: tuple[int, int], instead: int | None = None) -> None:
     elsewhere.
 
     Args:
-        log: device and inode of the parent's log.
+        log: the parent's log.
         instead: descriptor of the child's own log; None for nowhere.
     """
-    found = list(_descriptors())  # before any is opened here
+    found = list(descriptors())  # before any is opened here
     nowhere = os.open(os.devnull, os.O_WRONLY)
     copies: dict[_Shared, int] = {}
     for descriptor, status in found:
-        if (status.st_dev, status.st_ino) == log:
+        if os.path.samestat(status, log):
             target = nowhere if instead is None else instead
             os.dup2(target, descriptor, inheritable=os.get_inheritable(descriptor))
         elif stat.S_ISREG(status.st_mode):
@@ -465,14 +393,16 @@ def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) 
         is_deleted = status.st_nlink == 0
         if is_deleted and flags & os.O_ACCMODE == os.O_RDONLY:
             return
-        opened = _copy(descriptor) if is_deleted else _opened_again(descriptor, status, position, flags)
+        opened = (
+            _in_memory(descriptor, position) if is_deleted else _opened_again(descriptor, position, flags)
+        )
         if opened is None:
             return
         copies[shared] = opened
     os.dup2(copies[shared], descriptor, inheritable=os.get_inheritable(descriptor))
 
 
-def _opened_again(descriptor: int, status: os.stat_result, position: int, flags: int) -> int | None:
+def _opened_again(descriptor: int, position: int, flags: int) -> int | None:
     """The same file opened once more; None if it is ours, in a folder that tests do not see."""
     path = os.readlink(f"/proc/self/fd/{descriptor}")
     try:
@@ -483,9 +413,8 @@ def _opened_again(descriptor: int, status: os.stat_result, position: int, flags:
     return opened
 
 
-def _copy(descriptor: int) -> int:
+def _in_memory(descriptor: int, position: int) -> int:
     """A private copy of a file in memory, at the same position."""
-    position = os.lseek(descriptor, 0, os.SEEK_CUR)
     copied, offset = os.memfd_create("copy"), 0
     while chunk := os.pread(descriptor, _CHUNK, offset):
         offset += os.pwrite(copied, chunk, offset)

@@ -14,11 +14,13 @@ from __future__ import annotations
 
 import mmap
 import os
+import random
 import select
 import signal
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import monotonic  # tests may replace that of the module
 
 from mutabot.model import Call, Mutant, Span
@@ -26,17 +28,13 @@ from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Un
 from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.isolation.files import Isolation, StateBeforeFork
-from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
-from mutabot.runtime.isolation.namespaces import ForkedPids, end_first, fork, leave_out
-from mutabot.runtime.isolation.parent_death import ALONE, die_with_parent, nobody_listens
+from mutabot.runtime.isolation import forkable
+from mutabot.runtime.isolation.files import PrivateFiles
 from mutabot.runtime.plugins import alarm_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are
 #: unlike any that a program would leave with by itself
 DECIDED = 113
-#: exit code of a process that could not report
-FAILED = ALONE
 #: exit code of a child that stopped before it did what others would have noticed
 STOPPED = 116
 
@@ -69,7 +67,7 @@ class Child:
 
     mutant: str
     fork: int
-    pids: ForkedPids
+    pids: forkable.ForkedPids
     pidfd: int
     test: int
     limit: float
@@ -92,7 +90,7 @@ class Child:
         return True
 
 
-@dataclass(slots=True)
+@dataclass
 class ForkParent:
     """Forks a child for each mutant.
 
@@ -100,7 +98,7 @@ class ForkParent:
         forking: the mutants, and what children may use.
         tests: the tests of the session, in their order.
         pipe: the file of events.
-        isolation: how a child is kept apart from this process.
+        files: those of this process, which keep a child apart from it.
         become: called in a child, with its mutant and its folder: it goes on as that mutant.
         has_nodes: whether nodes below a child would meet those below others.
         has_started: whether processes of the program were started, which have run it as the original.
@@ -111,35 +109,26 @@ class ForkParent:
     forking: Forking
     tests: tuple[str, ...]
     pipe: EventFile
-    isolation: Isolation
+    files: PrivateFiles
     become: Callable[[Mutant, str], None]
-    has_nodes: bool = False
-    has_started: Callable[[], bool] = lambda: False
+    has_nodes: bool
+    has_started: Callable[[], bool]
     is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
-    _live: dict[Key, list[Mutant]] = field(default_factory=dict)
-    _gone: set[str] = field(default_factory=set)
-    _children: dict[int, Child] = field(default_factory=dict)
-    _slots: dict[str, int] = field(init=False)
-    _finished: memoryview = field(init=False)
-    _tests: memoryview = field(init=False)
-    _known: frozenset[tuple[int, str]] = field(init=False)
-    _test: str = ""
-    _number: int = -1
-    _held: int = 1
-    _pid: int = field(default_factory=os.getpid)
-    _overtaken: bool = False
-    _forking: bool = False
-    _copied: bool = False
-    _places: dict[int, frozenset[int]] | None = None
 
     def __post_init__(self) -> None:
+        self._test, self._number, self._held, self._pid = "", -1, 1, os.getpid()
+        self._overtaken = self._forking = self._copied = False
+        self._live: dict[Key, list[Mutant]] = {}
+        self._gone: set[str] = set()
+        self._children: dict[int, Child] = {}
+        self._places: dict[int, frozenset[int]] | None = None
         os.register_at_fork(before=self._note_copy)
         self._slots = {mutant.id: slot for slot, mutant in enumerate(self.forking.mutants)}
         # the board, which children write: whether each has gone to the end, and the number of its test
         count = max(1, len(self._slots))
         board = memoryview(mmap.mmap(-1, 2 * count * _NUMBER_BYTES)).cast("i")
         self._finished, self._tests = board[:count], board[count:]
-        self._known = open_now()
+        self._known = forkable.open_now()
         for mutant in self.forking.mutants:
             keys: list[Key] = [(mutant.site.span, mutant.operation, mutant.pattern)]
             keys += [choice.place for choice in self.forking.choices.get(mutant.id, ())]
@@ -214,8 +203,8 @@ class ForkParent:
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
             own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
-            reason = STARTED if self._is_overtaken() else self.isolation.reason() or why_not(own, self._known)
-            if reason is not None:
+            reason = forkable.STARTED if self._is_overtaken() else self.files.forbids_fork()
+            if (reason := reason or forkable.why_not(own, self._known)) is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
                 self._fork_each(due)
@@ -245,18 +234,21 @@ class ForkParent:
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
             with suppress(OSError):
-                leave_out(monotonic() - began)
+                forkable.leave_out(monotonic() - began)
 
-    def _fork_one(self, mutant: Mutant, began: float) -> ForkedPids | None:
+    def _fork_one(self, mutant: Mutant, began: float) -> forkable.ForkedPids | None:
         """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
         slot = self._slots[mutant.id]
         self._finished[slot], self._tests[slot] = 0, self._number
-        before = StateBeforeFork()
+        # random registers a hook that seeds anew in every child
+        state, loop = random.getstate(), forkable.running_loop()
+        sys.stdout.flush()
+        sys.stderr.flush()
         self.pipe.forks += 1
         reading, writing = os.pipe()
         self._forking = True
         try:
-            pids = fork()
+            pids = forkable.fork()
         except OSError:
             os.close(reading)
             os.close(writing)
@@ -265,10 +257,10 @@ class ForkParent:
             self._forking = False
         if pids is None:
             os.close(reading)
-            die_with_parent()
-            if nobody_listens(writing):  # the parent died before the kernel was asked
-                os._exit(ALONE)
-            self._begin_child(mutant, before, began)
+            forkable.die_with_parent(pipe=writing)
+            random.setstate(state)
+            forkable.go_on_running(loop)
+            self._begin_child(mutant, began)
             os.close(writing)
             return None
         os.close(writing)
@@ -276,21 +268,20 @@ class ForkParent:
             ready.read()
         return pids
 
-    def _begin_child(self, mutant: Mutant, before: StateBeforeFork, began: float) -> None:
+    def _begin_child(self, mutant: Mutant, began: float) -> None:
         """Let go of what is the parent's, and become the mutant."""
         os.setsid()  # it leads its group and session, as a test process does
         self.pipe.go_on_apart()
         for descriptor in (*self._children, *self.forking.tokens):
             os.close(descriptor)
         try:
-            folder = self.isolation.enter(self.pipe.name)
-            leave_out(monotonic() - began)
+            folder = self.files.enter(self.pipe.name)
+            forkable.leave_out(monotonic() - began)
         except OSError as error:
             try:
                 self._tell_unforked(mutant, error)
             finally:
                 os._exit(STOPPED)
-        before.restore()
         self.become(mutant, folder)
 
     def _tell_unforked(self, mutant: Mutant, error: OSError) -> None:
@@ -392,7 +383,7 @@ class ForkParent:
     def _bury(self, child: Child) -> None:
         """Tell how a child has ended."""
         _, status = os.waitpid(child.pids.fork, 0)
-        end_first(child.pids.first)
+        forkable.end_first(child.pids.first)
         os.close(child.pidfd)
         slot, code = self._slots[child.mutant], os.waitstatus_to_exitcode(status)
         # at the end of the session the exit code is the suite's own

@@ -20,8 +20,7 @@ from mutabot.frozen import compile_all
 from mutabot.model.events import ForkEnded, Serving
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import isolate_files, may_be_private
-from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
-from mutabot.runtime.isolation.parent_death import die_with_parent
+from mutabot.runtime.isolation.forkable import STARTED, die_with_parent, open_now, why_not
 
 _MESSAGE_BYTES = 1 << 12
 #: what a copy is to do: its folder with the job file in it, and the writing end of the pipe by which the
@@ -55,7 +54,10 @@ class ForkServer:
         ``has_started``: whether the program has started processes by now, of which no job would know.
         Returns what to do in a copy; None in the server when it is done.
         """
-        reason = STARTED if has_started else self._why_not()
+        reason = STARTED if has_started else None
+        if reason is None and not (self.is_private and may_be_private()):
+            reason = "its files are not private"
+        reason = reason or why_not((), self._known)
         self.pipe.send(Serving(reason))
         if reason is not None:
             return None
@@ -75,11 +77,6 @@ class ForkServer:
         for pidfd in list(self._copies):
             self._bury(pidfd)
         return None
-
-    def _why_not(self) -> str | None:
-        if not self.is_private or not may_be_private():
-            return "its files are not private"
-        return why_not((), self._known)
 
     def _wait(self, jobs: socket.socket) -> bool:
         """Sleep until there is a job (True) or copies have ended, and look after these."""
@@ -123,6 +120,6 @@ class ForkServer:
         """In the copy: what is printed goes into its own folder, which is this one."""
         old = os.stat(os.path.join(self.home, self.log))
         log = os.open(os.path.join(home, self.log), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-        isolate_files((old.st_dev, old.st_ino), log)
+        isolate_files(old, log)
         os.close(log)
         return home

@@ -1,31 +1,39 @@
-"""Whether this process can be forked right now without breaking what it shares with the world.
+"""Fork a process, if it can be forked right now without breaking what it shares with the world.
 
-Event loops of asyncio in a process that was forked: the descriptors by which they wait must be its own.
+The fork has its parent's process id, and its clock can be set back: both keep from a program what it could
+notice of a fork. The id takes a process namespace, whose first process must outlive the others: here one that
+sleeps, and shares the parent's memory and files, so that it costs next to nothing. Clone flags and
+``clone_args``: <linux/sched.h>.
+
+Event loops of asyncio must wait by descriptors of the fork's own. No process outlives the one it works for,
+and none takes its memory apart when it ends.
 """
 
 from __future__ import annotations
 
+import atexit
+import ctypes
+import errno
 import os
 import select
 import selectors
+import signal
 import stat
 import sys
+import threading
 import weakref
-from collections.abc import Callable, Iterable, Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from functools import cache
+from typing import Any, NamedTuple, NoReturn
 
 import wrapt
 
 _loops: weakref.WeakSet[Any] = weakref.WeakSet()
-_is_on = False
 
 
 def track_event_loops() -> None:
     """Note the loops that are made from now on."""
-    global _is_on  # noqa: PLW0603  # what is patched stays patched
-    if _is_on:
-        return
-    _is_on = True
     # most processes have no loop, and need not import asyncio for it
     wrapt.register_post_import_hook(_track, "asyncio.selector_events")
 
@@ -44,16 +52,6 @@ def _track(selector_events: Any) -> None:
 def open_loops() -> list[Any]:
     """The loops that are not closed."""
     return [loop for loop in list(_loops) if not loop.is_closed()]
-
-
-def descriptors_of_loops() -> set[int]:
-    """The descriptors by which loops wait."""
-    return {
-        end.fileno()
-        for loop in open_loops()
-        for end in (loop._ssock, loop._csock, loop._selector)
-        if end is not None
-    }
 
 
 def running_loop() -> Any:
@@ -107,13 +105,7 @@ def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> s
         own_children: processes that this one forked for mutants.
         known: what was open before the user's code ran, as ``open_now`` gives it.
     """
-    checks: tuple[Callable[[], str | None], ...] = (
-        _threads,
-        lambda: subprocesses(own_children),
-        lambda: _open_since(known),
-        _graphics,
-    )
-    return next((reason for check in checks if (reason := check()) is not None), None)
+    return _threads() or subprocesses(own_children) or _open_since(known) or _graphics()
 
 
 def _threads() -> str | None:
@@ -135,14 +127,10 @@ def count_threads() -> int:
     threads = os.listdir(f"{_SELF}/task")
     if len(threads) == 1:
         return 1
-    waiting = _tracer_areas()
-    return sum(not _waits_in(thread, waiting) for thread in threads) if waiting else len(threads)
-
-
-def _tracer_areas() -> list[tuple[int, int]]:
-    """Where threads of a tracer wait to be asked. They do nothing until then, so a fork does without."""
+    # threads of a tracer wait to be asked. They do nothing until then, so a fork does without
     areas = [line.split(maxsplit=1)[0].split("-") for line in _maps() if _TRACER in line]
-    return [(int(start, 16), int(end, 16)) for start, end in areas]
+    waiting = [(int(start, 16), int(end, 16)) for start, end in areas]
+    return sum(not _waits_in(thread, waiting) for thread in threads) if waiting else len(threads)
 
 
 def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
@@ -169,7 +157,8 @@ def subprocesses(own: Iterable[int]) -> str | None:
 
 
 def _open_since(known: frozenset[tuple[int, str]]) -> str | None:
-    loops = descriptors_of_loops()
+    ends = (end for loop in open_loops() for end in (loop._ssock, loop._csock, loop._selector))
+    loops = {end.fileno() for end in ends if end is not None}
     found = [name for descriptor, name in open_now() - known if descriptor not in loops]
     sockets = sum(name.startswith("socket:") for name in found)
     if sockets:
@@ -183,14 +172,18 @@ def open_now() -> frozenset[tuple[int, str]]:
 
 
 def _open() -> Iterator[tuple[int, str]]:
-    for name in os.listdir(f"{_SELF}/fd"):
-        try:
-            mode, link = os.fstat(int(name)).st_mode, os.readlink(f"{_SELF}/fd/{name}")
-        except OSError:  # the descriptor of the listing itself
-            continue
+    for descriptor, status in descriptors():
+        mode, link = status.st_mode, os.readlink(f"{_SELF}/fd/{descriptor}")
         is_file = stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode)
         if not is_file and link not in _NOBODYS and not link.startswith(_HARMLESS):
-            yield int(name), link
+            yield descriptor, link
+
+
+def descriptors() -> Iterator[tuple[int, os.stat_result]]:
+    """The descriptors that are open, and what they lead to."""
+    for name in os.listdir(f"{_SELF}/fd"):
+        with suppress(OSError):  # the descriptor of the listing itself
+            yield int(name), os.fstat(int(name))
 
 
 def _shared_memory() -> Iterator[tuple[int, str]]:
@@ -198,10 +191,8 @@ def _shared_memory() -> Iterator[tuple[int, str]]:
     for line in _maps():
         place, rights = line.split(maxsplit=2)[:2]
         if rights[1] == "w" and rights[3] == "s":
-            yield (
-                -int(place.partition("-")[0], 16),
-                f"memory shared with others {line[73:].strip()}".rstrip(),
-            )
+            where = -int(place.partition("-")[0], 16)
+            yield where, f"memory shared with others {line[73:].strip()}".rstrip()
 
 
 def _graphics() -> str | None:
@@ -213,3 +204,194 @@ def _graphics() -> str | None:
 def _maps() -> list[str]:
     with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
         return file.readlines()
+
+
+_CLONE_VM, _CLONE_FILES, _CLONE_NEWTIME, _CLONE_NEWPID = 0x00000100, 0x00000400, 0x00000080, 0x20000000
+#: number of this system call on all architectures
+_CLONE3 = 435
+#: waits for a process whose end raises no signal, so that tests that wait for their own do not see it
+_WCLONE = -(1 << 31)
+_STACK_BYTES = 1 << 14
+
+_left_out = 0.0
+
+
+class ForkedPids(NamedTuple):
+    """A fork as its parent sees it: its process, and the first one of its namespace; None if it has none."""
+
+    fork: int
+    first: int | None
+
+
+def left_out() -> float:
+    """Seconds by which the monotonic clock of this process is behind the system's."""
+    return _left_out
+
+
+def leave_out(seconds: float) -> None:
+    """Set the monotonic clock back, here and in all processes that start from now on.
+
+    Raises OSError if that is not possible. To be called while no first process shares this one's memory.
+    """
+    global _left_out  # noqa: PLW0603  # a process has one clock
+    if len(os.listdir("/proc/self/task")) > 1:  # the kernel would refuse when it is too late
+        raise OSError(errno.EUSERS, "there are other threads")
+    call("unshare", _CLONE_NEWTIME)
+    whole, rest = divmod(-round((_left_out + seconds) * 1e9), 10**9)
+    with open("/proc/self/timens_offsets", "w", encoding="ascii") as file:
+        file.write(f"monotonic {whole} {rest}\nboottime {whole} {rest}\n")
+    _enter("/proc/self/ns/time_for_children", _CLONE_NEWTIME)
+    _left_out += seconds
+
+
+@cache
+def keeps_ids() -> bool:
+    """Whether forks can have the id of this process.
+
+    An ordinary user's process could enter another process namespace, but its later children could not return.
+    """
+    try:
+        _enter("/proc/self/ns/pid", _CLONE_NEWPID)
+    except OSError:
+        return False
+    return True
+
+
+def asks_for_id(root: str) -> str | None:
+    """A file of the project that is loaded and asks for its process's id, as its text says."""
+    files = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
+    own = (file for file in files if file.startswith(f"{root}/") and "/site-packages/" not in file)
+    return next((file[len(root) + 1 :] for file in sorted(own) if _mentions_id(file)), None)
+
+
+@cache
+def _mentions_id(file: str) -> bool:
+    try:
+        with open(file, "rb") as text:
+            return b"getpid" in text.read()
+    except OSError:
+        return False
+
+
+def fork() -> ForkedPids | None:
+    """Fork a process, with the id of this one if ``keeps_ids``; None in that process.
+
+    Raises OSError if that is not possible.
+    """
+    if not keeps_ids():
+        pid = os.fork()
+        return ForkedPids(pid, None) if pid else None
+    first = _start_first()
+    try:
+        _enter(f"/proc/{first}/ns/pid", _CLONE_NEWPID)
+        try:
+            pid = _fork_as(os.getpid())
+        finally:
+            _enter("/proc/self/ns/pid", _CLONE_NEWPID)
+    except OSError:
+        end_first(first)
+        raise
+    return ForkedPids(pid, first) if pid else None
+
+
+def end_first(first: int | None) -> None:
+    """End the first process of a namespace, if there is one, and with it whatever a fork has left there."""
+    if first is not None:
+        os.kill(first, signal.SIGKILL)
+        os.waitpid(first, _WCLONE)
+
+
+def _start_first() -> int:
+    """Start the first process of a namespace. It wakes up for no signal, and keeps no file open by itself."""
+    flags = _CLONE_VM | _CLONE_FILES | _CLONE_NEWPID
+    function = ctypes.cast(_libc().pause, ctypes.c_void_p)
+    top = (ctypes.addressof(_stack()) + _STACK_BYTES) & ~15
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+    try:
+        return call("clone", function, ctypes.c_void_p(top), flags, None)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+def _fork_as(pid: int) -> int:
+    """Fork, as ``os.fork`` does, a process with this id in its namespace; 0 in it.
+
+    The C library needs to do nothing: this is the only thread, and has the same id there.
+    """
+    wanted = ctypes.c_int(pid)
+    # flags, pidfd, child_tid, parent_tid, exit_signal, stack, stack_size, tls, set_tid, set_tid_size, cgroup
+    arguments = (ctypes.c_uint64 * 11)(0, 0, 0, 0, signal.SIGCHLD, 0, 0, 0, ctypes.addressof(wanted), 1, 0)
+    ctypes.pythonapi.PyOS_BeforeFork()
+    try:
+        found = call("syscall", _CLONE3, arguments, ctypes.sizeof(arguments))
+    except OSError:
+        ctypes.pythonapi.PyOS_AfterFork_Parent()
+        raise
+    if found:
+        ctypes.pythonapi.PyOS_AfterFork_Parent()
+    else:
+        ctypes.pythonapi.PyOS_AfterFork_Child()
+    return found
+
+
+def _enter(path: str, kind: int) -> None:
+    descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        call("setns", descriptor, kind)
+    finally:
+        os.close(descriptor)
+
+
+def call(name: str, *arguments: Any, what: str = "") -> int:
+    """Call a function of the C library. Raises OSError, with ``what`` that means if it fails."""
+    result: int = getattr(_libc(), name)(*arguments)
+    if result < 0:
+        number, reason = ctypes.get_errno(), os.strerror(ctypes.get_errno())
+        raise OSError(number, f"{what} ({reason})" if what else f"{name}: {reason}")
+    return result
+
+
+@cache
+def _libc() -> ctypes.PyDLL:
+    return ctypes.PyDLL(None, use_errno=True)  # it keeps Python's lock, as what forks must
+
+
+@cache
+def _stack() -> ctypes.Array[ctypes.c_char]:
+    """What all first processes sleep on: none writes to it again once it sleeps."""
+    return ctypes.create_string_buffer(_STACK_BYTES)
+
+
+#: exit code of a process that found nobody to work for
+ALONE = 115
+_PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
+
+
+def die_with_parent(parent: int | None = None, pipe: int | None = None) -> None:
+    """Ask the kernel to end this process when its parent dies; end it now if that is already gone.
+
+    It is if it is not ``parent``, or if nobody has the reading end of this ``pipe``.
+    """
+    _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    # it may have died before the kernel was asked
+    if (parent is not None and os.getppid() != parent) or (pipe is not None and _nobody_listens(pipe)):
+        os._exit(ALONE)
+
+
+def _nobody_listens(descriptor: int) -> bool:
+    poll = select.poll()
+    poll.register(descriptor, select.POLLERR)
+    return any(event & select.POLLERR for _, event in poll.poll(0))
+
+
+def leave(status: int) -> NoReturn:
+    """End this process with this exit code, after the threads and exit handlers that come first."""
+    threads: Any = threading
+    try:
+        threads._shutdown()
+        atexit._run_exitfuncs()
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(OSError, ValueError):
+                stream.flush()
+    finally:
+        os._exit(status)

@@ -35,26 +35,21 @@ _OPERATORS: dict[type[ast.cmpop], str] = {
 
 
 class Looks:
-    """What the checks of the running test compared."""
+    """What the checks of the running test compared.
+
+    Attributes:
+        noted: the checks, by place and text.
+        more: those that were made beyond these.
+    """
 
     def __init__(self) -> None:
-        self._noted: dict[tuple[str, str], Check] = {}
-        self._more: set[tuple[str, str]] = set()
+        self.noted: dict[tuple[str, str], Check] = {}
+        self.more: set[tuple[str, str]] = set()
 
     def clear(self) -> None:
         """Another test begins."""
-        self._noted.clear()
-        self._more.clear()
-
-    @property
-    def more(self) -> int:
-        """How many further checks the test made."""
-        return len(self._more)
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        """Those of the test until now."""
-        return tuple(self._noted.values())
+        self.noted.clear()
+        self.more.clear()
 
     def checked(self, place: str, text: str, *compared: Any) -> None:
         """Note a check that has held; ``compared``: left side, operator and right side of a comparison."""
@@ -66,15 +61,15 @@ class Looks:
 
     def _note(self, place: str, text: str, spare: float | None, words: Callable[[], str]) -> None:
         key = place, text
-        before = self._noted.get(key)
-        if before is None and len(self._noted) >= MOST:
-            self._more.add(key)
+        before = self.noted.get(key)
+        if before is None and len(self.noted) >= MOST:
+            self.more.add(key)
         elif before is None:
-            self._noted[key] = Check(place, text[:_LONGEST], words(), spare)
+            self.noted[key] = Check(place, text[:_LONGEST], words(), spare)
         else:
             is_nearer = spare is not None and (before.spare is None or spare < before.spare)
             seen, least = (words(), spare) if is_nearer else (before.seen, before.spare)
-            self._noted[key] = Check(place, before.text, seen, least, before.times + 1)
+            self.noted[key] = Check(place, before.text, seen, least, before.times + 1)
 
 
 def margin(left: Any, operator: str, right: Any) -> float | None:

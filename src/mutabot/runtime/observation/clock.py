@@ -1,68 +1,226 @@
-"""The program's time: read at every call that advances the simulation, or counted in fixed steps."""
+"""The program's time, and which objects of a class the present test uses.
+
+The time is read at every call that advances the simulation, or counted in fixed steps. A probe on a method
+or attribute is read from those objects that are ``self`` of an intercepted call in the running test, in the
+order of their first call. Where there is none, one object: the last that was made in this test, else one that
+its fixtures hold, else the last that was made before any test or while a module was imported. An object that
+another test made is never taken. Objects are noted when they are made, by their class's ``__init__``, and
+when they are used, by the interception.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import reprlib
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass, field
+import weakref
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
 from math import isfinite
-from types import CoroutineType
+from types import CoroutineType, ModuleType
 from typing import Any
 
+import wrapt
+
 from mutabot.errors import PathError
-from mutabot.model import Clock, Vocabulary
-from mutabot.model.path import Path
+from mutabot.model import Clock, Path, Vocabulary
 from mutabot.model.signature import ANYTHING, signature_of
 from mutabot.model.units import convert
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.adapter import Invocation
-from mutabot.runtime.observation.instances import Instances
-from mutabot.runtime.targets.target import Handler, resolve
+from mutabot.runtime.targets.target import NotFoundError, resolve
+
+#: objects per class and test that are read
+MOST = 20
+#: modules that run others
+_IMPORTERS = ("importlib._bootstrap", "importlib._bootstrap_external", "_pytest.assertion.rewrite")
 
 
-@dataclass(slots=True)
+class Instances:
+    """The objects of certain classes, by the classes' names ``module:qualified.name``.
+
+    Attributes:
+        is_watching: whether there is a class to watch.
+    """
+
+    def __init__(self) -> None:
+        self.is_watching = False
+        self._classes: dict[type, str] = {}
+        self._names: set[str] = set()
+        self._known: dict[type, tuple[str, ...]] = {}
+        self._used: dict[str, dict[int, Callable[[], Any]]] = {}
+        # by whether they belong to one test, rather than to all
+        self._made: dict[bool, dict[str, dict[int, weakref.ref[Any]]]] = {False: {}, True: {}}
+        self._fixtures: Callable[[], Iterable[Any]] | None = None
+
+    def watch(self, names: Iterable[str]) -> None:
+        """Note the objects of each of these that turns out to be a class, from now on."""
+        for name in names:
+            if name and name not in self._names:
+                self.is_watching = True
+                self._names.add(name)
+                self._watch(name)
+
+    def _watch(self, name: str) -> None:
+        module_name, _, qualname = name.partition(":")
+
+        def imported(module: ModuleType) -> None:
+            with contextlib.suppress(NotFoundError, TypeError):  # the inspection of the vocabulary tells
+                owner, last, _ = resolve(module, qualname)
+                found = getattr(owner, last)
+                if isinstance(found, type) and found not in self._classes:
+                    self._classes[found] = name
+                    self._known.clear()
+                    _note_made(found, self._note_made)
+                    for value in list(vars(module).values()):  # made while the module was imported
+                        if isinstance(value, found):
+                            self._note(value, is_of_test=False)
+
+        wrapt.register_post_import_hook(imported, module_name)
+
+    def start(self, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
+        """A new test begins: nothing has been used in it.
+
+        ``fixtures`` tells what objects its fixtures hold. None in a process below the tests, which goes on
+        with what it has made.
+        """
+        self._used.clear()
+        self._fixtures = fixtures
+        if fixtures is not None:
+            self._made[True].clear()
+
+    def let_go(self) -> None:
+        """The running test is over: what it used is kept no longer."""
+        self._used.clear()
+
+    def used(self, instance: Any) -> None:
+        """An object is ``self`` of an intercepted call."""
+        for name in self._names_of(type(instance)):
+            used = self._used.setdefault(name, {})
+            if id(instance) not in used and len(used) < MOST:
+                used[id(instance)] = _held(instance)
+
+    def of(self, name: str) -> list[Any]:
+        """The objects of this class that a probe is read from, as they are now."""
+        return _alive(self._used.get(name, {})) or self._made_last(name, True) or self._held_by_fixtures(name)
+
+    def _made_last(self, name: str, is_of_test: bool) -> list[Any]:
+        return _alive(self._made[is_of_test].get(name, {}))[-1:]
+
+    def _held_by_fixtures(self, name: str) -> list[Any]:
+        given = self._fixtures() if self._fixtures is not None else ()
+        held = [one for one in given if name in self._names_of(type(one))]
+        return held[-1:] or self._made_last(name, False)
+
+    def _names_of(self, kind: type) -> tuple[str, ...]:
+        names = self._known.get(kind)
+        if names is None:
+            names = tuple(name for base, name in self._classes.items() if issubclass(kind, base))
+            self._known[kind] = names
+        return names
+
+    def _note_made(self, instance: Any) -> None:
+        self._note(instance, is_of_test=self._fixtures is not None and not _is_importing())
+
+    def _note(self, instance: Any, *, is_of_test: bool) -> None:
+        for name in self._names_of(type(instance)):
+            made = self._made[is_of_test].setdefault(name, {})
+            key = id(instance)
+            with contextlib.suppress(TypeError):  # of a class without weak references
+                made.pop(key, None)
+                made[key] = weakref.ref(instance, partial(_forget, made, key))
+
+
+def _alive(holds: dict[int, Any]) -> list[Any]:
+    return [found for found in (hold() for hold in holds.values()) if found is not None]
+
+
+def _is_importing() -> bool:
+    """Whether a module is being imported: what it makes then is there for all tests that follow."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None:
+        if frame.f_code.co_name == "<module>" and frame.f_back.f_globals.get("__name__") in _IMPORTERS:
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _forget(made: dict[int, weakref.ref[Any]], key: int, gone: weakref.ref[Any]) -> None:
+    if made.get(key) is gone:
+        del made[key]
+
+
+def _held(instance: Any) -> Callable[[], Any]:
+    """Keeps an object that the program may let go before its test ends, unless it would miss that."""
+    if hasattr(type(instance), "__del__"):
+        try:
+            return weakref.ref(instance)
+        except TypeError:
+            return lambda: None
+    return lambda: instance
+
+
+def _note_made(owner: type, note: Callable[[Any], None]) -> None:
+    """Let ``note`` be told every object of a class when it has been made."""
+
+    def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any) -> Any:
+        __tracebackhide__ = True
+        result = wrapped(*args, **kwargs)
+        note(instance)
+        return result
+
+    with contextlib.suppress(AttributeError, TypeError):  # a type written in C
+        original = vars(owner).get("__init__") or _inherited(owner)
+        setattr(owner, "__init__", wrapt.FunctionWrapper(original, handle))  # noqa: B010  # mypy: unsound
+
+
+def _inherited(owner: Any) -> Callable[..., None]:
+    """What a class does that has no ``__init__`` of its own: what comes next for the object at hand."""
+
+    def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807
+        __tracebackhide__ = True
+        kind: Any = type(self)
+        following = super(owner, self).__init__
+        if getattr(following, "__objclass__", None) is not object:
+            following(*args, **kwargs)
+        elif (args or kwargs) and kind.__new__ is object.__new__:
+            raise TypeError(f"{kind.__name__}() takes no arguments")
+
+    return __init__
+
+
 class ClockReader:
     """Tells a meter about the calls of the clock's tick.
 
-    Attributes:
+    Args:
         clock: what the vocabulary says.
         meter: the meter of the running test; None between tests.
         on_problem: told why a call gives no time: (key, text).
     """
 
-    clock: Clock
-    meter: Callable[[], Meter | None]
-    on_problem: Callable[[str, str], None]
-    _path: Path = field(init=False)
-    _step: float | None = field(init=False)
-
-    def __post_init__(self) -> None:
-        clock = self.clock
+    def __init__(
+        self, clock: Clock, meter: Callable[[], Meter | None], on_problem: Callable[[str, str], None]
+    ) -> None:
+        self._clock, self._meter, self._on_problem = clock, meter, on_problem
         self._path = Path.parse(clock.time, rooted=clock.rooted)
         self._step = None if clock.step is None else convert(clock.step, clock.unit, "s")
+        self._is_direct = not clock.time and self._step is None and clock.unit == "s"
 
-    def handler(self) -> Handler:
-        """What stands around the tick."""
-        is_direct = not self.clock.time and self._step is None and self.clock.unit == "s"
-
-        def handle(
-            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
-        ) -> Any:
-            __tracebackhide__ = True
-            result = wrapped(*args, **kwargs)
-            if is_direct and type(result) is float and isfinite(result):  # the way of most simulators
-                meter = self.meter()
-                if meter is not None:
-                    meter.tick(result)
-                return result
-            if isinstance(result, CoroutineType):  # nothing has happened yet
-                return self._awaited(result, wrapped, instance, args, kwargs)
+    def handle(self, wrapped: Callable[..., Any], instance: Any, args: Any, kwargs: Any) -> Any:
+        """Stand around the tick."""
+        __tracebackhide__ = True
+        result = wrapped(*args, **kwargs)
+        if self._is_direct and type(result) is float and isfinite(result):  # the way of most simulators
+            meter = self._meter()
+            if meter is not None:
+                meter.tick(result)
+        elif isinstance(result, CoroutineType):  # nothing has happened yet
+            return self._awaited(result, wrapped, instance, args, kwargs)
+        else:
             self._told(result, wrapped, instance, args, kwargs)
-            return result
-
-        return handle
+        return result
 
     async def _awaited(self, result: Any, *call: Any) -> Any:
         __tracebackhide__ = True
@@ -72,14 +230,12 @@ class ClockReader:
 
     def _told(self, result: Any, *call: Any) -> None:
         __tracebackhide__ = True
-        meter = self.meter()
+        meter = self._meter()
         if meter is None:
             return
         if self._step is not None:
             meter.advance(self._step)
-            return
-        time = self._time(result, *call)
-        if time is not None:
+        elif (time := self._time(result, *call)) is not None:
             meter.tick(time)
 
     def _time(self, result: Any, *call: Any) -> float | None:
@@ -94,10 +250,12 @@ class ClockReader:
         except (TypeError, ValueError):
             number = float("nan")
         if not isfinite(number):
-            where = f"the path {self.clock.time!r}" if self.clock.time else f"what {self.clock.tick} returns"
+            where = (
+                f"the path {self._clock.time!r}" if self._clock.time else f"what {self._clock.tick} returns"
+            )
             self._wrong(f"{where} gives {reprlib.repr(value)}, which is no number")
             return None
-        return convert(number, self.clock.unit, "s")
+        return convert(number, self._clock.unit, "s")
 
     def _start(self, *call: Any) -> Any:
         """The object or argument at which the path begins. Raises PathError if the call has none."""
@@ -108,11 +266,11 @@ class ClockReader:
         if start is None and root not in known:
             of_call = f"has no argument {root!r}; it has {', '.join(known)}"
             why = "is no method, so it has no self" if root == "self" else of_call
-            raise PathError(f"{self.clock.tick} {why}", step=root, known=known)
+            raise PathError(f"{self._clock.tick} {why}", step=root, known=known)
         return start
 
     def _wrong(self, text: str) -> None:
-        self.on_problem(
+        self._on_problem(
             "time", f"{text}; name a path that gives the time as a number, or write step = … instead"
         )
 

@@ -17,10 +17,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum
 from functools import cached_property
+from itertools import islice
 from time import perf_counter  # tests may replace those of the module
 from types import FunctionType
 from typing import Any
@@ -32,7 +32,7 @@ from mutabot.evidence.tape import FilmWriter, Tape
 from mutabot.model import Probe
 from mutabot.model.job import Pictures
 from mutabot.model.path import class_name
-from mutabot.runtime.observation.instances import Instances
+from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.targets.target import resolve
 
 #: parts reported per probe; a probe is meant to be a handful of numbers
@@ -164,12 +164,7 @@ def _needs_none(found: Callable[..., Any]) -> bool:
 
 def flatten(value: Any, name: str) -> dict[str, Any]:
     """A nested value as flat parts. Raises UnreadableError for what is no plain data."""
-    parts: dict[str, Any] = {}
-    for key, part in _parts(value, name):
-        parts[key] = part
-        if len(parts) >= LIMIT:
-            break
-    return parts
+    return dict(islice(_parts(value, name), LIMIT))
 
 
 def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
@@ -243,17 +238,13 @@ class Along:
     def after(self, call: int) -> None:
         """A command, the test's ``call``-th call, is over."""
         self._commands += 1
-        if not self.step or self._commands % self.step:
+        is_main = threading.current_thread() is threading.main_thread()
+        if not self.step or self._commands % self.step or not is_main:
             return
-        if threading.current_thread() is not threading.main_thread():
-            return
-        values = self.read().values
-        last = self._last
-        if last is not None and last.keys() == values.keys():
-            changed = {key: value for key, value in values.items() if value != last[key]}
-            self.entries.append((call, changed, False))
-        else:
-            self.entries.append((call, values, True))
+        values, last = self.read().values, self._last or {}
+        is_whole = self._last is None or last.keys() != values.keys()
+        changed = {key: value for key, value in values.items() if is_whole or value != last[key]}
+        self.entries.append((call, changed, is_whole))
         self._last = values
         if len(self.entries) >= self._thins_at:
             self._thins_at += NEXT
@@ -375,11 +366,20 @@ def _digest(data: bytes) -> str:
 
 
 class TestRecording:
-    """The recording of the running test; nothing is recorded where it is not asked for."""
+    """The recording of the running test; nothing is recorded where it is not asked for.
+
+    Args:
+        clock: tells its simulated time, s, as long as no feed does.
+        aside: what feeds read in this context is none of the program's calls.
+        is_simulated: whether it is known that there is such a time.
+    """
 
     __test__ = False
 
-    def __init__(self) -> None:
+    def __init__(
+        self, clock: Callable[[], float | None], aside: Callable[[], Any], is_simulated: bool
+    ) -> None:
+        self._clock, self._aside, self._is_simulated = clock, aside, is_simulated
         self._tape: Tape | None = None
         self._film: FilmWriter | None = None
         self._filmed: str | None = None
@@ -388,29 +388,14 @@ class TestRecording:
         """Film a test that is still to come."""
         self._film, self._filmed = FilmWriter(pictures.file), pictures.test
 
-    def start(
-        self,
-        is_wanted: bool,
-        test: str,
-        clock: Callable[[], float | None],
-        aside: Callable[[], AbstractContextManager[object]],
-        *,
-        is_simulated: bool,
-    ) -> None:
-        """A test begins.
-
-        Args:
-            test: its node id.
-            clock: tells its simulated time, s, as long as no feed does.
-            aside: what feeds read in this context is none of the program's calls.
-            is_simulated: whether it is known that there is such a time.
-        """
+    def start(self, test: str, *, is_wanted: bool) -> None:
+        """A test begins."""
         tapes.stop()
         film = self._film if test == self._filmed else None
         self._tape = tapes.begin(film) if is_wanted else None
         if self._tape is not None:
-            self._tape.aside = aside
-            self._tape.clock, self._tape.is_simulated = clock, is_simulated
+            self._tape.clock, self._tape.aside = self._clock, self._aside
+            self._tape.is_simulated = self._is_simulated
 
     def stop(self) -> None:
         """The test is over; its world may be taken down."""

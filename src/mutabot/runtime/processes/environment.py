@@ -3,6 +3,10 @@
 The environment goes along also where a process is given one of its own. It leads to the start-up module, and
 that reads in ``wake`` what is of interest. All processes below a test know at no cost which test is running.
 The test process notes which processes are started out of sight, how each ended, and by whose signals.
+
+What is done is heard of by audit events: one hook hands each event to those that asked for it, since Python
+calls every hook at every event, and ``sys._getframe`` is one, which notes in the program text ask for
+at each call. A hook cannot be taken back.
 """
 
 from __future__ import annotations
@@ -15,12 +19,31 @@ import struct
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from importlib import import_module
 from itertools import takewhile
 from typing import Any
 
 from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
-from mutabot.runtime.audit import listen
+
+#: told an event's name and its arguments
+Hear = Callable[[str, tuple[Any, ...]], None]
+#: lists: a listener may add another one, which hears the same event
+_listeners: dict[str, list[Hear]] = {}
+#: from the frame of a listener to that of what caused the event
+FRAMES = 2
+
+
+def listen(events: Iterable[str], hear: Hear) -> None:
+    """Let ``hear`` have these events from now on."""
+    if not _listeners:
+        sys.addaudithook(_hear)
+    for event in events:
+        _listeners.setdefault(event, []).append(hear)
+
+
+def _hear(event: str, arguments: tuple[Any, ...]) -> None:
+    for hear in _listeners.get(event, ()):
+        hear(event, arguments)
+
 
 #: the folder of the start-up module
 STARTUP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "startup")
@@ -55,12 +78,8 @@ def completed(environment: Sequence[bytes]) -> list[bytes]:
 
 
 def _patch() -> None:
-    """Where ``subprocess`` is not there yet, it will take the function from the module that it is made of."""
-    module: Any = sys.modules.get("subprocess")
-    name = "_fork_exec" if module is not None else "fork_exec"
-    if module is None:  # where nothing is started it is of no use
-        module = import_module("_posixsubprocess")
-    start = getattr(module, name)
+    module: Any = subprocess
+    start = module._fork_exec
 
     def fork_exec(*arguments: Any) -> Any:
         environment = arguments[_ENVIRONMENT]
@@ -68,7 +87,7 @@ def _patch() -> None:
             arguments = (*arguments[:_ENVIRONMENT], completed(environment), *arguments[_ENVIRONMENT + 1 :])
         return start(*arguments)
 
-    setattr(module, name, fork_exec)
+    module._fork_exec = fork_exec
 
 
 def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str]) -> None:
@@ -82,7 +101,7 @@ def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str
     """
     from mutabot.extensions import packages  # noqa: PLC0415  # of no use to processes below the tests
 
-    own = sorted({*packages(), "wrapt"})
+    own = sorted({*packages(), join.partition(".")[0], "wrapt"})
     lines = [
         f"join {join}",
         *(f"path {place}" for place in _folders_of(own)),
@@ -156,17 +175,8 @@ class Now:
 
 #: programs that end others: with ``timeout`` and the launchers of ROS, which end what they have started
 _KILLERS = {
-    "kill",
-    "pkill",
-    "killall",
-    "skill",
-    "fuser",
-    "timeout",
-    "rosnode",
-    "roslaunch",
-    "rostest",
-    "ros2",
-}
+    "kill", "pkill", "killall", "skill", "fuser", "timeout", "rosnode", "roslaunch", "rostest", "ros2",
+}  # fmt: skip
 #: programs that run a command that they are given
 _RUNNERS = {"sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "nice", "nohup", "setsid", "xargs"}
 _KILLER_IN_TEXT = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(_KILLERS))})(?![\w.-])")
@@ -216,10 +226,7 @@ class ProcessWatch:
         self.codes: dict[int, int] = {}
         self.signalled: set[int] = set()
         self._tell_unseen = tell_unseen
-        self._watch_ends()
         listen(("os.kill", "os.killpg", *STARTS), self._hear)
-
-    def _watch_ends(self) -> None:
         kind: Any = subprocess.Popen
         wait, handle = os.waitpid, kind._handle_exitstatus
 
@@ -244,11 +251,8 @@ class ProcessWatch:
         elif starts_a_killer(event, arguments):
             self.signalled.add(ANYBODY)
         elif event == "subprocess.Popen":
-            self._note_unseen(_words(*arguments[:2]))
-
-    def _note_unseen(self, words: Sequence[str]) -> None:
-        if words and os.path.basename(words[0]).startswith("python"):
-            options = takewhile(lambda word: word.startswith("-"), words[1:])
-            apart = next((option for option in options if option in _APART), None)
-            if apart is not None:
-                self._tell_unseen(" ".join(words[:3]), f"the option {apart} keeps it apart")
+            words = _words(*arguments[:2])
+            if words and os.path.basename(words[0]).startswith("python"):
+                options = takewhile(lambda word: word.startswith("-"), words[1:])
+                for apart in [option for option in options if option in _APART][:1]:
+                    self._tell_unseen(" ".join(words[:3]), f"the option {apart} keeps it apart")

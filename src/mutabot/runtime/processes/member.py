@@ -12,53 +12,28 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from mutabot.model import events
 from mutabot.model.event_file import ANYBODY
-from mutabot.model.events import (
-    Acted,
-    Began,
-    Called,
-    Did,
-    Event,
-    Found,
-    NotInstrumented,
-    PlacesReached,
-    Problem,
-    Raised,
-    Remark,
-    SessionEnd,
-    Signalled,
-    SiteSeen,
-    TextsSeen,
-    Used,
-)
 from mutabot.model.job import Budget, Job, read_job
 from mutabot.runtime import FOLDER as OURS
-from mutabot.runtime.audit import listen
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves, together
-from mutabot.runtime.processes.environment import STARTS, Now, carry, starts_a_killer
+from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves
+from mutabot.runtime.processes.environment import STARTS, Now, carry, listen, starts_a_killer
+from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
-from mutabot.runtime.program_text.session_text import SessionText
 
 if TYPE_CHECKING:
-    from mutabot.model import Call
-    from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import EventWriter
     from mutabot.runtime.session import Session  # of no use to a job that has nothing to do with calls
 
 
-def is_of_text_alone(job: Job) -> bool:
-    """Whether a job has nothing to do with calls, so that what sees them need not be loaded."""
-    return not (job.vocabulary.operations or job.vocabulary.clock or job.faults)
-
-
 class TextOnly:
-    """What ``runtime.session.Session`` is of a job that has nothing to do with calls.
+    """What ``runtime.session.Session`` is of a job without calls, of which it loads nothing.
 
     Args:
         job: what to do.
@@ -68,11 +43,10 @@ class TextOnly:
         text: the program text, if it is instrumented.
         test: node id of the running test.
         meter: what the running test has used.
-        commands, sites, is_fork: of calls there are none.
+        commands, is_fork: of calls there are none.
     """
 
     commands = 0
-    sites: tuple[SiteSeen, ...] = ()
     is_fork = False
 
     def __init__(self, job: Job, pipe: EventWriter) -> None:
@@ -98,12 +72,16 @@ class TextOnly:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
-        return together([self.text.evidence] if self.text is not None and self.text.is_mutant else [])
+        return self.text.evidence if self.text is not None and self.text.is_mutant else Evidence()
 
     def _acted(self) -> None:
-        self.pipe.send(Acted(self.test))
+        self.pipe.send(events.Acted(self.test))
 
 
+#: what a session tells that is written down as it is
+_TOLD = (
+    events.Acted, events.NotInstrumented, events.Problem, events.Remark, events.SiteSeen, events.TextsSeen,
+)  # fmt: skip
 #: the member that this process is; None in all others
 _member: Member | None = None
 
@@ -125,7 +103,7 @@ def is_member() -> bool:
 def note_node(name: str) -> None:
     """A node of this resolved name was made in this process."""
     if _member is not None:
-        _member.file.send(Found(nodes=(name,)))
+        _member.file.send(events.Found(nodes=(name,)))
 
 
 class Member:
@@ -145,7 +123,7 @@ class Member:
         name = f"{os.getpid()}-{int(now * 1e6)}"
         self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
         command = tuple(getattr(sys, "orig_argv", sys.argv))
-        self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
+        self.file.send(events.Began(os.getpid(), os.getpgrp(), command, now, self._test))
         self.session = session or _session(job, self)
         self._targets: set[str] = set()
         self._told = Evidence()
@@ -165,9 +143,9 @@ class Member:
     def go_on(self) -> None:
         """In a process that was forked: go on with the session that it has, and tell of it."""
         session = self.session
-        for site in session.sites:
+        for site in () if isinstance(session, TextOnly) else session.recorder.sites:
             self.file.send(site)
-        self._told = _copy_of(session.evidence)
+        self._told = session.evidence.copy()
         self._attend()
         session.pipe, session.is_fork = self, False  # it tells its own sites, also below a fork
         if session.text is not None:
@@ -186,10 +164,7 @@ class Member:
         """Write down what the session sees of calls."""
 
         def hit(site: int, written: Any, read: Any, answer: Any) -> None:
-            self.file.send(Called(site, written, read, answer, time.monotonic()))
-
-        def is_over(call: Call, read: Mapping[str, Value]) -> None:
-            self.poll()
+            self.file.send(events.Called(site, written, read, answer, time.monotonic()))
 
         def heard(hear: Callable[[str, Any], None], name: str, message: Any) -> None:
             before = session.evidence.said
@@ -197,7 +172,8 @@ class Member:
             if session.evidence.said != before:
                 self.poll()
 
-        session.recorder.on_hit, session.passing.on_end, session.passing.turn = hit, is_over, self.turn
+        session.recorder.on_hit, session.passing.turn = hit, self.turn
+        session.passing.on_end = lambda call, read: self.poll()
         session.on_noted = self.file.send
         messages = session.messages
         if messages is not None and messages.on_heard is not None:
@@ -214,26 +190,22 @@ class Member:
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
 
-    def send(self, line: Event) -> None:
+    def send(self, line: events.Event) -> None:
         """What the session tells: written down, as far as it is news."""
         match line:
-            case SiteSeen() | NotInstrumented() | Problem() | Remark() | TextsSeen():
-                self.file.send(line)
-            case Acted(in_call=None):
+            case events.Acted(in_call=None):
                 self.poll()
-            case Acted():
-                self.file.send(line)
-            case PlacesReached():
+            case events.PlacesReached():
                 self._reached(line.places)
-            case _:  # the test process tells of its tests itself
-                pass
+            case _ if isinstance(line, _TOLD):  # the test process tells of its tests itself
+                self.file.send(line)
 
     def poll(self) -> None:
         """Tell what the mutant did since the last time, and what was found."""
         session = self.session
         now, before = session.evidence, self._told
         if now.hits != before.hits or now != before:
-            self._told = _copy_of(now)
+            self._told = now.copy()
             self.file.send(self._did(before, now))
         if not isinstance(session, TextOnly):
             self._tell_found(session)
@@ -251,12 +223,12 @@ class Member:
         for operation in session.job.vocabulary.operations:
             if operation.target in targets:
                 session.inspection.check_target(operation, session.targets)
-        self.file.send(Found(targets=tuple(sorted(targets))))
+        self.file.send(events.Found(targets=tuple(sorted(targets))))
 
-    def _did(self, before: Evidence, now: Evidence) -> Did:
+    def _did(self, before: Evidence, now: Evidence) -> events.Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
         is_refused = now.refusals != before.refusals or now.said != before.said
-        return Did(
+        return events.Did(
             self.session.test,
             hits=now.hits - before.hits,
             acted=now.acted - before.acted,
@@ -270,7 +242,9 @@ class Member:
     def _use(self) -> None:
         meter = self.session.meter
         if meter is not None:
-            self.file.send(Used(meter.operations, self.session.commands, meter.simulated, meter.exceeded))
+            self.file.send(
+                events.Used(meter.operations, self.session.commands, meter.simulated, meter.exceeded)
+            )
 
     def _watch_text(self) -> None:
         """Places of the program text are told when they are reached first: the process may die any time."""
@@ -287,7 +261,7 @@ class Member:
         new = set(places) - self._places
         if new:
             self._places |= new
-            self.file.send(PlacesReached(self.session.test, tuple(sorted(new))))
+            self.file.send(events.PlacesReached(self.session.test, tuple(sorted(new))))
 
     def end(self) -> None:
         """The process ends: tell what is left to tell."""
@@ -299,8 +273,8 @@ class Member:
         self._use()
         if self.session.text is not None:
             self.session.text.finish()
-        self.file.send(Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
-        self.file.send(SessionEnd())
+        self.file.send(events.Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
+        self.file.send(events.SessionEnd())
 
     def _modules_of_vocabulary(self) -> set[str]:
         vocabulary = self.session.job.vocabulary
@@ -332,11 +306,11 @@ class Member:
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in ("os.kill", "os.killpg") and _member is self:
-            self.file.send(Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
+            self.file.send(events.Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
         elif event == "os.exec" and _member is self:
             self.end()
         if _member is self and starts_a_killer(event, arguments):
-            self.file.send(Signalled(ANYBODY))
+            self.file.send(events.Signalled(ANYBODY))
 
     def _raised(self, error: BaseException, *, in_thread: bool) -> None:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
@@ -347,7 +321,7 @@ class Member:
         if isinstance(first, BudgetExceeded):
             return
         self.file.send(
-            Raised(
+            events.Raised(
                 f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
                 is_refusal=bool(culprits) and is_due_to(error, culprits),
                 failure=failure_in(error, self.session.job.vocabulary.failures),
@@ -361,7 +335,7 @@ def _session(job: Job, pipe: Member) -> Session | TextOnly:
     if text is not None and not (text.active or text.record):
         text = None  # those below a fork parent are the original, and fork for nobody
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
-    if is_of_text_alone(job):
+    if not (job.vocabulary.operations or job.vocabulary.clock or job.faults):
         return TextOnly(job, pipe)
     from mutabot import extensions  # noqa: PLC0415  # see above
     from mutabot.runtime.interception.trace import Locator  # noqa: PLC0415
@@ -369,10 +343,6 @@ def _session(job: Job, pipe: Member) -> Session | TextOnly:
 
     extensions.use(job.extensions)
     return Session(job, pipe, Locator(job.root, job.program, job.oracle))
-
-
-def _copy_of(evidence: Evidence) -> Evidence:
-    return replace(evidence, away=dict(evidence.away))
 
 
 _watched: tuple[str, Session | TextOnly] | None = None
@@ -387,12 +357,9 @@ def watch_forks(folder: str, session: Session | TextOnly) -> None:
 
 
 def _after_fork() -> None:
-    if _watched is not None and not sys._getframe(1).f_code.co_filename.startswith(OURS):
-        _forked(*_watched)
-
-
-def _forked(folder: str, session: Session | TextOnly) -> None:
     """In a process that a program has forked: it is a member of its own from now on."""
     global _member  # noqa: PLW0603  # see above
-    _member = Member(folder, session.job, session)
-    _member.go_on()
+    if _watched is not None and not sys._getframe(1).f_code.co_filename.startswith(OURS):
+        folder, session = _watched
+        _member = Member(folder, session.job, session)
+        _member.go_on()

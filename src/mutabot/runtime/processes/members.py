@@ -7,19 +7,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from mutabot.extensions import brought
+from mutabot.model import events
 from mutabot.model.event_file import FOLDER
-from mutabot.model.events import (
-    Began,
-    Event,
-    Found,
-    NotInstrumented,
-    PlacesReached,
-    Problem,
-    Remark,
-    Signalled,
-    TestEnd,
-    TextsSeen,
-)
 from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
 from mutabot.model.job import Job
 from mutabot.runtime.processes.environment import Now, ProcessWatch, carry, write_wake
@@ -39,6 +28,7 @@ class Members:
 
     Attributes:
         folder: where the members write.
+        children: what they tell.
     """
 
     def __init__(self, home: str, session: Session, *, has_acted: bool = False) -> None:
@@ -47,9 +37,9 @@ class Members:
         _write_wake(self.folder, session.job)
         self._session = session
         self._now = Now(self.folder, is_host=True)
-        self._children = Children(home, session.job.key)
+        self.children = Children(home, session.job.key)
         self._present: list[ChildRecord] = []
-        self._texts: list[TextsSeen] = []
+        self._texts: list[events.TextsSeen] = []
         self._unseen: set[str] = set()
         self._acted = has_acted
         carry(self.folder)
@@ -58,33 +48,29 @@ class Members:
     def start_test(self, test: str) -> None:
         """A test begins: some may be there from before."""
         self._now.begin(test)
-        self._present = [one for one in self._children.records.values() if is_alive(one.began.pid)]
+        self._present = [one for one in self.children.records.values() if is_alive(one.began.pid)]
 
-    def merged(self, end: TestEnd) -> TestEnd:
+    def merged(self, end: events.TestEnd) -> events.TestEnd:
         """The end of the running test with what members did in it; an error if that cannot be known."""
         self._take_all()
         here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
-        known = self._known()
+        job, watch, index_of = self._session.job, self._watch, self._session.recorder.index_of
+        known = Known(job, index_of, self._acted, watch.codes, watch.signalled)
         end = self._with_recorded(fold(end, here, known), here, known)
         self._acted = self._acted or end.acted > 0
         if places := {place for one in here for place in one.places}:
-            self._session.pipe.send(PlacesReached(end.test, tuple(sorted(places)), elsewhere=True))
+            self._session.pipe.send(events.PlacesReached(end.test, tuple(sorted(places)), elsewhere=True))
         end = replace(end, processes=tuple((one.began.pid, one.name) for one in here))
         for one in here:
             one.forget()
-        return end if self.doubt is None else replace(end, failure=end.failure or self.doubt)
+        return replace(end, failure=end.failure or self.children.doubt)
 
     def have_begun(self) -> bool:
         """Whether there has been any until now."""
         self._take_all()
-        return bool(self._children.records)
+        return bool(self.children.records)
 
-    @property
-    def doubt(self) -> str | None:
-        """Why what members told cannot be relied on, or None."""
-        return self._children.doubt
-
-    def texts_seen(self) -> list[TextsSeen]:
+    def texts_seen(self) -> list[events.TextsSeen]:
         """What members saw of the program text, over all tests."""
         self._take_all()
         return self._texts
@@ -93,43 +79,28 @@ class Members:
         """Those that were there during the test."""
         present = {id(one) for one in self._present}
         number = self._now.number
-        for one in self._children.records.values():
+        for one in self.children.records.values():
             if id(one) in present or one.began.test == number or one.called or one.did or one.places:
                 yield one
 
-    def _known(self) -> Known:
-        session = self._session
-        return Known(
-            session.job,
-            session.recorder.index_of,
-            self._acted,
-            self._watch.codes,
-            self._watch.signalled,
-        )
-
     def _take_all(self) -> None:
-        for event in self._children.read():
-            self._take(event)
+        """Take what is new, and what of it concerns the session and no test alone."""
+        for event in self.children.read():
+            match event:
+                case events.Began(unable=why) if why is not None:
+                    self._say_unseen(" ".join(event.command[:3]), why)
+                case events.TextsSeen():
+                    self._texts.append(event)
+                case events.Signalled():
+                    self._watch.signalled.add(event.pid)
+                case events.Found():
+                    for targets in self._session.targets:
+                        targets.found_elsewhere(event.targets)
+                    self._session.inspection.elsewhere.update(event.modules)
+                case events.NotInstrumented() | events.Problem() | events.Remark():
+                    self._session.pipe.send(event)
 
-    def _take(self, event: Event) -> None:
-        """What concerns the session, and no test alone."""
-        match event:
-            case Began(unable=why) if why is not None:
-                self._say_unseen(" ".join(event.command[:3]), why)
-            case TextsSeen():
-                self._texts.append(event)
-            case Signalled():
-                self._watch.signalled.add(event.pid)
-            case Found():
-                for targets in self._session.targets:
-                    targets.found_elsewhere(event.targets)
-                self._session.inspection.elsewhere.update(event.modules)
-            case NotInstrumented() | Problem() | Remark():
-                self._session.pipe.send(event)
-            case _:
-                pass
-
-    def _with_recorded(self, end: TestEnd, here: list[ChildRecord], known: Known) -> TestEnd:
+    def _with_recorded(self, end: events.TestEnd, here: list[ChildRecord], known: Known) -> events.TestEnd:
         """The calls of all processes by their times, in what is recorded."""
         recorder, recording = self._session.recorder, self._session.recording
         if end.recording is None:
@@ -145,7 +116,7 @@ class Members:
             return
         self._unseen.add(name)
         text = f"nothing in this process is seen or mutated: {why}"
-        self._session.pipe.send(Remark("processes", name, text))
+        self._session.pipe.send(events.Remark("processes", name, text))
 
 
 def _write_wake(folder: str, job: Job) -> None:

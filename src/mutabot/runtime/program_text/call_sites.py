@@ -27,30 +27,19 @@ from typing import Any
 import wrapt
 
 from mutabot.languages.python import extent_of
-from mutabot.model import Role, Span
+from mutabot.model import Role
 from mutabot.model.mutant import Extent
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.instrument import declare_global, is_ours
 from mutabot.runtime.program_text.returns import Function, is_translated
+from mutabot.runtime.targets.target import Place
 
 _PLACE = "handed_to"
-
-
-def note_parts(node: ast.AST) -> None:
-    """Note of the parts of a node, before these are visited, where they are handed over."""
-    for part in _parts(node):
-        setattr(part, _PLACE, _place(node))
 
 
 def is_handed_on(node: ast.expr) -> bool:
     """Whether the value of an expression is handed on."""
     return isinstance(getattr(node, "ctx", None), ast.Load) and hasattr(node, _PLACE)
-
-
-def place_of(node: ast.expr) -> ast.expr:
-    """The call that it is given to; the expression itself if it is given to none."""
-    place: ast.expr | None = getattr(node, _PLACE, None)
-    return node if place is None else place
 
 
 def _place(node: ast.AST) -> ast.expr | None:
@@ -85,7 +74,7 @@ def _parts(node: ast.AST) -> Iterator[ast.expr]:
 
 #: the built-in name of the list
 CALLS = "__mutabot_calls__"
-_WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
+WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 #: of all sites of this process: text that was loaded before is asked as before
 _entries: list[Any] = []
 #: the most arguments that Python gives a method without binding it first
@@ -121,7 +110,7 @@ class CallSite:
     is_awaited: bool = False
     is_given: bool = False
     left_alone: dict[tuple[type, Any], Guards] = field(default_factory=dict)
-    place: tuple[Span, Role] | None = None
+    place: Place | None = None
 
 
 #: decides what is called at a site: told the site, what stands there, the object that it was read from
@@ -134,8 +123,11 @@ NOTHING = object()
 _ASK: Guards = (({}, "", NOTHING),)
 
 
-class CallSites:
-    """Puts the questions into files, and answers them. See ``loading.Step``.
+@dataclass(slots=True, eq=False)
+class CallSites(loading.SourceStep):
+    """Puts the questions into files, and answers them.
+
+    Of a file that is compiled without, calls are seen by what they call.
 
     Args:
         names: last names that are asked about: those of the operations.
@@ -149,54 +141,41 @@ class CallSites:
         loaded: files that were given questions.
     """
 
-    def __init__(
-        self,
-        names: Container[str],
-        role: Callable[[str], Role | None],
-        stands: Decide,
-        sees_itself: Collection[Any] = (),
-        hands: Decide | None = None,
-        *,
-        are_read: bool = False,
-    ) -> None:
-        self._names = names
-        self._role = role
-        self._stands = stands
-        self._sees_itself = sees_itself
-        self._hands = hands
-        self._are_read = are_read
-        self.loaded: list[str] = []
-        self._numbers: dict[tuple[str, Extent, str], int] = {}
+    names: Container[str]
+    role: Callable[[str], Role | None]
+    stands: Decide
+    sees_itself: Collection[Any] = ()
+    hands: Decide | None = None
+    are_read: bool = False
+    loaded: set[str] = field(default_factory=set)
+    _numbers: dict[tuple[str, Extent, str], int] = field(default_factory=dict)
 
     def install(self) -> None:
         """Put questions into all files that are loaded from now on."""
-        if self._names:
+        if self.names:
             setattr(builtins, CALLS, _entries)
             loading.add(self)
 
     def hook_pytest(self) -> None:
         """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
-        if self._names:
+        if self.names:
             loading.hook_pytest(self.wants, self.change)
 
     def wants(self, path: str) -> bool:
         """Whether a file may have sites."""
-        return self._role(path) is not None
+        return self.role(path) is not None
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Put questions into the tree of a file, which pytest may have rewritten."""
-        role = self._role(path)
+        role = self.role(path)
         assert role is not None
-        are_handed = self._hands is not None and role is Role.PROGRAM and not self._are_read
+        are_handed = self.hands is not None and role is Role.PROGRAM and not self.are_read
         number = partial(self._number, path, role)
-        writer = _Writer(self._names, number, are_handed=are_handed, are_read=self._are_read)
+        writer = _Writer(self.names, number, are_handed, self.are_read)
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
-            self.loaded.append(path)
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """It is compiled without: its calls are seen by what they call."""
+            self.loaded.add(path)
 
     def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
         key = (path, extent_of(node), form)
@@ -204,24 +183,24 @@ class CallSites:
         if number is None:
             number = self._numbers[key] = len(_entries)
             is_handed = form.startswith("handed")
-            place = place_of(node) if is_handed else node
-            is_awaited = bool(getattr(node, "is_awaited", False))
-            site = CallSite(path, role, name, extent_of(place), is_handed, is_awaited, place is not node)
+            given_to = getattr(node, _PLACE, None) if is_handed else None
+            is_awaited, extent = bool(getattr(node, "is_awaited", False)), extent_of(given_to or node)
+            site = CallSite(path, role, name, extent, is_handed, is_awaited, given_to is not None)
             _entries.append(getattr(self, f"_{form}")(site))
         return number
 
     def _decide(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        decide = self._hands if site.is_handed else self._stands
+        decide = self.hands if site.is_handed else self.stands
         return found if decide is None else decide(site, found, receiver, frame)
 
     def _attribute(self, site: CallSite) -> Callable[[Any], Any]:
-        name, left_alone, seen, frame_of = site.name, site.left_alone, self._sees_itself, sys._getframe
+        name, left_alone, seen, frame_of = site.name, site.left_alone, self.sees_itself, sys._getframe
 
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
             found = getattr(receiver, name)
             kind = type(found)
-            if kind in _WRAPPERS:
+            if kind in WRAPPERS:
                 if found._self_wrapper in seen:
                     return found
             elif left_alone:  # this is run at each call of such a name
@@ -236,10 +215,10 @@ class CallSites:
         return read
 
     def _name(self, site: CallSite) -> Callable[..., Any]:
-        left_alone, seen, frame_of = site.left_alone, self._sees_itself, sys._getframe
+        left_alone, seen, frame_of = site.left_alone, self.sees_itself, sys._getframe
 
         def read(found: Any, receiver: Any = NOTHING) -> Any:
-            if type(found) in _WRAPPERS and not site.is_handed and found._self_wrapper in seen:
+            if type(found) in WRAPPERS and not site.is_handed and found._self_wrapper in seen:
                 return found
             if left_alone and type(found) is FunctionType:
                 guards = left_alone.get((type(receiver), found), _ASK)
@@ -272,7 +251,7 @@ class CallSites:
     ) -> Any:  # fmt: skip
         __tracebackhide__ = True
         found = getattr(receiver, name, *default)
-        if name not in self._names:
+        if name not in self.names:
             return found
         return self._decide(sites.setdefault(name, replace(site, name=name)), found, receiver, frame)
 
@@ -281,6 +260,7 @@ class CallSites:
 _NOT_RUN = ("annotation", "returns", "pattern", "type_params")
 
 
+@dataclass(eq=False)
 class _Writer(ast.NodeTransformer):
     """Writes the questions.
 
@@ -288,26 +268,19 @@ class _Writer(ast.NodeTransformer):
     its messages show the variable.
     """
 
-    def __init__(
-        self,
-        names: Container[str],
-        number: Callable[[ast.expr, str, str], int],
-        *,
-        are_handed: bool,
-        are_read: bool,
-    ) -> None:
-        self._names = names
-        self._are_read = are_read
-        self._number = number
-        self._are_handed = are_handed
-        self._read: dict[str, ast.expr] = {}
-        self.written = False
+    names: Container[str]
+    number: Callable[[ast.expr, str, str], int]
+    are_handed: bool
+    are_read: bool
+    written: bool = False
+    _read: dict[str, ast.expr] = field(default_factory=dict)
 
     def visit(self, node: ast.AST) -> Any:
         if isinstance(node, Function) and is_translated(node):
             return node
-        if self._are_handed:
-            note_parts(node)
+        if self.are_handed:
+            for part in _parts(node):  # before these are visited
+                setattr(part, _PLACE, _place(node))
         hidden = {name: vars(node).pop(name) for name in _NOT_RUN if name in vars(node)}
         try:
             return super().visit(node)
@@ -332,30 +305,30 @@ class _Writer(ast.NodeTransformer):
         read = self._read.get(function.id, function) if isinstance(function, ast.Name) else function
         if is_ours(read):
             return node
-        if isinstance(read, ast.Attribute) and read.attr in self._names:
+        if isinstance(read, ast.Attribute) and read.attr in self.names:
             if read is function:
                 _as_compiled(node, read)
-                node.func = self._question(self._number(node, read.attr, "attribute"), function, [read.value])
+                node.func = self._question(self.number(node, read.attr, "attribute"), function, [read.value])
             else:
                 given = [function, copy.deepcopy(read.value)]
-                node.func = self._question(self._number(node, read.attr, "name"), function, given)
-        elif isinstance(read, ast.Name) and read.id == "getattr" and self._are_handed:
-            node.func = self._question(self._number(node, "", "handed_by_name"), function, [function])
-        elif isinstance(read, ast.Name) and read.id in self._names:
-            node.func = self._question(self._number(node, read.id, "name"), function, [function])
+                node.func = self._question(self.number(node, read.attr, "name"), function, given)
+        elif isinstance(read, ast.Name) and read.id == "getattr" and self.are_handed:
+            node.func = self._question(self.number(node, "", "handed_by_name"), function, [function])
+        elif isinstance(read, ast.Name) and read.id in self.names:
+            node.func = self._question(self.number(node, read.id, "name"), function, [function])
         return node
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
         self.generic_visit(node)
-        is_asked = is_handed_on(node) or (self._are_read and isinstance(node.ctx, ast.Load))
-        if is_asked and node.attr in self._names and not is_ours(node):
-            number = self._number(node, node.attr, "handed_attribute")
+        is_asked = is_handed_on(node) or (self.are_read and isinstance(node.ctx, ast.Load))
+        if is_asked and node.attr in self.names and not is_ours(node):
+            number = self.number(node, node.attr, "handed_attribute")
             return self._question(number, node, [node.value])
         return node
 
     def visit_Name(self, node: ast.Name) -> ast.AST:  # as above
-        if is_handed_on(node) and node.id in self._names:
-            return self._question(self._number(node, node.id, "handed_name"), node, [node])
+        if is_handed_on(node) and node.id in self.names:
+            return self._question(self.number(node, node.id, "handed_name"), node, [node])
         return node
 
     def _question(self, number: int, function: ast.expr, given: list[ast.expr]) -> ast.expr:
@@ -373,15 +346,12 @@ def _as_compiled(node: ast.Call, function: ast.Attribute) -> None:
     In a chain over several lines that is from the attribute's name on; for the call only where its method is
     not bound first.
     """
-    if (
-        function.end_lineno is None
-        or function.end_col_offset is None
-        or function.lineno == function.end_lineno
-    ):
+    last, end = function.end_lineno, function.end_col_offset
+    if last is None or end is None or function.lineno == last:
         return
-    start = max(function.end_col_offset - len(function.attr), 0)
+    start = max(end - len(function.attr), 0)
     is_method = len(node.args) + len(node.keywords) + bool(node.keywords) < _MOST_OF_METHOD
     is_plain = not any(isinstance(one, ast.Starred) for one in node.args)
     if is_method and is_plain and all(one.arg is not None for one in node.keywords):
-        node.lineno, node.col_offset = function.end_lineno, start
-    function.lineno, function.col_offset = function.end_lineno, start
+        node.lineno, node.col_offset = last, start
+    function.lineno, function.col_offset = last, start

@@ -4,20 +4,40 @@ Works on ``ast`` nodes and never on text, so lines, columns and names stay the u
 around anything, so ``await``, ``yield``, ``:=``, ``super()``, ``locals()``, class bodies and comprehensions
 keep their meaning. The original is in the code once; alternatives hold plain copies of the parts they keep,
 with the positions these have in the text.
+
+``SessionText`` is the text of a session: which alternatives stand in it, what they did, what was seen of it.
 """
 
 from __future__ import annotations
 
 import ast
+import builtins
 import copy
-from collections.abc import Iterable
-from typing import TypeVar
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
-from mutabot.model.mutant import RUNTIME, Alternative, Extent, TextPlace, kept_name
-from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
+from mutabot.model import Alternative, Instrumentation, ProgramText, TextPlace
+from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
+from mutabot.model.job import Job
+from mutabot.model.mutant import RUNTIME, Extent, kept_name
+from mutabot.runtime.event_file import EventWriter, Held
+from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.switches import Alternatives, ForeseenForm, Forms, Sightings
+
+if TYPE_CHECKING:
+    from mutabot.model import Call
+
 
 _Key = tuple[str, Extent]
+#: expressions by the numbers of their places
+_Nodes = dict[int, ast.expr]
 _Node = TypeVar("_Node", bound=ast.AST)
 #: expressions without effects; attributes and items may be readings of a robot
 _PURE = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Tuple)
@@ -29,11 +49,7 @@ class MismatchError(ValueError):
 
 
 def instrumented(
-    tree: ast.Module,
-    places: Iterable[TextPlace],
-    *,
-    record: bool = False,
-    originals: dict[int, ast.expr] | None = None,
+    tree: ast.Module, places: Iterable[TextPlace], *, record: bool = False, originals: _Nodes | None = None
 ) -> ast.Module:
     """The tree with all alternatives of its places in it, or with witnesses; the tree itself is changed.
 
@@ -48,16 +64,8 @@ def instrumented(
     return tree
 
 
-def forms_of(place: TextPlace, original: ast.expr) -> Forms:
-    """The original and the alternatives, for a look ahead; the tree of the original is changed."""
-    others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
-    return Forms(ForeseenForm(original), tuple(map(ForeseenForm, others)))
-
-
 class _Instrumenter(ast.NodeTransformer):
-    def __init__(
-        self, places: Iterable[TextPlace], record: bool, originals: dict[int, ast.expr] | None
-    ) -> None:
+    def __init__(self, places: Iterable[TextPlace], record: bool, originals: _Nodes | None) -> None:
         self._places: dict[_Key, TextPlace] = {(place.node, place.extent): place for place in places}
         self._found: set[_Key] = set()
         self._record = record
@@ -79,10 +87,9 @@ class _Instrumenter(ast.NodeTransformer):
         return self._expression(node, place)
 
     def _place_of(self, node: ast.AST) -> TextPlace | None:
-        if not isinstance(node, ast.expr | ast.stmt) or not isinstance(
-            getattr(node, "ctx", None), ast.Load | None
-        ):
-            return None  # it is not evaluated
+        is_evaluated = isinstance(getattr(node, "ctx", None), ast.Load | None)
+        if not isinstance(node, ast.expr | ast.stmt) or not is_evaluated:
+            return None
         key = (type(node).__name__, extent_of(node))
         place = self._places.get(key)
         if place is not None:
@@ -109,27 +116,28 @@ class _Instrumenter(ast.NodeTransformer):
         return placed(ast.IfExp(_is_chosen(place), tree, node), node)
 
     def _statement(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
+        if self._record and isinstance(node, ast.AugAssign):  # what is added tells the type
+            self.generic_visit(node)
+            node.value = _seen(node.value, place, node.value)
+            return [node]
         if self._record:
-            return self._statement_seen(node, place)
+            self.generic_visit(node)
+            return [placed(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
         others = [_filled(ast.parse(one.template).body[0], place, node) for one in place.alternatives]
         self.generic_visit(node)
         if not others:
             return [node]
         raising = all(one.raises for one in place.alternatives)
-        tells = ast.Call(ast.Attribute(_switch(0), "tell", ast.Load()), [ast.Constant(place.number)], [])
         chain: list[ast.stmt] = [others[-1]]
         for index in reversed(range(len(others) - 1)):
             chain = [placed(ast.If(_is_index(place, index), [others[index]], chain), node)]
         if raising:
             return [placed(ast.If(_is_chosen(place), chain, []), node), node]
-        return [placed(ast.If(_is_chosen(place), [placed(ast.Expr(tells), node), *chain], [node]), node)]
-
-    def _statement_seen(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
-        self.generic_visit(node)
-        if isinstance(node, ast.AugAssign):  # what is added tells the type
-            node.value = _seen(node.value, place, node.value)
-            return [node]
-        return [placed(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
+        return [
+            placed(
+                ast.If(_is_chosen(place), [placed(ast.Expr(_asked(0, "tell")), node), *chain], [node]), node
+            )
+        ]
 
 
 def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
@@ -140,9 +148,8 @@ def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
 
 def _observed(other: ast.expr, place: TextPlace, node: ast.expr) -> ast.expr:
     """Alternatives that say what they became, and how to compute the original where that has no effect."""
-    became = ast.Attribute(_switch(place.number), "became", ast.Load())
     original: list[ast.expr] = [ast.Constant(ast.unparse(node))] if _is_pure(node) else []
-    return placed(ast.Call(became, [other, *original], []), node)
+    return placed(_asked(place.number, "became", other, *original), node)
 
 
 def _is_pure(node: ast.expr) -> bool:
@@ -154,9 +161,12 @@ def _switch(number: int) -> ast.expr:
     return ast.Subscript(ast.Name(RUNTIME, ast.Load()), ast.Constant(number), ast.Load())
 
 
+def _asked(number: int, method: str, *given: ast.expr) -> ast.expr:
+    return ast.Call(ast.Attribute(_switch(number), method, ast.Load()), list(given), [])
+
+
 def _is_chosen(place: TextPlace) -> ast.expr:
-    chosen = ast.Call(ast.Attribute(_switch(place.number), "chosen", ast.Load()), [], [])
-    return ast.BoolOp(ast.And(), [_switch(place.number), chosen])
+    return ast.BoolOp(ast.And(), [_switch(place.number), _asked(place.number, "chosen")])
 
 
 def _is_index(place: TextPlace, index: int) -> ast.expr:
@@ -185,8 +195,7 @@ def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = Tr
         raise MismatchError(f"{place.span.file}: no expression at {min(missing)}")
     filler = _Filler({kept_name(index): parts[extent] for index, extent in enumerate(place.kept)})
     if observed and isinstance(node, ast.expr) and place.extent in parts:
-        was = ast.Attribute(_switch(place.number), "was", ast.Load())
-        whole = placed(ast.Call(was, [parts[place.extent]], []), node)
+        whole = placed(_asked(place.number, "was", parts[place.extent]), node)
         filler.parts[kept_name(place.kept.index(place.extent))] = whole
     result: _Node = filler.visit(_moved(made, node))
     return result
@@ -221,3 +230,185 @@ def declare_global(tree: ast.Module, name: str) -> None:
             position = head_size(node.body)
             near = node.body[min(position, len(node.body) - 1)]
             node.body.insert(position, placed(ast.Global([name]), near))
+
+
+class _ChangedError(MismatchError):
+    """A file is no longer what the plan was made for."""
+
+
+class SessionText:
+    """Compiles program files with their alternatives, or with witnesses that note which values occur.
+
+    What happens while the program is imported, before any test, holds for every test after it: each test
+    counts it as its own. See ``loading.SourceStep``.
+
+    Args:
+        root: absolute path of the project.
+        instrumentation: what is to stand in the text.
+        pipe: where reports go; a copy of a fork server gets its own.
+        on_act: told when the active alternative changes something for the first time in a test.
+
+    Attributes:
+        alternatives: the switches of the instrumented text; idle where places are only looked at.
+        sightings: what is seen at each place, if places are only looked at; else None.
+        imported: files that were instrumented, relative to the root.
+        problems: files that were not, with the reason.
+    """
+
+    def __init__(
+        self,
+        root: str,
+        instrumentation: Instrumentation,
+        pipe: EventWriter | None = None,
+        on_act: Callable[[], None] = lambda: None,
+    ) -> None:
+        texts = instrumentation.texts
+        self._places = {place.number: place for text in texts for place in text.places}
+        size = max(self._places, default=0)
+        self.alternatives = Alternatives(size)
+        self.alternatives.activate(*instrumentation.active)
+        self.alternatives.forms = cache(self._forms)
+        self.alternatives.on_act = on_act
+        self.sightings: Sightings | None = None
+        if instrumentation.record:
+            variables = {number: place.text for number, place in self._places.items() if place.variable}
+            self.sightings = Sightings(size, variables)
+        self.pipe: EventWriter = pipe or Held()
+        self.imported: list[str] = []
+        self.problems: dict[str, str] = {}
+        self._originals: _Nodes = {}
+        self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
+        self._real: Callable[[str], str] = cache(os.path.realpath)
+        self._test: str | None = None
+        self._refusals: tuple[BaseException, ...] = ()
+        self._unknown = False
+
+    @classmethod
+    def of(cls, job: Job, pipe: EventWriter, on_act: Callable[[], None]) -> SessionText | None:
+        """Instrument the program from now on; None if the job leaves its text alone."""
+        if job.instrumentation is None:
+            return None
+        text = cls(job.root, job.instrumentation, pipe, on_act)
+        text.install()
+        return text
+
+    def install(self) -> None:
+        """Instrument the program's files from now on; files imported before are told as problems."""
+        setattr(builtins, RUNTIME, (self.sightings or self.alternatives).switches)
+        for module in list(sys.modules.values()):
+            text = self._text_of(_file_of(module))
+            if text is not None:
+                self._refuse(text, "it was imported before mutabot could look at it")
+        loading.add(self)
+        loading.hook_runpy()
+
+    def wants(self, path: str) -> bool:
+        """Whether there are alternatives for a file."""
+        return self._text_of(path) is not None
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Put the alternatives of a file into its tree. Raises MismatchError if they do not belong there."""
+        text = self._text_of(path)
+        assert text is not None
+        if hashlib.sha256(source).hexdigest() != text.digest:
+            raise _ChangedError("it has changed since its mutants were made")
+        record = self.sightings is not None
+        instrumented(tree, text.places, record=record, originals=self._originals)
+        self.imported.append(text.file)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A file is compiled without its alternatives."""
+        text = self._text_of(path)
+        assert text is not None
+        if text.file in self.imported:
+            self.imported.remove(text.file)
+        is_known = isinstance(error, _ChangedError)
+        self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
+
+    def _text_of(self, path: str) -> ProgramText | None:
+        return self._texts.get(self._real(path))
+
+    def _forms(self, number: int) -> Forms | None:
+        """The original and the alternatives of a place, for a look ahead."""
+        original = self._originals.get(number)
+        if original is None:
+            return None
+        place = self._places[number]
+        others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
+        return Forms(ForeseenForm(original), tuple(map(ForeseenForm, others)))
+
+    def _refuse(self, text: ProgramText, reason: str) -> None:
+        self.problems[text.file] = reason
+        self.pipe.send(NotInstrumented(text.file, reason))
+
+    @property
+    def is_mutant(self) -> bool:
+        """Whether an alternative is active."""
+        return self.alternatives.active is not None
+
+    def start_test(self, test: str) -> None:
+        """A test begins."""
+        if self._test is None:  # what happened before any test
+            if self.sightings is not None:
+                self._tell_reached()
+            self.alternatives.keep()
+        self._test, self._refusals, self._unknown = test, (), False
+        (self.sightings or self.alternatives).start()
+
+    def watch(
+        self, on_place: Callable[[int, frozenset[int]], None], live: Mapping[int, frozenset[int]]
+    ) -> None:
+        """In a fork parent: tell ``on_place`` which of the ``live`` alternatives of a place are to differ."""
+        self.alternatives.on_place = on_place
+        self.alternatives.watch(live)
+
+    def end_test(self) -> None:
+        """The test is over."""
+        if self.sightings is not None:
+            self._tell_reached()
+        elif self.alternatives.on_place is not None and not self.is_mutant:
+            self.alternatives.watch({})  # what is reached between tests belongs to none
+
+    def finish(self, others: Iterable[TextsSeen] = ()) -> None:
+        """All tests are over; ``others`` is what was seen in processes below them."""
+        if self.sightings is not None:
+            others = list(others)
+            imported = dict.fromkeys([*self.imported, *(file for one in others for file in one.imported)])
+            seen = [*self.sightings.seen(), *(seen for one in others for seen in one.sightings)]
+            self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
+
+    def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
+        """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
+        from mutabot.runtime.interception.active_mutant import is_refusal, with_refusal  # noqa: PLC0415
+
+        if self.is_mutant and self.alternatives.acted and is_refusal(error, refusals):
+            self._refusals = with_refusal(self._refusals, error)
+            # the vocabulary says what commands there are; this is none of them
+            self._unknown = call.operation.message is not None and call.pattern is None
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the mutant did in the running test."""
+        return Evidence(
+            hits=self.alternatives.hits.get(self.alternatives.place, 0),
+            acted=self.alternatives.acted,
+            example=self.alternatives.example,
+            refusals=self._refusals,
+            is_of_text=True,
+            is_unknown=self._unknown,
+        )
+
+    def _tell_reached(self) -> None:
+        assert self.sightings is not None
+        self.pipe.send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
+
+
+def _file_of(module: Any) -> str:
+    """A module's file; empty if it has none. Modules that are loaded when first used stay asleep."""
+    if not isinstance(module, ModuleType):
+        return ""
+    try:
+        file = object.__getattribute__(module, "__dict__").get("__file__")
+    except AttributeError:  # libraries of cffi claim to be modules
+        return ""
+    return file if isinstance(file, str) else ""

@@ -42,6 +42,7 @@ class SourceStep(Protocol):
 
     def give_up(self, path: str, error: Exception) -> None:
         """A file that it was to change is compiled without it; it may raise the error instead."""
+        return
 
 
 #: in the order of their turns
@@ -150,7 +151,7 @@ def hook_script() -> None:
         sys.path_importer_cache.pop(entry, None)
 
 
-class _Script:
+class _Script(SourceStep):
     """Finds one module, the script, and lets it see itself as a script: not as a module that was found."""
 
     def __init__(self, path: str) -> None:
@@ -173,6 +174,3 @@ class _Script:
         forget = ast.parse("__spec__ = __package__ = __cached__ = None").body  # in the first line
         size = head_size(tree.body)
         tree.body[size:size] = forget
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """It runs as a module that was found."""

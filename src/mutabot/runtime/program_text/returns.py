@@ -43,13 +43,12 @@ class Returns:
         entries: of the running test: name of the function and what it returned (``[value]``) or raised
             (``{"raised": text}``).
         prepared: how many of them are from before the test itself began: from its fixtures.
-        truncated: whether there were more.
+        is_on: whether what comes is noted: during a test, until there is too much.
     """
 
     def __init__(self, locator: Locator) -> None:
         self.entries: list[tuple[str, Any]] = []
         self.prepared = 0
-        self.truncated = False
         self.is_on = False
         self._locator = locator
         self._own: set[str] = set()
@@ -82,7 +81,7 @@ class Returns:
 
     def start(self) -> None:
         """A test begins, before its fixtures."""
-        self.entries, self.prepared, self.truncated, self.is_on = [], 0, False, True
+        self.entries, self.prepared, self.is_on = [], 0, True
 
     def begin_call(self) -> None:
         """Its fixtures are set up."""
@@ -109,7 +108,7 @@ class Returns:
 
     def _note(self, function: FrameType, value: Callable[[], Any]) -> None:
         if len(self.entries) >= LIMIT:
-            self.truncated, self.is_on = True, False
+            self.is_on = False
             return
         try:
             self.entries.append((function.f_code.co_qualname, value()))

@@ -12,16 +12,30 @@ is called is not the operation itself, which sees its calls (``targets``). In th
 What the program defines itself is program: the calls in it are seen.
 
 What stood in for the robot in the tests, and which calls of an operation's name were left alone.
+
+Operations that are handed on without being called, and what stands in their place.
+
+The robot's own operations see their calls by themselves, from wherever (``targets``). What stands in for them
+does not, so it is made to where the program hands it on: ``go = arm.move``, ``partial(arm.move, 0.5)``,
+``pool.submit(arm.move, 1)``. Mocks stay the objects that they are: all calls of mocks are seen, and one that
+was handed on, or has the name of an operation and is called by the program, makes a call of it. Anything else
+is handed on in a wrapper that is equal to it, and looks like it.
+
+The site of such a call is the nearest call of the program on the stack, as of any that no text shows; in
+another thread, where there is none, the call to which it was given. What was handed on as the same object in
+several places has none there, which is said.
 """
 
 from __future__ import annotations
 
+import copy
 import inspect
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from inspect import Signature
+from pkgutil import resolve_name
 from types import BuiltinMethodType, FrameType, FunctionType, MethodType, ModuleType
 from typing import Any
 
@@ -32,10 +46,11 @@ from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
+from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
+from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.target import Finding, Handler, Where, named_class
+from mutabot.runtime.targets.target import Finding, Handler, Place, Where, named_class
 
 #: calls that are listed in one sentence
 _MOST = 5
@@ -67,7 +82,7 @@ class StandIns:
             place = f"{self.relative(site.path)}:{site.extent[0]}"
             self._alone.setdefault(site.name, {})[place] = what
 
-    def note_elsewhere(self, operation: Operation, place: tuple[Span, Role] | None) -> None:
+    def note_elsewhere(self, operation: Operation, place: Place | None) -> None:
         """This was called where a frame may tell the place, or nothing does."""
         if place is None:
             self._elsewhere.setdefault(operation.target, set()).add(self.test())
@@ -106,11 +121,6 @@ def mock_of(found: Any) -> Any:
     return made if is_mock(made) else None
 
 
-def stands_for_property(mock: Any) -> bool:
-    """Return whether a mock stands for a property: to read the attribute calls it without arguments."""
-    return is_mock(mock, "PropertyMock")
-
-
 def _shown(found: Any, receiver: Any) -> str:
     if mock_of(found) is not None or mock_of(receiver) is not None:
         return "a mock"
@@ -121,10 +131,6 @@ def _shown(found: Any, receiver: Any) -> str:
 
 def _count(number: int, what: str) -> str:
     return f"{number} {what}" if number == 1 else f"{number} {what}s"
-
-
-#: what stands around callables that see their calls themselves
-WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
 
 @dataclass(slots=True)
@@ -145,7 +151,7 @@ class Standing:
         by_name: the operations by their last names.
     """
 
-    adapters: Iterable[Adapter]
+    adapters: Collection[Adapter]
     callables: Callables
     locator: Locator
     sees_itself: Collection[Handler]
@@ -186,11 +192,12 @@ class Standing:
             named[id(names), first] = (names, first, names.get(first))
         return tuple(named.values())
 
-    def note_modules(self, paths: Collection[str]) -> None:
-        """Note which names of the modules of these files mean operations: they were loaded just now."""
-        for module in list(sys.modules.values()):
+    def note_modules(self, paths: set[str]) -> None:
+        """Note which names mean operations in the modules of these files, which were loaded just now."""
+        for module in list(sys.modules.values()) if paths else ():
             if isinstance(module, ModuleType) and getattr(module, "__file__", None) in paths:
                 self._names_of(vars(module))
+        paths.clear()
 
     def call(
         self, one: Adapter, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
@@ -207,20 +214,16 @@ class Standing:
             instance, found, args = args[0], partial(found, args[0]), args[1:]
         return one.handler(found, instance, args, kwargs, Where(receiver=given, signature=signature, **where))
 
-    def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
+    def place(self, site: CallSite, frame: FrameType) -> Place:
         """Where a site stands."""
         if site.place is None:
             span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
             site.place = (span, site.role)
         return site.place
 
-    def candidate_of(self, handler: Handler) -> Adapter | None:
-        """The operation that this handler stands around."""
-        return next((one for ones in self.by_name.values() for one in ones if one.handler is handler), None)
-
     def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """The operation that stands at a site, if it does not see its calls itself."""
-        if self._sees_itself(found):
+        if any(handler in self.sees_itself for handler in _handlers(found)):
             return None
         one = self.named(site.name, found, receiver, frame)
         if one is None and self.known:
@@ -235,8 +238,13 @@ class Standing:
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name in whose place something stands."""
         mock = mock_of(found)
-        is_read = stands_for_property(mock)
-        ones = [one for one in self.by_name[name] if self._is_read(one) is is_read]
+        is_read = is_mock(
+            mock, "PropertyMock"
+        )  # such are called when the attribute is read, which nobody calls
+        raw, kinds = self.callables.found, (property, cached_property)
+        ones = [
+            one for one in self.by_name[name] if isinstance(raw.get(one.operation.target), kinds) is is_read
+        ]
         fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
         if fitting:
             return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target].__mro__))
@@ -246,13 +254,6 @@ class Standing:
         fitting += [one for one in ones if one.operation.target.startswith(ANY)]
         return fitting[0] if fitting else None
 
-    def _is_read(self, one: Adapter) -> bool:
-        """Whether an operation is an attribute, which nobody calls."""
-        return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
-
-    def _sees_itself(self, found: Any) -> bool:
-        return any(handler in self.sees_itself for handler in _handlers(found))
-
     def _is_of_class(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Whether what is called is an attribute of an object of the operation's class."""
         if receiver is NOTHING and isinstance(found, MethodType):
@@ -260,7 +261,9 @@ class Standing:
         owner = self._owner(one)
         if owner is None or receiver is NOTHING:
             return False
-        if self._is_of_program(found) and not one.operation.overrides:
+        function = found.__func__ if isinstance(found, MethodType) else found
+        file = function.__code__.co_filename if isinstance(function, FunctionType) else ""
+        if file and self.locator.role(file) is Role.PROGRAM and not one.operation.overrides:
             return False
         return any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame))
 
@@ -289,13 +292,6 @@ class Standing:
         if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
             return True
         return any(handler is one.handler for handler in _handlers(wrapped))
-
-    def _is_of_program(self, found: Any) -> bool:
-        function = found.__func__ if isinstance(found, MethodType) else found
-        return (
-            isinstance(function, FunctionType)
-            and self.locator.role(function.__code__.co_filename) is Role.PROGRAM
-        )
 
     def _names_of(self, names: dict[str, Any]) -> dict[str, Any]:
         """The names of a module that meant an operation when it was seen first, or the class of one.
@@ -371,3 +367,143 @@ def _is_a(value: Any, kind: Any) -> bool:
         return isinstance(value, kind) or (isinstance(value, type) and issubclass(value, kind))
     except Exception:  # a class of the user's may answer in any way
         return False
+
+
+#: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
+#: which is None if nobody knows any more
+_MARK = "_mutabot_handed"
+
+
+class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
+    """A callable that was handed on; a partial makes its calls."""
+
+    def __new__(cls, wrapped: Any, handed: Any) -> Any:
+        """With an object in place of the partial, as weak methods do it: a function bound to it."""
+        if type(handed) is partial:
+            return super().__new__(cls, wrapped, handed)  # type: ignore[call-arg]
+        return MethodType(wrapped, handed)
+
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, known: dict[int, Any]) -> Any:
+        return Handed(copy.deepcopy(self.__wrapped__, known), self._self_wrapper)
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        function = self.__wrapped__
+        owner = getattr(function, "__self__", None)
+        if owner is None or isinstance(owner, ModuleType):
+            return resolve_name, (f"{function.__module__}:{function.__qualname__}",)
+        return getattr, (owner, function.__name__)
+
+
+class Handing:
+    """Decides what is handed on, and sees the calls of mocks.
+
+    Args:
+        standing: decides what stands for an operation.
+        given: takes where functions of the robot were handed on; None if nobody knows any more.
+    """
+
+    def __init__(self, standing: Standing, given: dict[Adapter, Place | None]) -> None:
+        self._standing = standing
+        self._given = given
+        wrapt.register_post_import_hook(self._watch, "unittest.mock")
+
+    def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """What is handed on at a site: ``found``, or what is equal to it."""
+        if not callable(found) or isinstance(found, type) or type(found) is Handed:
+            return found
+        place = self._standing.place(site, frame)
+        if type(found) in WRAPPERS:
+            adapters, handler = self._standing.adapters, found._self_wrapper
+            own = next((one for one in adapters if one.handler is handler), None)
+            if own is None:
+                return found
+            self._standing.stood[place[0]] = own.operation.target
+            if type(found) is wrapt.FunctionWrapper:  # all names of a function mean this very object
+                known = self._given.setdefault(own, place)
+                if known == place or not site.is_given:
+                    self._given[own] = place if known == place else None
+                    return found
+            return self._wrapped(own, place, receiver, found, found.__wrapped__)
+        one = self._standing.candidate(site, found, receiver, frame)
+        if one is None:
+            return found
+        if self._standing.noted is not None:
+            self._standing.noted.note(site, one.operation, found, receiver)
+        mock = mock_of(found)
+        if mock is not None:
+            known = vars(mock).get(_MARK, (one, receiver, place))
+            if known[2] == place or not site.is_given:
+                vars(mock)[_MARK] = (*known[:2], place if known[2] == place else None)
+                return found
+        return self._wrapped(one, place, receiver, found, found)
+
+    def _wrapped(self, one: Adapter, place: Place, receiver: Any, looks: Any, found: Any) -> Handed:
+        """What looks like one callable and calls ``found``, which may be the same, as an operation."""
+        calls = partial(self._call, one, place, receiver, found)
+        says_it_is_one = mock_of(looks) is looks and isinstance(looks, WRAPPERS)
+        # such a mock was made after a wrapped function. wrapt would ask it how it binds, which it refuses to
+        # say, and then no wrapper can be made on Python 3.13: so wrapt first sees another callable
+        made: Handed = Handed(calls if says_it_is_one else looks, calls)
+        if says_it_is_one:
+            made.__wrapped__ = looks
+        return made
+
+    def _call(
+        self, one: Adapter, place: Place, receiver: Any, found: Any, wrapped: Any, instance: Any, *given: Any
+    ) -> Any:
+        __tracebackhide__ = True
+        args, kwargs = given
+        if receiver is NOTHING and instance is not None:  # it was made a method, or is one
+            receiver, found = instance, wrapped
+        where = {"handed": place, "frame": sys._getframe(1)}
+        return self._standing.call(one, where, found, receiver, *args, **kwargs)
+
+    def _watch(self, mock: ModuleType) -> None:
+        """See the calls of all mocks."""
+        kind: Any = mock.CallableMixin
+        original = kind.__call__
+
+        def call(self: Any, /, *args: Any, **kwargs: Any) -> Any:
+            __tracebackhide__ = True
+            return seen(original, self, sys._getframe(1), args, kwargs)
+
+        seen = self._seen
+        call.__name__, call.__qualname__ = original.__name__, original.__qualname__
+        kind.__call__ = call
+
+    def _seen(
+        self, original: Any, mock: Any, frame: FrameType, args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> Any:
+        __tracebackhide__ = True
+        own = vars(mock)
+        mark = own.get(_MARK)
+        name = own.get("_mock_new_name") or own.get("_mock_name")
+        is_written = bool(args) and is_mock(mock, "PropertyMock")
+        if is_under_way() or is_written or (mark is None and name not in self._standing.by_name):
+            return original(mock, *args, **kwargs)
+        caller = _caller(frame)
+        if mark is not None:
+            one, receiver, place = mark
+        else:
+            parent = own.get("_mock_new_parent")
+            one, receiver, place = None, NOTHING if parent is None else parent, None
+            if caller is not None and self._standing.locator.role(caller.f_code.co_filename) is not None:
+                one = self._standing.named(name, mock, receiver, caller)
+        if one is None:
+            return original(mock, *args, **kwargs)
+        if place is None and mark is not None and self._standing.noted is not None:
+            self._standing.noted.note_elsewhere(one.operation, self._standing.locator.locate(caller))
+        where = {"handed": place, "frame": caller, "is_awaited": is_coroutine_function(mock)}
+        return self._standing.call(one, where, partial(original, mock), receiver, *args, **kwargs)
+
+
+def _caller(frame: FrameType | None) -> FrameType | None:
+    """The frame that calls a mock, without those of its making."""
+    while frame is not None and (
+        frame.f_globals.get("__name__") == "unittest.mock" or "_checksig_" in frame.f_globals
+    ):
+        frame = frame.f_back
+    return frame

@@ -7,23 +7,249 @@ a built-in name: modules keep the names they have.
 In a baseline the text becomes ``__mutabot__[0](p) or __mutabot__[p](E)``: the first call notes that the place
 is reached, whatever becomes of ``E``. A place is examined a few times per test; from then on the function
 there passes the value through, as cheaply as a call can.
+
+What an expression would give is found out without letting anything happen. The fork parent looks ahead with
+that: a mutant of the program text needs no process of its own as long as its value is the original's. And a
+mutant tells by it what the original would have given. Operators on plain numbers and texts are computed, and
+a few functions; what they work on are constants, names, and stored attributes and items. All else is left to
+a real evaluation.
 """
 
 from __future__ import annotations
 
-import builtins
+import ast
 import enum
+import inspect
+import math
 import numbers
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
+import types
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
 from functools import cache
-from types import BuiltinFunctionType, CodeType, FrameType, FunctionType, MethodType, ModuleType
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 from mutabot.model.mutant import FATAL, IDENTITY, RUNTIME, Choice, Sighting
 from mutabot.model.path import class_name
-from mutabot.runtime.program_text.foresee import Forms, locals_of
+
+#: integers of more bits are left to a real evaluation
+_LARGEST = 256
+_NUMBERS = frozenset((bool, int, float))
+_PLAIN_TYPES = _NUMBERS | {str, type(None)}
+#: expressions that are computed: those that may take long for anything but numbers, and all others
+_CALCULATING = (ast.Call, ast.UnaryOp, ast.BinOp)
+_KNOWN = (*_CALCULATING, ast.Name, ast.Constant, ast.BoolOp, ast.IfExp, ast.Compare)
+#: they may take long or warn; and whether equal values are one object is up to the compiler
+_LEFT_OUT = (ast.Pow, ast.LShift, ast.Invert, ast.Is, ast.IsNot)
+_CALLABLE = (
+    abs, bool, float, int, max, min, round, math.acos, math.asin, math.atan, math.atan2, math.ceil,
+    math.copysign, math.cos, math.degrees, math.dist, math.exp, math.fabs, math.floor, math.fmod, math.hypot,
+    math.isclose, math.log, math.pow, math.radians, math.sin, math.sqrt, math.tan, math.trunc,
+)  # fmt: skip
+#: functions that hand out the local names
+_LOOKING = frozenset(("locals", "vars", "dir", "eval", "exec", "f_locals"))
+#: descriptors that only hand out what is stored in the object
+_STORED = (types.MemberDescriptorType, type(vars(NamedTuple("_Sample", [("item", int)]))["item"]))
+_PLAIN_LOOK_UPS: list[Any] = [kind.__getattribute__ for kind in (object, tuple, types.ModuleType)]
+
+
+class UnforeseenError(Exception):
+    """What an expression gives cannot be known without evaluating it."""
+
+
+def _fail_if(value: Any, wrong: Any, *told: str) -> Any:
+    if value == wrong:
+        raise ZeroDivisionError
+    return value
+
+
+#: what templates call (``Alternatives``)
+_HELPERS = types.SimpleNamespace(absolute=abs, fail_if=_fail_if)
+_HELPER_NAMES = frozenset(f"{RUNTIME}[0].{name}" for name in vars(_HELPERS))
+
+
+class ForeseenForm:
+    """An expression whose value is known as soon as those of its leaves are.
+
+    The value of one that does more than to calculate and to compare is never known. The tree is changed.
+    """
+
+    def __init__(self, tree: ast.expr) -> None:
+        leaves = _Leaves()
+        self._code: types.CodeType | None = None
+        with suppress(UnforeseenError):
+            tree = leaves.visit(tree)
+            self._kinds = _NUMBERS if leaves.calculates else _PLAIN_TYPES
+            self._check(leaves.constants)
+            self._code = compile(ast.Expression(tree), "<foreseen>", "eval")
+        self._leaves, self._functions = leaves.found, leaves.functions
+
+    def value(self, frame: types.FrameType) -> Any:
+        """What it gives in a frame.
+
+        Raises UnforeseenError if that cannot be known; and whatever the evaluation itself would raise.
+        """
+        if self._code is None:
+            raise UnforeseenError
+        values = {name: _read(leaf, frame) for name, leaf in self._leaves.items()}
+        self._check(values.values())
+        functions = {name: _read(leaf, frame) for name, leaf in self._functions.items()}
+        if not all(any(function is known for known in _CALLABLE) for function in functions.values()):
+            raise UnforeseenError
+        found = eval(self._code, {"__builtins__": {}, RUNTIME: [_HELPERS]}, values | functions)
+        if type(found) is tuple:  # as ``max((a, b), (c, d))`` gives
+            raise UnforeseenError
+        return found
+
+    def _check(self, values: Iterable[Any]) -> None:
+        for value in values:
+            if type(value) not in self._kinds or (type(value) is int and value.bit_length() > _LARGEST):
+                raise UnforeseenError
+
+
+class _Leaves(ast.NodeTransformer):
+    """Puts names in the place of all that is read in a frame, and refuses what is not known.
+
+    Attributes:
+        found: what is read, by the name that stands for it.
+        functions: the same for what is called.
+        constants: all constants.
+        calculates: whether anything in it works with numbers only.
+    """
+
+    def __init__(self) -> None:
+        self.found: dict[str, ast.expr] = {}
+        self.functions: dict[str, ast.expr] = {}
+        self.constants: list[object] = []
+        self.calculates = False
+
+    def visit(self, node: ast.AST) -> Any:
+        if isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
+            return self._stand_in(node, self.found)
+        if isinstance(node, _LEFT_OUT) or (isinstance(node, ast.expr) and not isinstance(node, _KNOWN)):
+            raise UnforeseenError
+        self.calculates |= isinstance(node, _CALCULATING)
+        if isinstance(node, ast.Constant):
+            self.constants.append(node.value)
+        return super().visit(node)
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:  # the name that ast looks for
+        if node.keywords:
+            raise UnforeseenError
+        told: list[ast.expr] = []
+        if ast.unparse(node.func) in _HELPER_NAMES:
+            told = [one for one in node.args if isinstance(getattr(one, "value", None), str)]
+        else:
+            node.func = self._stand_in(node.func, self.functions)
+        node.args = [argument if argument in told else self._argument(argument) for argument in node.args]
+        return node
+
+    def _argument(self, node: ast.expr) -> Any:
+        """An argument; a tuple of values, such as a point, is one as well, but not the value of anything."""
+        if isinstance(node, ast.Tuple):
+            node.elts = [self.visit(item) for item in node.elts]
+            return node
+        return self.visit(node)
+
+    def _stand_in(self, node: ast.expr, among: dict[str, ast.expr]) -> ast.expr:
+        name = f"leaf_{len(self.found) + len(self.functions)}"
+        among[name] = node
+        return ast.copy_location(ast.Name(name, ast.Load()), node)
+
+
+@dataclass(frozen=True, slots=True)
+class Forms:
+    """A place as an expression, and what it could read instead."""
+
+    original: ForeseenForm
+    alternatives: tuple[ForeseenForm, ...]
+
+    def differing(self, indexes: frozenset[int], frame: types.FrameType) -> frozenset[int]:
+        """Of these alternatives, those that would not give what the original gives in a frame, or may not."""
+        try:
+            given = self.original.value(frame)
+        except Exception:  # whatever it is: a real evaluation will tell
+            return indexes
+        return frozenset(index for index in indexes if not self._gives(index, given, frame))
+
+    def _gives(self, index: int, given: Any, frame: types.FrameType) -> bool:
+        try:
+            return is_identical(given, self.alternatives[index].value(frame))
+        except Exception:  # as above; what raises differs from what did not
+            return False
+
+
+def is_identical(one: Any, other: Any) -> bool:
+    """Whether no program could tell two plain values apart, but for which of them it has."""
+    if type(one) is not type(other) or one != other:
+        return False
+    return type(one) is not float or math.copysign(1.0, one) == math.copysign(1.0, other)
+
+
+def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
+    """The local names of a frame.
+
+    Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring up to date what it
+    may have kept.
+    """
+    code = frame.f_code
+    if code.co_flags & inspect.CO_OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
+        raise UnforeseenError
+    return frame.f_locals
+
+
+def plain_attribute(owner: Any, name: str) -> Any:
+    """An attribute that is merely stored: on the object, in a slot, in a named tuple, or in a module.
+
+    Raises UnforeseenError for all others: to read a property may be to read a robot.
+    """
+    kind = type(owner)
+    if isinstance(owner, type) or kind.__getattribute__ not in _PLAIN_LOOK_UPS or _is_mangled(name):
+        raise UnforeseenError
+    found = next((vars(base)[name] for base in kind.__mro__ if name in vars(base)), None)
+    if isinstance(found, _STORED):
+        return found.__get__(owner, kind)
+    if found is not None and hasattr(type(found), "__get__"):
+        raise UnforeseenError
+    stored = getattr(owner, "__dict__", None)
+    if type(stored) is dict and name in stored:
+        return stored[name]
+    if found is None:
+        raise UnforeseenError
+    return found
+
+
+def _read(leaf: ast.expr, frame: types.FrameType) -> Any:
+    if isinstance(leaf, ast.Name):
+        return _named(leaf.id, frame)
+    if isinstance(leaf, ast.Attribute):
+        return plain_attribute(_read(leaf.value, frame), leaf.attr)
+    if isinstance(leaf, ast.Subscript):
+        container, key = _read(leaf.value, frame), _read(leaf.slice, frame)
+        if type(container) in (tuple, list, dict, str) and type(key) in _PLAIN_TYPES:
+            return container[key]
+    if isinstance(leaf, ast.Constant):
+        return leaf.value
+    raise UnforeseenError
+
+
+def _named(name: str, frame: types.FrameType) -> Any:
+    """What a name stands for in a frame; a function's own without a value yet is no global of that name."""
+    local, code = locals_of(frame), frame.f_code
+    if name in local:
+        return local[name]
+    is_own = name in code.co_varnames or name in code.co_cellvars or name in code.co_freevars
+    for names in (frame.f_globals, frame.f_builtins):
+        if name in names and not is_own and not _is_mangled(name):
+            return names[name]
+    raise UnforeseenError
+
+
+def _is_mangled(name: str) -> bool:
+    """Whether a class body changes this name into another one."""
+    return name.startswith("__") and not name.endswith("__")
 
 
 @cache
@@ -47,7 +273,7 @@ class Switch:
     def __init__(self, owner: Alternatives, place: int, index: int | None, watched: frozenset[int]) -> None:
         self._owner, self.place, self.index, self.watched = owner, place, index, watched
         self._before: Any = _UNKNOWN
-        self._code: CodeType | None = None
+        self._code: types.CodeType | None = None
 
     def chosen(self) -> bool:
         """Asked at every evaluation: whether an alternative stands for the original."""
@@ -69,7 +295,7 @@ class Switch:
         self._owner.note(self.place, before, value)
         return value
 
-    def _value_of(self, original: str, frame: FrameType) -> Any:
+    def _value_of(self, original: str, frame: types.FrameType) -> Any:
         try:
             if self._code is None:
                 self._code = compile(original, "<original>", "eval")
@@ -89,72 +315,73 @@ class Alternatives:
     """All places of the program, and which of their alternatives is active.
 
     Attributes:
-        active: index of the active alternative by place; more than one for mutants of higher order.
+        active: the active alternative; None for the original.
         hits: evaluations of each place that was on, in the running test and before any.
-        idle: evaluations of each active place at which the alternative had the value of the original; of a
+        idle: evaluations of the active place at which the alternative had the value of the original; of a
             watched place, those at which all alternatives that are still watched had it.
-        examples: value of the original and of the alternative when they first differed, by place; of what
-            is no plain value, its type.
+        example: value of the original and of the alternative when they first differed; of what is no plain
+            value, its type.
         on_place: told the number of a watched place, and which of its watched alternatives are about to
             differ for the first time from the original, or may be; it may activate one of them, which then
             stands there at once.
         forms: gives a place as trees that can be looked ahead of; None for statements.
         on_first: told the number of a place that is on when it is first evaluated since ``start``.
-        on_act: told the number of an active place when its alternative is known to change something, or
-            may do so, for the first time since ``start``.
+        on_act: told when the active alternative is known to change something, or may do so, for the first
+            time since ``start``.
         switches: what instrumented program text looks at; item 0 is this object.
     """
 
     def __init__(self, size: int) -> None:
         """``size``: the largest number of a place."""
-        self.active: dict[int, int] = {}
+        self.active: Choice | None = None
         self.hits: dict[int, int] = {}
         self.idle: dict[int, int] = {}
-        self.examples: dict[int, tuple[Any, Any]] = {}
-        self._kept: tuple[dict[int, Any], ...] = ({}, {}, {})
-        self._told: set[int] = set()
+        self.example: tuple[Any, Any] | None = None
+        self._kept: tuple[dict[int, int], dict[int, int], tuple[Any, Any] | None] = ({}, {}, None)
+        self._has_told = False
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
-        self.on_act: Callable[[int], None] | None = None
+        self.on_act: Callable[[], None] = lambda: None
         self.on_first: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
 
-    def install(self) -> None:
-        """Let instrumented program text find its switches."""
-        setattr(builtins, RUNTIME, self.switches)
-
     def keep(self) -> None:
         """Count what was counted so far in every test."""
-        self._kept = (self.hits, self.idle, self.examples)
+        self._kept = (self.hits, self.idle, self.example)
 
     def start(self) -> None:
         """A new test begins: count anew."""
-        self.hits, self.idle, self.examples = map(dict, self._kept)
-        self._told.clear()
+        hits, idle, self.example = self._kept
+        self.hits, self.idle, self._has_told = dict(hits), dict(idle), False
 
-    def acted(self, place: int) -> int:
+    @property
+    def place(self) -> int:
+        """The place of the active alternative; 0 for the original."""
+        return self.active.place if self.active is not None else 0
+
+    @property
+    def acted(self) -> int:
         """Evaluations at which the active alternative changed something, or raised."""
-        return self.hits.get(place, 0) - self.idle.get(place, 0)
+        return self.hits.get(self.place, 0) - self.idle.get(self.place, 0)
 
     def note(self, place: int, before: Any, after: Any) -> None:
         """An alternative has its value; compare it with the original's, where that is known."""
         if before is not _UNKNOWN and _is_same(before, after):
             self.idle[place] = self.idle.get(place, 0) + 1
             return
-        if before is not _UNKNOWN and place not in self.examples:
-            self.examples[place] = (_plain(before), _plain(after))
-        self.tell(place)
+        if before is not _UNKNOWN and self.example is None:
+            self.example = (_plain(before), _plain(after))
+        self.tell()
 
-    def tell(self, place: int) -> None:
-        """An alternative changed something, or may have."""
-        if place not in self._told:
-            self._told.add(place)
-            if self.on_act is not None:
-                self.on_act(place)
+    def tell(self) -> None:
+        """The active alternative changed something, or may have."""
+        if not self._has_told:
+            self._has_told = True
+            self.on_act()
 
-    def activate(self, *choices: Choice) -> None:
-        """Make these alternatives, and no others, stand for the original."""
-        self.active = {choice.place: choice.index for choice in choices}
+    def activate(self, choice: Choice | None = None) -> None:
+        """Make this alternative, and no other, stand for the original."""
+        self.active = choice
         self._set({})
 
     def watch(self, live: Mapping[int, frozenset[int]]) -> None:
@@ -164,7 +391,7 @@ class Alternatives:
         """
         self._set(live)
 
-    def reached(self, switch: Switch, frame: FrameType) -> bool:
+    def reached(self, switch: Switch, frame: types.FrameType) -> bool:
         """A place that is on is evaluated; whether an alternative stands for it."""
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
@@ -172,13 +399,13 @@ class Alternatives:
             self.on_first(place)
         if switch.watched:
             self._look_ahead(switch, frame)
-        index = self.active.get(place)
+        index = self.active.index if self.active is not None and self.active.place == place else None
         if index is not None and index < 0:
             self._control(place, index)
             return False
         return index is not None
 
-    def _look_ahead(self, switch: Switch, frame: FrameType) -> None:
+    def _look_ahead(self, switch: Switch, frame: types.FrameType) -> None:
         place = switch.place
         due = self._differing(switch, frame)
         switch.watched -= due
@@ -186,10 +413,10 @@ class Alternatives:
             self.switches[place] = False
         if due and self.on_place is not None:
             self.on_place(place, due)
-        if switch.watched and place not in self.active:
+        if switch.watched and place != self.place:
             self.idle[place] = self.idle.get(place, 0) + 1
 
-    def foreseen(self, place: int, frame: FrameType) -> Any:
+    def foreseen(self, place: int, frame: types.FrameType) -> Any:
         """What the original gives, if that can be known without letting anything happen."""
         forms = self.forms(place)
         try:
@@ -197,7 +424,7 @@ class Alternatives:
         except Exception:  # it cannot be known; or only the original would have raised this
             return _UNKNOWN
 
-    def _differing(self, switch: Switch, frame: FrameType) -> frozenset[int]:
+    def _differing(self, switch: Switch, frame: types.FrameType) -> frozenset[int]:
         """The watched alternatives that differ from the original, or may."""
         forms = self.forms(switch.place)
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
@@ -208,7 +435,7 @@ class Alternatives:
     def _control(self, place: int, index: int) -> None:
         """The controls, which every place knows: nothing happens, or it raises."""
         if index == FATAL:
-            self.tell(place)
+            self.tell()
             from mutabot.operators.command import FatalFault  # noqa: PLC0415  # a control, once in a campaign
 
             raise FatalFault(f"control: place {place} fails")
@@ -217,17 +444,18 @@ class Alternatives:
 
     def _set(self, watched: Mapping[int, frozenset[int]]) -> None:
         switches: list[Any] = [False] * len(self.switches)
-        for place in watched.keys() | self.active.keys():
-            index, watching = self.active.get(place), watched.get(place, frozenset())
-            switches[place] = Switch(self, place, index, watching)
+        for place, indexes in watched.items():
+            switches[place] = Switch(self, place, None, indexes)
+        if self.active is not None:
+            place, watching = self.active.place, watched.get(self.active.place, frozenset())
+            switches[place] = Switch(self, place, self.active.index, watching)
         self.switches[1:] = switches[1:]  # at once: other threads may look at them
 
     # what templates may call (``HELPER``); none of it belongs to one operator
 
     def fail(self, name: str, text: str) -> NoReturn:
         """Raise an exception of this name and text."""
-        for place in self.active:
-            self.tell(place)
+        self.tell()
         raise error_of(name)(text)
 
     def fail_if(self, value: Any, wrong: Any, name: str, text: str) -> Any:
@@ -271,7 +499,8 @@ _PLAIN: dict[type, str] = {
     set: "set", frozenset: "set", type(None): "none",
 }  # fmt: skip
 #: what stands for something else rather than for a value
-_NO_VARIABLE = (ModuleType, FunctionType, BuiltinFunctionType, MethodType, type, type(None))
+_FUNCTIONS = (types.FunctionType, types.BuiltinFunctionType, types.MethodType)
+_NO_VARIABLE = (*_FUNCTIONS, types.ModuleType, type, type(None))
 _ARRAYS = {"b": "truth", "i": "integer", "u": "integer", "f": "number", "c": "number"}
 
 
@@ -337,10 +566,6 @@ class Sightings:
             if self._on_first is not None:
                 self._on_first(place)
 
-    def install(self) -> None:
-        """Let instrumented program text find its switches."""
-        setattr(builtins, RUNTIME, self.switches)
-
     def start(self) -> None:
         """A new test begins: look at every place anew."""
         self.entered.clear()
@@ -381,7 +606,8 @@ class _Witness:
             self.looks_around = 0
         if self._variable is not None and self.looks_around < LOOKS_AROUND:
             self.looks_around += 1
-            self._look_around(value, sys._getframe(1))
+            names = set(_alike(value, sys._getframe(1))) - {self._variable} if is_variable(value) else set()
+            self._variables = names if self._variables is None else self._variables & names
         return value
 
     def sighting(self) -> Sighting:
@@ -389,12 +615,8 @@ class _Witness:
         kinds, variables = sorted(self._kinds), sorted(self._variables or ())
         return Sighting(self.place, self.hits, tuple(kinds), tuple(variables))
 
-    def _look_around(self, value: Any, frame: FrameType) -> None:
-        names = set(_alike(value, frame)) - {self._variable} if is_variable(value) else set()
-        self._variables = names if self._variables is None else self._variables & names
 
-
-def _alike(value: Any, frame: FrameType) -> Iterator[str]:
+def _alike(value: Any, frame: types.FrameType) -> Iterator[str]:
     """Names around a frame's instruction with a value of exactly this type.
 
     Of the function's own names and the module's: to mention a name of a function further out would make

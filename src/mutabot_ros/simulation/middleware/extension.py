@@ -16,6 +16,7 @@ from mutabot_ros.simulation.middleware import (
     arguments,
     clocks,
     events,
+    executors,
     graph,
     graph_queries,
     lifecycle,
@@ -107,13 +108,6 @@ def _hash_by_age(self: Any) -> int:
     return self.__dict__.setdefault("_mutabot_age", next(_hashes))  # type: ignore[no-any-return]
 
 
-def _enter_handles_faster(node: graph.Node) -> None:
-    """Let rclpy's executors keep their handles in use with fewer calls."""
-    executors = sys.modules.get("rclpy.executors")
-    if executors is not None:
-        executors.ExitStack = graph.HandlesInUse  # type: ignore[attr-defined]
-
-
 def install() -> None:
     """Put the module in the place of the real one, before rclpy is imported."""
     if MODULE in sys.modules:
@@ -125,4 +119,4 @@ def install() -> None:
     sys.modules[MODULE] = module
     messages.install()
     logs.install()
-    graph.WORLD.on_node += [_number_in_sets, _enter_handles_faster]
+    graph.WORLD.on_node += [_number_in_sets, executors.hasten]

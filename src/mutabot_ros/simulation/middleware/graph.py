@@ -23,15 +23,21 @@ if TYPE_CHECKING:
     from mutabot_ros.simulation.processes.process import Process
 
 _numbers = count(1)
-_DESTROYED = "cannot use Destroyable because destruction was requested"
 
 
 class Destroyable:
-    """A handle that is destroyed once nobody uses it any more."""
+    """A handle that is destroyed once nobody uses it any more.
+
+    Attributes:
+        destroyed: how many handles have been destroyed so far.
+        uses: how many use it now.
+    """
+
+    destroyed = 0
 
     def __init__(self) -> None:
         self.number = next(_numbers)
-        self._uses = 0
+        self.uses = 0
         self.is_destroyed = False
 
     @property
@@ -40,58 +46,24 @@ class Destroyable:
 
     def __enter__(self) -> None:
         if self.is_destroyed:
-            raise InvalidHandle(_DESTROYED)
-        self._uses += 1
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+        self.uses += 1
 
     def __exit__(self, *_: object) -> None:
-        self._uses -= 1
-        if self.is_destroyed and not self._uses:
+        self.uses -= 1
+        if self.is_destroyed and not self.uses:
             self._release()
 
     def destroy_when_not_in_use(self) -> None:
         if self.is_destroyed:
             return
         self.is_destroyed = True
-        if not self._uses:
+        Destroyable.destroyed += 1
+        if not self.uses:
             self._release()
 
     def _release(self) -> None:
         """Take it out of the graph."""
-
-
-class HandlesInUse:
-    """Stands in for `ExitStack` in rclpy's executor, which enters each of its handles for each wait.
-
-    The same with fewer calls; nothing that an executor enters swallows errors.
-    """
-
-    def __init__(self) -> None:
-        self._entered: list[Any] = []
-
-    def __enter__(self) -> HandlesInUse:
-        return self
-
-    def enter_context(self, handle: Any) -> None:
-        if not isinstance(handle, Destroyable):
-            handle.__enter__()
-        elif handle.is_destroyed:
-            raise InvalidHandle(_DESTROYED)
-        else:
-            handle._uses += 1
-        self._entered.append(handle)
-
-    def __exit__(self, *error: object) -> None:
-        entered = self._entered
-        try:
-            while entered:
-                handle = entered.pop()
-                if isinstance(handle, Destroyable) and not handle.is_destroyed:
-                    handle._uses -= 1
-                else:
-                    handle.__exit__(*error)
-        finally:
-            if entered:  # one raised
-                self.__exit__(*error)
 
 
 class Waitable(Destroyable):

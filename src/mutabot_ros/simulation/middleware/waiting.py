@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
-from types import FrameType
+from collections.abc import Callable, Sequence
 from typing import Any
-from weakref import ref
 
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER
 from mutabot_ros.simulation.middleware.graph import Destroyable, Participant, Waitable
@@ -22,9 +19,6 @@ class GuardCondition(Waitable):
     def __init__(self, context: Participant) -> None:
         super().__init__()
         self.is_ready = False
-        maker = sys._getframe(2)  # below it, rclpy's own class of guard conditions
-        is_of_executor = maker.f_globals.get("__name__") == "rclpy.executors"
-        self._executor = ref(maker.f_locals["self"]) if is_of_executor else None
 
     def trigger_guard_condition(self) -> None:
         self.is_ready = True
@@ -32,28 +26,6 @@ class GuardCondition(Waitable):
 
     def reset(self) -> None:
         self.is_ready = False
-
-    @property
-    def tells_nothing_new(self) -> bool:
-        """Whether an executor that begins to wait would look at the same again if this woke it.
-
-        An executor triggers a guard condition of its own after each callback. One with a single thread that
-        has no task under way has gathered everything since then, without a switch of threads. Waitables that
-        are not rclpy's may count on being looked at once more.
-        """
-        executor = None if self._executor is None else self._executor()
-        return (
-            executor is not None
-            and type(executor).__qualname__ == "SingleThreadedExecutor"
-            and type(executor).__module__ == "rclpy.executors"
-            and not executor._tasks
-            and _are_rclpys(sys.modules["rclpy.waitable"].Waitable)
-        )
-
-
-def _are_rclpys(kind: Any) -> bool:
-    """Whether all that is derived from a class is part of rclpy."""
-    return all(one.__module__.startswith("rclpy.") and _are_rclpys(one) for one in kind.__subclasses__())
 
 
 KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event")
@@ -74,17 +46,34 @@ def _adder(kind: str) -> Callable[[WaitSet, Any], int]:
 
 
 class WaitSet(Destroyable):
-    """What an executor waits for."""
+    """What an executor waits for.
+
+    Attributes:
+        is_over: whether the time for the wait had passed when it ended.
+    """
 
     def __init__(self, *arguments: Any) -> None:
         super().__init__()
         *sizes, context = arguments
         if not context.is_up:
             raise RCLError("failed to initialize wait set: the given context is not valid")
+        self.is_over = False
         self._sizes = dict(zip(KINDS, sizes, strict=True))
         self._members: dict[str, list[Any]] = {}
         self._ready: dict[str, list[bool]] = {}
         self.clear_entities()
+
+    @classmethod
+    def of(cls, members: Sequence[list[Any]], context: Participant) -> WaitSet:
+        """A wait set of these members, by kind."""
+        wait_set = cls(*map(len, members), context)
+        wait_set._members = {kind: [*of_kind] for kind, of_kind in zip(KINDS, members, strict=True)}
+        return wait_set
+
+    def make_room(self, counts: Any) -> None:
+        """Let so many more be added, as rclpy's `NumberOfEntities` says."""
+        for kind in KINDS:
+            self._sizes[kind] += getattr(counts, f"num_{kind}s")
 
     def clear_entities(self) -> None:
         self._members = {kind: [] for kind in KINDS}
@@ -99,61 +88,69 @@ class WaitSet(Destroyable):
 
     def wait(self, timeout: int) -> None:
         """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
-        if not any(self._members.values()):
-            raise RCLError("failed to wait on wait set: wait set is empty")
-        if timeout == 0:
+        self._require_members()
+        self.wait_until(None if timeout < 0 else SCHEDULER.now + timeout, polls=timeout == 0)
+
+    def wait_until(
+        self, end: int | None, *, polls: bool = False, known: GuardCondition | None = None
+    ) -> None:
+        """Wait until something is ready, or until the end; with ``polls``, only look.
+
+        ``known``: a guard condition that tells nothing new now: alone it is no reason to end the wait.
+        """
+        if polls or end is None:  # rclpy's executors have a timer among the members for any other time
+            self._require_members()
+        if polls:
             SCHEDULER.poll()
-        self._look()
-        if timeout and not SCHEDULER.is_preemptive:
-            self._pass_over_what_is_known(sys._getframe(1))
-        if timeout and not self._is_any_ready():
-            self._park(None if timeout < 0 else SCHEDULER.now + timeout)
-        elif timeout and SCHEDULER.is_preemptive:
+        self._look(end)
+        is_preemptive = SCHEDULER.is_preemptive
+        if not polls and not is_preemptive and known is not None and known.is_ready and not self.is_over:
+            self._pass_over(known)
+        if not polls and not self.is_over and not self._is_any_ready():
+            self._park(end)
+        elif not polls and is_preemptive:
             SCHEDULER.pause()
-            self._look()
-        if SCHEDULER.is_preemptive:
+            self._look(end)
+        if is_preemptive:
             self._keep_some()
         for guard in self._members["guard_condition"]:
-            guard.reset()
+            guard.is_ready = False
 
-    def _look(self) -> None:
-        """Note which members are ready."""
+    def _require_members(self) -> None:
+        if not any(self._members.values()):
+            raise RCLError("failed to wait on wait set: wait set is empty")
+
+    def _look(self, end: int | None) -> None:
+        """Note which members are ready, and whether time is up."""
         self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
+        self.is_over = end is not None and SCHEDULER.now >= end
 
     def _is_any_ready(self) -> bool:
         return any(map(any, self._ready.values()))
 
-    def _pass_over_what_is_known(self, executor: FrameType) -> None:
-        """Wait on if all that is ready is a guard condition that tells nothing new.
-
-        Tasks that an executor has run just before this wait may have added nodes, or done what it waits for:
-        it looks at that again only after the wait.
-        """
-        flags = self._ready["guard_condition"]
-        if any(flags) and sum(map(sum, self._ready.values())) == 1:
-            index = flags.index(True)
-            guard = self._members["guard_condition"][index]
-            if guard.tells_nothing_new and not executor.f_locals.get("yielded_work", True):
-                guard.reset()
-                flags[index] = False
+    def _pass_over(self, known: GuardCondition) -> None:
+        """Take a guard condition back if nothing else is ready."""
+        if sum(map(sum, self._ready.values())) == 1:
+            known.is_ready = False
+            self._ready["guard_condition"] = [False] * len(self._members["guard_condition"])
 
     def _park(self, end: int | None) -> None:
         """Wait until one of the members is ready, which none is now, or until the end."""
         task = SCHEDULER.current
-        members = [member for kind in KINDS for member in self._members[kind]]
-        for member in members:
-            member.watchers.append(task)
+        watched = [member.watchers for members in self._members.values() for member in members]
+        for watchers in watched:
+            watchers.append(task)
         try:
             while end is None or SCHEDULER.now < end:
                 dues = [timer.deadline for timer in self._members["timer"]]
                 deadlines = [due for due in (*dues, end) if due is not None]
                 SCHEDULER.park(min(deadlines, default=None), "waits for ROS")
-                self._look()
+                self._look(end)
                 if self._is_any_ready():
                     break
         finally:
-            for member in members:
-                member.watchers.remove(task)
+            for watchers in watched:
+                watchers.remove(task)
 
     def _keep_some(self) -> None:
         """Report some of what is ready only, as the schedule says; the rest is ready at the next wait.
@@ -181,6 +178,20 @@ class WaitSet(Destroyable):
         if index >= self._sizes[kind]:
             raise IndexError("wait set index too big")
         return flags is None and index < len(self._members[kind])
+
+    def has_ready(self, kind: str) -> bool:
+        """Whether a member of a kind was ready after the wait."""
+        return any(self._ready[kind])
+
+    def ready_numbers(self) -> set[int]:
+        """The numbers of all members that were ready after the wait."""
+        return {
+            member.number
+            for kind, flags in self._ready.items()
+            if any(flags)
+            for member, is_ready in zip(self._members[kind], flags, strict=True)
+            if is_ready
+        }
 
     def get_ready_entities(self, kind: str) -> list[int]:
         if kind not in KINDS or kind == "event":

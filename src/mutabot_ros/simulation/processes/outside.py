@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from mutabot.runtime.audit import listen
+from mutabot.runtime.processes.environment import listen
 from mutabot_ros.simulation.machine.scheduler import NeedsRealRos
 from mutabot_ros.simulation.machine.who_asks import refuse
 

@@ -19,7 +19,7 @@ from typing import Any
 from mutabot_ros.simulation.machine.scheduler import SCHEDULER, SECOND, NeedsRealRos, SimulatedThread
 from mutabot_ros.simulation.machine.who_asks import is_of_project, stand_in
 from mutabot_ros.simulation.middleware import signals
-from mutabot_ros.simulation.middleware.graph import WORLD, Participant
+from mutabot_ros.simulation.middleware.graph import WORLD, Destroyable, Participant
 
 #: globals of rclpy that each process has of its own, with what they are at first
 _GLOBALS: list[tuple[str, str, Any]] = [
@@ -289,6 +289,7 @@ def _remove_from_graph(contexts: Sequence[Participant]) -> None:
     for handle in handles:
         if getattr(handle, "node", handle).context in contexts and not handle.is_destroyed:
             handle.is_destroyed = True
+            Destroyable.destroyed += 1
             handle._release()
 
 

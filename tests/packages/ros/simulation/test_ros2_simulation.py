@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -202,12 +204,43 @@ def test_runs_are_equal_whatever_the_hash_seed() -> None:
     assert next(iter(logs)).count("\n") > 300
 
 
-def test_a_race_is_found_by_random_orders_and_replayed_by_its_seed() -> None:
-    def end(*schedule: str) -> int:
-        return simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", "race_cases.py", *schedule).returncode
+def test_executors_do_with_less_work_what_the_known_text_of_rclpy_does(tmp_path: Path) -> None:
+    (tmp_path / "rclpys_own.py").write_text(
+        "from mutabot_ros.simulation.middleware import executors\nexecutors.KNOWN = 'no text'\n"
+    )
+    (tmp_path / "told.py").write_text(
+        "def pytest_runtest_teardown():\n"
+        "    from rclpy.executors import Executor\n"
+        "    print('waits by', Executor._wait_for_ready_callbacks.__module__)\n"
+    )
+    path = os.pathsep.join([str(tmp_path), *sys.path])
 
-    assert end() == 0
-    ends = {str(seed): end("--ros-schedule=random", f"--ros-seed={seed}") for seed in range(8)}
-    failing = [seed for seed, code in ends.items() if code]
-    assert failing, "no order shows the race"
-    assert end("--ros-schedule=random", f"--ros-seed={failing[0]}") == 1
+    def log(*plugins: str) -> str:
+        options = [word for name in ("told", *plugins) for word in ("-p", name)]
+        cases = ("-s", "-c", os.devnull, f"--rootdir={HERE}", "logged_cases.py")
+        return simulated(HERE, *options, *cases, PYTHONPATH=path).stdout.partition("warnings summary")[0]
+
+    ours, rclpys = log(), log("rclpys_own")
+    assert ours.count("waits by mutabot_ros.simulation.middleware.executors\n") == 1
+    assert rclpys.count("waits by rclpy.executors\n") == 1
+    assert ours.count("\n") > 300
+    assert ours.replace("mutabot_ros.simulation.middleware.executors", "rclpy.executors") == rclpys
+
+
+def test_a_race_is_found_by_random_orders_and_replayed_by_its_seed() -> None:
+    def run(*options: str) -> subprocess.CompletedProcess[str]:
+        return simulated(HERE, "-c", os.devnull, f"--rootdir={HERE}", "-v", *options)
+
+    assert run("race_cases.py").returncode == 0
+    for seed in range(8):
+        found = run("race_cases.py", "--ros-schedule=random", f"--ros-seed={seed}")
+        if found.returncode:
+            break
+    assert found.returncode == 1, "no order shows the race"
+    order = re.search(r"simulated ROS: (.+)", found.stdout)
+    failed = re.search(r"FAILED (\S+) - (.+)", found.stdout)
+    assert order is not None
+    assert failed is not None
+    again = run(failed[1], *shlex.split(order[1]))
+    assert again.returncode == 1
+    assert failed[0] in again.stdout

@@ -1,1 +1,0 @@
-"""What has changed since a revision, and which mutants that can have altered."""

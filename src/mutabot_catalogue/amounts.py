@@ -1,0 +1,303 @@
+"""Numbers that are taken for another unit, and commanded amounts that are too small, too large or limited."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import ClassVar
+
+from mutabot.families import CATALOGUE
+from mutabot.model import Kind, Mode, Operation, Path, Quantity
+from mutabot.model.quantity import Value
+from mutabot.model.units import convert
+from mutabot.operators.examples import changed, reading, unchanged, writing
+from mutabot.operators.operator import Context, Subject, quantity_of
+from mutabot.operators.value import ValueOperator, map_numbers, within
+
+from .values import like, middle_of
+
+#: the robot, or the program, takes the number as if it were in the other unit
+_TAKEN = "taken"
+#: the number is worked out in the other unit, and nobody converts it
+_GIVEN = "given"
+
+_BASE = {"frame": "base", "mode": Mode.TO}
+_MOVE_TO = writing("robot:Arm.move_to", "z", Kind.TRANSLATION, axis="z", unit="m", range=(0.0, 2.0), **_BASE)
+_MOVE_BY = writing("robot:Arm.move_by", "x", Kind.TRANSLATION, axis="x", unit="m", mode=Mode.BY)
+_MOVE_IN_MM = writing(
+    "robot:Arm.move_to", "x", Kind.TRANSLATION, axis="x", unit="mm", range=(0.0, 800.0), **_BASE
+)
+_TURN = writing("robot:Arm.turn_by", "yaw", Kind.ROTATION, axis="z", unit="deg", mode=Mode.BY)
+_J1 = Quantity("[0]", Path.parse("[0]", rooted=False), Kind.ANGLE, "j1", "rad")
+_JOINTS = Operation("robot:Arm.joints", result=(_J1,), command=False)
+_IN_CM, _IN_MM = (reading("laser:distance", Kind.DISTANCE, unit=unit) for unit in ("cm", "mm"))
+_WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s")
+
+
+class _OtherUnit(ValueOperator):
+    """Takes numbers for another unit, or gives them so.
+
+    Class attributes:
+        units: the other unit, by a quantity's own.
+        ways: which of the two mistakes.
+
+    Stands for: A number in another unit: {units}.
+    """
+
+    family = CATALOGUE
+    units: ClassVar[Mapping[str, str]]
+    ways: ClassVar[tuple[str, ...]] = (_TAKEN, _GIVEN)
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.unit in self.units
+
+    def variants_of(self, quantity: Quantity) -> Iterable[str]:
+        return (f"{way}-{self.units[quantity.unit or '']}" for way in self.ways)
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        way, _, other = context.subject.variant.partition("-")
+        own = context.quantity.unit or ""
+        units = (other, own) if way == _TAKEN else (own, other)
+        return map_numbers(value, lambda number: like(number, convert(number, *units)))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        told = super().describe(subject, before, after)
+        how = "taken for" if subject.variant.startswith(_TAKEN) else "given in"
+        return f"{told} ({how} {self.units[quantity_of(subject).unit or '']})"
+
+
+def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
+    """The same units, and the other way round."""
+    return {**units, **{other: one for one, other in units.items()}}
+
+
+class CentimetreForMetre(_OtherUnit):
+    """A length or linear speed in metres is taken for, or given in, centimetres; and the other way round.
+
+    Where: written and read quantities in m, cm, m/s or cm/s.
+    """
+
+    name = "cm-for-m"
+    units = _both_ways({"m": "cm", "m/s": "cm/s"})
+    examples = (
+        changed(_MOVE_TO, 0.5, 0.005, "taken-cm"),
+        changed(_MOVE_TO, 0.01, 1.0, "given-cm"),
+        changed(_IN_CM, 12.0, 0.12, "given-m"),
+        unchanged(_MOVE_TO, 0.5, "50 m is outside the range [0, 2]", "given-cm"),
+    )
+
+
+class MillimetreForMetre(_OtherUnit):
+    """A length or linear speed in metres is taken for, or given in, millimetres; and the other way round.
+
+    Where: written and read quantities in m or mm, and their speeds and accelerations.
+    """
+
+    name = "mm-for-m"
+    units = _both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
+    examples = (
+        changed(_MOVE_BY, 0.5, 0.0005, "taken-mm"),
+        changed(_MOVE_BY, 0.5, 500.0, "given-mm"),
+        changed(_IN_MM, 12, 12000, "taken-m"),
+        unchanged(_MOVE_BY, 0.0, "zero is zero in any unit", "taken-mm"),
+    )
+
+
+class InchForMillimetre(_OtherUnit):
+    """A length in millimetres is taken for, or given in, inches; and the other way round.
+
+    Where: written and read quantities in mm or inch.
+    """
+
+    name = "inch-for-mm"
+    units = _both_ways({"mm": "inch"})
+    examples = (
+        changed(_MOVE_IN_MM, 10, 254, "taken-inch"),
+        changed(_MOVE_IN_MM, 254, 10, "given-inch"),
+        changed(_IN_MM, 508.0, 20.0, "given-inch"),
+        unchanged(_MOVE_IN_MM, 40, "1016 mm is out of range", "taken-inch"),
+    )
+
+
+class DegreeForRadian(_OtherUnit):
+    """An angle or angular speed in radians is taken for, or given in, degrees; and the other way round.
+
+    Where: written and read quantities in rad or deg, rotation vectors and Euler angles included, and their
+    speeds and accelerations.
+    """
+
+    name = "deg-for-rad"
+    units = _both_ways({"rad": "deg", "rad/s": "deg/s", "rad/s^2": "deg/s^2"})
+    examples = (
+        changed(_TURN, 3.0, 171.88733853924697, "taken-rad"),
+        changed(_TURN, 180.0, 3.141592653589793, "given-rad"),
+        changed(_JOINTS, 1.0, 57.29577951308232, "given-deg"),
+        unchanged(_TURN, 0.0, "zero is zero in any unit", "given-rad"),
+    )
+
+
+class MillisecondForSecond(_OtherUnit):
+    """A duration in seconds is taken for milliseconds, not the other way round: that only times out.
+
+    Where: durations in s.
+    """
+
+    name = "ms-for-s"
+    units: ClassVar[Mapping[str, str]] = {"s": "ms"}
+    ways = (_TAKEN,)
+    of_read = False
+    examples = (
+        changed(_WAIT, 0.8, 0.0008, "taken-ms"),
+        unchanged(_WAIT, 0.0, "no time is no time", "taken-ms"),
+    )
+
+
+_SPEED = writing("robot:Arm.set_speed", "speed", Kind.SPEED, unit="m/s", range=(0.0, 1.0))
+_PRESS = writing("robot:Arm.press", "force", Kind.FORCE, unit="N")
+_GRIP = writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(20.0, 235.0))
+_LIMITED = writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(0.0, 100.0))
+_PAYLOAD = writing("robot:Arm.set_payload", "mass", Kind.MASS, unit="kg", range=(0.0, 5.0))
+_OPEN = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
+
+
+class _Factor(ValueOperator):
+    """Multiplies a commanded number; what leaves its range stays at the end of it.
+
+    Class attributes:
+        is_limited: whether it does.
+
+    Stands for: A wrong parameter: {parameters}.
+    """
+
+    family = CATALOGUE
+    of_read = False
+    variants: ClassVar[Mapping[str, float]] = {"x0.5": 0.5, "x2": 2.0}
+    is_limited: ClassVar[bool] = True
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        limits = context.quantity.range if self.is_limited else None
+        return map_numbers(value, lambda number: like(number, within(context.option * number, limits)))
+
+
+class SpeedOverride(_Factor):
+    """A speed or acceleration is 50 % or 200 % of the commanded one, within its range.
+
+    Where: written quantities of kind speed, acceleration or jerk.
+    """
+
+    name = "speed-override"
+    kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
+    examples = (
+        changed(_SPEED, 0.5, 0.25, "x0.5"),
+        changed(_SPEED, 0.8, 1.0, "x2"),
+        unchanged(_SPEED, 1.0, "it is at the end of its range", "x2"),
+    )
+
+
+class ForceOverride(_Factor):
+    """A force or torque is 50 % or 200 % of the commanded one, within its range.
+
+    Where: written quantities of kind force or torque.
+    """
+
+    name = "force-override"
+    kinds = frozenset({Kind.FORCE, Kind.TORQUE})
+    examples = (
+        changed(_PRESS, 40.0, 20.0, "x0.5"),
+        changed(_PRESS, 40.0, 80.0, "x2"),
+        unchanged(_PRESS, 0.0, "twice nothing is nothing", "x2"),
+    )
+
+
+class WeakGrip(_Factor):
+    """A gripper has 30 % of the commanded force, or the least of its range.
+
+    Where: written quantities of kind force, in calls that command no motion.
+    """
+
+    name = "weak-grip"
+    variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
+    examples = (
+        changed(_GRIP, 160, 48, "x0.3"),
+        changed(_GRIP, 40, 20, "x0.3"),
+        unchanged(_GRIP, 20, "it is the least already", "x0.3"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        motions = (Kind.TRANSLATION, Kind.ROTATION)
+        return quantity.kind is Kind.FORCE and not any(
+            one.kind in motions or one.is_whole for one in whole.written
+        )
+
+
+class WrongPayload(_Factor):
+    """The payload that is set is none, or twice as heavy.
+
+    Where: written quantities of kind mass.
+    """
+
+    name = "wrong-payload"
+    kinds = frozenset({Kind.MASS})
+    variants: ClassVar[Mapping[str, float]] = {"none": 0.0, "double": 2.0}
+    is_limited = False
+    examples = (
+        changed(_PAYLOAD, 1.2, 0.0, "none"),
+        changed(_PAYLOAD, 1.2, 2.4, "double"),
+        unchanged(_PAYLOAD, 4.0, "the robot takes 5 kg at most", "double"),
+        unchanged(_PAYLOAD, 0.0, "there is none to forget", "none"),
+    )
+
+
+class PartialOpening(ValueOperator):
+    """A gripper stops half way.
+
+    Where: openings with a range or clip; those of two values take no other.
+
+    Stands for: Commands that are not carried out in full, as by a gripper that jams: {commands}.
+    """
+
+    name = "partial-opening"
+    family = CATALOGUE
+    of_read = False
+    examples = (
+        changed(_OPEN, 80.0, 40.0),
+        changed(_OPEN, 0.0, 42.5),
+        unchanged(_OPEN, {}, "the call says nothing of it"),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.kind is Kind.OPENING and _has_limits(quantity)
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        low, high = middle_of(context.quantity, 1.0)
+
+        def half(number: float) -> float:
+            far = low if number - low >= high - number else high
+            return like(number, (number + far) / 2.0)
+
+        return map_numbers(value, half)
+
+
+class SilentLimit(ValueOperator):
+    """A commanded value is limited to the middle 80 % of its range, without notice.
+
+    Where: written numbers with a range or clip.
+
+    Stands for: A wrong parameter: {parameters}.
+    """
+
+    name = "silent-limit"
+    family = CATALOGUE
+    of_read = False
+    examples = (changed(_LIMITED, 100, 90), unchanged(_LIMITED, 50, "it is within"))
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        is_number = quantity.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)
+        return is_number and _has_limits(quantity) and not quantity.is_whole
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        limits = middle_of(context.quantity, 0.8)
+        return map_numbers(value, lambda number: like(number, within(number, limits)))
+
+
+def _has_limits(quantity: Quantity) -> bool:
+    return (quantity.range or quantity.clip) is not None and quantity.values is None

@@ -1,0 +1,300 @@
+"""What headers of messages say wrongly, and what publishers, timers and parameters are set up with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import ClassVar
+
+from mutabot.families import MIDDLEWARE
+from mutabot.model import Kind, Operation, Quantity
+from mutabot.model.operation import DEFAULT, Form
+from mutabot.model.quantity import Value, is_same
+from mutabot.operators.command import form_of
+from mutabot.operators.examples import changed, unchanged
+from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of
+from mutabot.operators.value import SAME, ValueOperator, is_number, next_of
+
+from . import _examples as calls
+
+_EMPTY, _UNKNOWN = "empty", "unknown"
+_SEND = calls.operation(Form.PUBLISH, "/arm/target", (calls.FRAME,))
+_SEND_ANY = calls.operation(Form.PUBLISH, "/arm/target", (calls.OPEN_FRAME,))
+_HEAR = calls.operation(Form.RECEIVE, "/scan", result=(calls.HEARD_FRAME,))
+
+
+class FreeValueOperator(ValueOperator):
+    """Changes a value that a middleware takes whatever it is."""
+
+    family = MIDDLEWARE
+
+    def why_unchanged(self, quantity: Quantity, before: Value, after: Value | None) -> str:
+        return SAME if is_same(quantity, after, before) else ""
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        one, other = quantity.texts(before, after)
+        return f"{quantity.name} {one or '“”'} → {other or '“”'}"
+
+
+class WrongFrame(FreeValueOperator):
+    """The header names another frame: the next of the vocabulary's values, else an unknown one; or none at
+    all.
+    """
+
+    name = "wrong-frame"
+    kinds = frozenset({Kind.FRAME_ID})
+    examples = (
+        changed(_SEND, "base", "tool"),
+        changed(_SEND_ANY, "base", "base_unknown", _UNKNOWN),
+        changed(_HEAR, "base", "", _EMPTY),
+        unchanged(_SEND, "", "the value would stay the same", _EMPTY),
+    )
+
+    def variants_of(self, quantity: Quantity) -> Iterable[str]:
+        return ("" if quantity.values else _UNKNOWN, _EMPTY)
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if context.subject.variant == _EMPTY:
+            return ""
+        if context.subject.variant == _UNKNOWN:
+            return f"{value}_unknown"
+        if value not in (context.quantity.values or ()):
+            raise Unchanged(f"{value!r} is none of the frames that the vocabulary gives")
+        return next_of(value, context.quantity)
+
+
+class ShiftStamp(FreeValueOperator):
+    """The header's stamp lies 5 s in the past or in the future."""
+
+    name = "shift-stamp"
+    kinds = frozenset({Kind.STAMP})
+    #: seconds: more than programs that check the age of a message put up with. Less than 2 s is no difference
+    #: between two numbers of seconds since 1970, as values are compared
+    variants: ClassVar[Mapping[str, float]] = {"-5": -5.0, "5": 5.0}
+    examples = (
+        changed(calls.SEND_STAMP, 20.0, 15.0, "-5"),
+        changed(calls.HEAR_STAMP, 20.0, 25.0, "5"),
+        unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty", "5"),
+        unchanged(calls.SEND_STAMP, 2.0, "no stamp is before zero", "-5"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not value:
+            raise Unchanged("the stamp is empty")
+        shifted = value + context.option
+        if shifted < 0:
+            raise Unchanged("no stamp is before zero")
+        return shifted
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        when = "past" if subject.variant.startswith("-") else "future"
+        return f"{quantity_of(subject).name} lies 5 s in the {when}"
+
+
+class EmptyStamp(FreeValueOperator):
+    """The header's stamp is zero."""
+
+    name = "empty-stamp"
+    kinds = frozenset({Kind.STAMP})
+    examples = (
+        changed(calls.SEND_STAMP, 20.0, 0.0),
+        changed(calls.HEAR_STAMP, 20.0, 0.0),
+        unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty already"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not value:
+            raise Unchanged("the stamp is empty already")
+        return 0.0
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        return f"{quantity_of(subject).name} is empty"
+
+
+_MISSPELT, _GLOBAL = "misspelt", "global"
+_TIGHT, _NONE = "tight", "none"
+_NO_DEFAULT = "the program gives no default"
+_IS_DEFAULT = "it has its default"
+
+
+class _Setting(FreeValueOperator):
+    """Changes one thing that something is set up with.
+
+    Class attributes:
+        setting: its name.
+    """
+
+    setting: ClassVar[str]
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.kind is Kind.SETTING and quantity.name == self.setting
+
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        if self.setting not in values:  # a middleware need not have all that others have
+            raise Unchanged("its middleware has no such setting, or chooses it itself")
+        return await super().changes(values, context)
+
+
+class WrongName(_Setting):
+    """A publisher, subscription or client is set up under a name that nobody else has, or without the
+    namespace of its node, as a wrong remapping does.
+    """
+
+    name = "wrong-name"
+    setting = "name"
+    variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
+    examples = (
+        changed(calls.SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
+        changed(calls.ADVERTISE, "target", "/target", _GLOBAL, quantity="name"),
+        unchanged(calls.CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
+        unchanged(calls.SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if context.subject.variant == _MISSPELT:
+            return f"{value}_misspelt"
+        if str(value).startswith("/"):
+            raise Unchanged("its name is a global one")
+        found = "/" + str(value).removeprefix("~").removeprefix("/")
+        named = context.subject.operation.named
+        if named is not None and named.name == found:
+            raise Unchanged("its node has no namespace")
+        return found
+
+
+class ShortQueue(_Setting):
+    """The queue of a publisher or subscription holds one message."""
+
+    name = "short-queue"
+    setting = "depth"
+    examples = (
+        changed(calls.SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"),
+        unchanged(
+            calls.ADVERTISE, {"name": "target", "depth": 1}, "the value would stay the same", quantity="depth"
+        ),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return 1
+
+
+class _OtherOfTwo(_Setting):
+    """Sets the other of two values."""
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        values = context.quantity.values or ()
+        if value not in values:
+            raise Unchanged(f"{value} is neither {' nor '.join(map(str, values))}")
+        return values[1 - values.index(value)]
+
+
+class FlipLatch(_OtherOfTwo):
+    """A publisher that keeps its last message for later subscribers does not, or the other way round."""
+
+    name = "flip-latch"
+    setting = "latch"
+    examples = (
+        changed(calls.ADVERTISE, True, False, quantity="latch"),
+        changed(calls.ADVERTISE, False, True, quantity="latch"),
+        unchanged(calls.ADVERTISE, {"name": "target"}, "its middleware latches nothing", quantity="latch"),
+    )
+
+
+def _of_two(quantity: str, one: str, other: str, first: Operation, second: Operation) -> tuple[Example, ...]:
+    """Examples of a policy that has two values beside the system's default."""
+    return (
+        changed(first, one, other, quantity=quantity),
+        changed(second, other, one, quantity=quantity),
+        unchanged(
+            calls.SUBSCRIBE,
+            "system_default",
+            f"system_default is neither {one} nor {other}",
+            quantity=quantity,
+        ),
+    )
+
+
+class WrongReliability(_OtherOfTwo):
+    """A publisher or subscription is best effort instead of reliable, or the other way round."""
+
+    name = "wrong-reliability"
+    setting = "reliability"
+    examples = _of_two("reliability", "reliable", "best_effort", calls.ADVERTISE, calls.SUBSCRIBE)
+
+
+class WrongDurability(_OtherOfTwo):
+    """A publisher or subscription is volatile instead of transient local, or the other way round."""
+
+    name = "wrong-durability"
+    setting = "durability"
+    examples = _of_two("durability", "volatile", "transient_local", calls.SUBSCRIBE, calls.ADVERTISE)
+
+
+class WrongDeadline(_Setting):
+    """A publisher or subscription has a deadline of 1 ms, or none where it had one."""
+
+    name = "wrong-deadline"
+    setting = "deadline"
+    #: seconds: more often than any of the programs this is for publishes
+    variants: ClassVar[Mapping[str, float]] = {_TIGHT: 0.001, _NONE: 0.0}
+    examples = (
+        changed(calls.SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
+        changed(calls.ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
+        unchanged(calls.ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not value and context.subject.variant == _NONE:
+            raise Unchanged("it has none")
+        return context.option
+
+
+class WrongPeriod(_Setting):
+    """A timer or rate has twice the period, or half of it."""
+
+    name = "wrong-period"
+    setting = "period"
+    variants: ClassVar[Mapping[str, float]] = {"x2": 2.0, "x0.5": 0.5}
+    examples = (
+        changed(calls.TIMER, 0.1, 0.2, "x2", quantity="period"),
+        changed(calls.RATE, 0.1, 0.05, "x0.5", quantity="period"),
+        unchanged(calls.TIMER, 0.0, "it has no period", "x2", quantity="period"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not is_number(value) or not value:
+            raise Unchanged("it has no period")
+        return value * context.option
+
+
+_SET, _READ = Subject(calls.SPEED, quantity=calls.SPEED.result[0]), {"value": 0.25}
+
+
+class UseDefault(FreeValueOperator):
+    """A parameter has the program's default instead of what was set."""
+
+    name = "use-default"
+    of_written = False
+    examples = (
+        Example(_SET, {"default": 1.0}, _READ, performed=({"default": 1.0},), received={"value": 1.0}),
+        Example(_SET, {}, _READ, away=_NO_DEFAULT),
+        Example(_SET, {"default": 0.25}, _READ, away=_IS_DEFAULT),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return form_of(whole.operation) is Form.PARAMETER and not quantity.path.steps
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        default = context.call.values[DEFAULT.name]
+        if is_same(context.quantity, default, value):
+            raise Unchanged(_IS_DEFAULT)
+        return default
+
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        if DEFAULT.name not in context.call.values:
+            raise Unchanged(_NO_DEFAULT)
+        return await super().changes(values, context)
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        one, other = quantity_of(subject).texts(before, after)
+        return f"the default {other} instead of {one}"

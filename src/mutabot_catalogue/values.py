@@ -1,0 +1,72 @@
+"""What several operators share: two values exchanged, the middle of a range, what comes by itself."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from mutabot.families import CATALOGUE
+from mutabot.model import Operation, Pattern, Quantity
+from mutabot.model.operation import COMING
+from mutabot.model.quantity import Value
+from mutabot.operators.command import form_of
+from mutabot.operators.operator import Context, Subject, Unchanged, quantity_of
+from mutabot.operators.value import ValuesOperator, given, label
+
+
+class Exchange(ValuesOperator):
+    """Exchanges two values of one kind; the variant names the second."""
+
+    family = CATALOGUE
+
+    @abstractmethod
+    def pairs(self, whole: Subject) -> Iterable[tuple[Quantity, Quantity]]:
+        """The pairs of a call whose values could be exchanged."""
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
+        whole = Subject(operation, pattern)
+        for one, other in self.pairs(whole):
+            yield replace(whole, quantity=one, variant=other.name.lstrip("."))
+
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        one, other = context.quantity.name, _other_of(context.subject).name
+        first, second = (given(values, name, context.subject) for name in (one, other))
+        return {one: second, other: first}
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        one, other = quantity_of(subject), _other_of(subject)
+        told = f"{label(one)} {one.text(before)} and {label(other)} {other.text(after)} exchanged"
+        return told if subject.is_written else f"reads {told}"
+
+
+def _other_of(subject: Subject) -> Quantity:
+    """The second quantity of a pair."""
+    name = subject.variant.partition("+")[0]
+    return next(one for one in subject.side if one.name.lstrip(".") == name)
+
+
+def is_alike(one: Quantity, other: Quantity) -> bool:
+    """Whether the values of two quantities mean the same, but for where they stand."""
+    return (one.kind, one.unit, one.mode, one.frame) == (other.kind, other.unit, other.mode, other.frame)
+
+
+def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
+    """The ends of the middle share of what a quantity may be. Raises Unchanged if nobody knows its range."""
+    limits = quantity.range or quantity.clip
+    if limits is None:
+        raise Unchanged("the vocabulary gives no range")
+    low, high = limits
+    cut = (high - low) * (1.0 - share) / 2.0
+    return low + cut, high - cut
+
+
+def like(before: float, after: float) -> float:
+    """A number in the type of the one in whose place it comes, where that loses nothing."""
+    is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
+    return int(after) if is_whole else after
+
+
+def comes_by_itself(operation: Operation) -> bool:
+    """Whether nobody asks for it: a message to a callback, a tick."""
+    return form_of(operation) in COMING

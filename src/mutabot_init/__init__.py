@@ -1,0 +1,1 @@
+"""Proposing a configuration and a vocabulary for a project, from one plain run of its tests; or a project."""

@@ -1,0 +1,30 @@
+"""``mutabot init``: a draft for a project that there is, or a project from a template."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mutabot.cli.output import echo, tell
+
+from .propose import propose
+from .template import start
+
+
+def init(
+    context: typer.Context,
+    program: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
+    ] = None,
+    template: tuple[str, str] | None = None,
+) -> None:
+    """Draft a configuration and a vocabulary from one run of the tests, or start a project."""
+    if template is not None:
+        lines = start(context.obj, program or [], *template)
+    else:
+        lines = propose(context.obj, program or [], tell=lambda text: tell([text]))
+    for line in lines:
+        echo(line)

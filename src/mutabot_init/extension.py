@@ -1,0 +1,16 @@
+"""What this package brings to mutabot."""
+
+from __future__ import annotations
+
+from mutabot.extensions import Described, Extension
+
+EXTENSION = Extension(
+    interface=1,
+    commands={
+        "init": Described(
+            "mutabot_init.command:init",
+            "Draft a configuration and a vocabulary.",
+            before="check",
+        )
+    },
+)

@@ -1,0 +1,427 @@
+"""What arguments and results mean, from their names, docstrings and values: told, or asked.
+
+The verb of the callable decides first: the argument of ``set_speed(x)`` is a speed, that of ``move_up(x)``
+a distance along z. A guess with questions becomes a comment in the draft.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from .watched import WatchedPart
+from .words import (
+    DIRECTIONS,
+    GRIPPER,
+    HOUSEKEEPING,
+    INPUTS,
+    KINDS,
+    MODES,
+    OUTPUT,
+    READERS,
+    REPLIES,
+    SUBJECTS,
+    TURNS,
+    UNITS,
+    VERBS,
+    first,
+    noun_of,
+    units_in,
+    words_of,
+)
+
+#: a quantity as a vocabulary writes it; kind, axis and mode of a motion
+Table = dict[str, Any]
+Motion = tuple[str, str | None, str | None]
+
+_AXIS = re.compile(r"(?P<delta>d|delta_?|offset_?)?(?P<axis>[xyz])\d?")
+_TURN = re.compile(r"(?:d|delta_?)?(?:theta|rot|rotation|angle|euler|r|w)_?(?P<axis>[xyz])")
+#: kind, axis and mode of what is only named
+_NAMED: Mapping[str, Motion] = {
+    "angle": ("rotation", None, None),
+    "height": ("translation", "z", None),
+    "length": ("translation", None, "by"),
+}
+_RATE = re.compile(r"v_?(?P<axis>[xyz])")
+_NAMED_TURNS = {"yaw": "z", "pitch": "y", "roll": "x", "heading": "z"}
+_JOINT = re.compile(r"(?:j|joint_?|q|axis_?)(?P<number>[1-9]|1[0-2])")
+_A_NUMBER = r"(-?\d+(?:\.\d+)?)"
+#: how docstrings write a range
+_RANGES = (
+    re.compile(rf"between\s+{_A_NUMBER}\s*(?:\([^)]*\))?\s+and\s+(?:the\s+default\s+)?{_A_NUMBER}"),
+    re.compile(rf"[\[(]{_A_NUMBER}\s*(?:\.\.\.?|,)\s*{_A_NUMBER}[\])]"),
+    re.compile(rf"{_A_NUMBER}\s*(?:~|to)\s*{_A_NUMBER}"),
+)
+#: what libraries may scale to a share of its most
+_SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
+#: where a scale without a unit ends: a fraction, or so many bits
+_TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
+#: how the line of another argument begins
+_NEXT = re.compile(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)")
+#: more different numbers than these are no settings, but a scale
+_MOST_VALUES = 5
+_MOST_JOINTS = 12
+#: longer texts, and more of them, are no labels
+_LONGEST_LABEL, _MOST_LABELS = 30, 6
+#: arguments that say how to do it
+_HOW = frozenset({"wait", "blocking", "sync", "relative", "asynchronous", "is_radian", "timeout"})
+_ACTIONS = frozenset({"action", "actions", "act", "a", "u", "ctrl"})
+
+
+@dataclass
+class Guess:
+    """A quantity and how sure we are.
+
+    Attributes:
+        table: the quantity; empty if nothing could be guessed.
+        questions: what the user must answer before it counts.
+        note: how it was told, where that was by the size of values.
+    """
+
+    table: Table = field(default_factory=dict)
+    questions: list[str] = field(default_factory=list)
+    note: str = ""
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether it can stand in the vocabulary as it is."""
+        return bool(self.table) and not self.questions
+
+
+@dataclass(frozen=True)
+class NameContext:
+    """Where a name stands.
+
+    Attributes:
+        words: words of the callable's own name.
+        owner: words of its class and module.
+        doc: docstrings of the callable and its class, or of the class that holds the value.
+        annotation: type as written, or empty.
+        values: values that were seen, and what the program compares them with.
+        names: the names of all arguments.
+        relative: what an argument ``relative`` said; empty if there is none.
+        angle_unit: unit of angles, as an argument such as ``degrees`` said; empty if none did.
+    """
+
+    words: tuple[str, ...] = ()
+    owner: tuple[str, ...] = ()
+    doc: str = ""
+    annotation: str = ""
+    values: Sequence[Any] = ()
+    names: frozenset[str] = frozenset()
+    relative: frozenset[bool] = frozenset()
+    angle_unit: str = ""
+
+    @property
+    def is_of_gripper(self) -> bool:
+        """Whether the callable or its class is about a gripper."""
+        return bool(GRIPPER & {*self.words, *self.owner})
+
+
+def guess_argument(name: str, setting: NameContext) -> Guess:
+    """What an argument means; an empty guess if neither the callable's name nor its own tells."""
+    words, unit = _without_unit(words_of(name))
+    noun = noun_of(words)
+    if noun == "none" or any(isinstance(value, str) for value in setting.values):
+        return Guess()  # a text says how to do it, not what
+    is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")
+    if setting.is_of_gripper and is_open and (len(words) == 1 or not _are_truth(setting)):
+        return _opening(unit, name, setting)
+    if _are_truth(setting):
+        is_output = (noun == "switch" and len(words) == 1) or (
+            noun == "generic" and OUTPUT & {*setting.words, *setting.owner}
+        )
+        return Guess({"kind": "output", "values": [False, True]}) if is_output else Guess()
+    if OUTPUT & {*setting.words, *setting.owner} and noun in ("generic", "switch"):
+        return _output(setting)
+    stem = "_".join(words)
+    motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
+    limits = _documented_range(_about(name, setting.doc), setting) if noun == "generic" else None
+    if limits is not None and limits[1] in _TOPS and limits[0] in (0.0, -limits[1]):
+        return Guess({"kind": "output", "range": limits})
+    along = words[-1] if len(words) > 1 and words[-1] in ("x", "y", "z") else None
+    if motion is not None:
+        return _moved(motion[0], motion[1] or along, motion[2], unit, name, setting)
+    subject, is_only = noun_of(setting.words), len(setting.names - _HOW) <= 1
+    if noun in ("generic", "place", "") and subject in KINDS and is_only:
+        noun = subject
+    if noun in KINDS:
+        kind, _, dimension = KINDS[noun]
+        return measured({"kind": kind, **({"axis": along} if along else {})}, dimension, unit, name, setting)
+    return Guess()
+
+
+def _by_verb(noun: str, stem: str, setting: NameContext) -> Motion | None:
+    """Kind, axis and mode where the callable's verb decides, whatever its only number is called."""
+    verb, subject = first(VERBS, setting.words), noun_of(setting.words)
+    is_axis = _AXIS.fullmatch(stem) is not None
+    is_vector = len({"x", "y", "z", "dx", "dy", "dz"} & setting.names) > 1
+    if (noun in ("generic", "") or is_axis) and subject in SUBJECTS and verb is None and not is_vector:
+        return KINDS[subject][0], stem if is_axis and stem != "x" else None, None
+    is_amount = noun in ("generic", "length", "angle") or is_axis
+    axis = first(DIRECTIONS, setting.words)
+    verb = verb or ("translation" if axis else None)
+    if verb in (None, "duration") or is_vector or not is_amount:
+        return None
+    if verb == "rotation":
+        return "rotation", "z" if TURNS & set(setting.words) else None, None
+    is_told = axis is not None or (noun in ("length", "generic") and not is_axis)
+    return ("translation", axis, "by" if noun == "length" else None) if is_told else None
+
+
+def _by_name(noun: str, stem: str) -> Motion | None:
+    """Kind, axis and mode where the name alone shows a motion."""
+    if match := _AXIS.fullmatch(stem):
+        return "translation", match["axis"], "by" if match["delta"] else None
+    if match := _RATE.fullmatch(stem):
+        return "speed", match["axis"], None
+    if match := _TURN.fullmatch(stem):
+        return "rotation", match["axis"], None
+    if match := _JOINT.fullmatch(stem):
+        return "rotation", f"j{match['number']}", "to"
+    turned = stem if stem in _NAMED_TURNS else stem.removeprefix("d")
+    if turned in _NAMED_TURNS:
+        return "rotation", _NAMED_TURNS[turned], None if turned == stem else "by"
+    return _NAMED.get(noun)
+
+
+def _moved(
+    kind: str, axis: str | None, mode: str | None, unit: str | None, name: str, setting: NameContext
+) -> Guess:
+    """A commanded motion, or what a setter sets."""
+    table: Table = {"kind": kind, **({"axis": axis} if axis else {})}
+    if kind not in ("translation", "rotation"):
+        return measured(table, kind, unit, name, setting)
+    guess = measured(table, "angle" if kind == "rotation" else "length", unit, name, setting)
+    if guess.table["kind"] != kind:
+        return guess
+    mode = mode or _mode(setting)
+    if mode is None:
+        guess.questions.insert(0, 'a target (mode = "to") or a change (mode = "by")?')
+    guess.table["mode"] = mode or "to"
+    if len(setting.relative) > 1:
+        guess.table["mode"] = {"argument": "relative", "true": "by", "false": "to"}
+    return guess
+
+
+def _mode(setting: NameContext) -> str | None:
+    if setting.relative:
+        return "by" if True in setting.relative else "to"
+    told = {MODES[word] for word in setting.words if word in MODES}
+    if len(told) == 1 or "by" in setting.words:
+        return "by" if "by" in setting.words else told.pop()
+    said = {word for word in ("relative", "absolute") if re.search(rf"\b{word}", setting.doc.lower())}
+    return {"relative": "by", "absolute": "to"}[said.pop()] if len(said) == 1 else None
+
+
+def measured(table: Table, dimension: str, unit: str | None, name: str, setting: NameContext) -> Guess:
+    """A quantity with a unit: as its name or a docstring says, else as its values show."""
+    fitting = UNITS[dimension]
+    if unit in fitting:
+        return Guess({**table, "unit": unit})
+    about = _about(name, setting.doc)
+    if dimension == "angle" and setting.angle_unit:
+        return Guess({**table, "unit": setting.angle_unit})
+    said = units_in(about, dimension)
+    if dimension in _SCALED and "percent" in units_in(about, "ratio"):
+        asked = [f"the unit: {', '.join(said)}, or a ratio in percent?"] if said else []
+        return Guess({**table, "unit": said[0]} if said else {"kind": "ratio", "unit": "percent"}, asked)
+    limits = _documented_range(about, setting) if dimension in _SCALED else None
+    if limits is not None and limits[1] in _TOPS[1:]:
+        return Guess({"kind": "output", "range": limits})
+    if limits is not None and limits[1] in (1.0, 100.0) and not said:
+        unit = "fraction" if limits[1] == 1.0 else "percent"
+        return Guess({"kind": "ratio", "unit": unit, "range": limits})
+    said = said or units_in(setting.doc, dimension)
+    if len(said) == 1:
+        return Guess({**table, "unit": said[0]})
+    shown = _unit_by_size(dimension, setting.values) if not said else None
+    if shown is not None:
+        return Guess({**table, "unit": shown}, note="unit told by the values")
+    return Guess({**table, "unit": (said or fitting)[0]}, [f"the unit: {', '.join(said or fitting)}?"])
+
+
+def _about(name: str, doc: str) -> str:
+    """The lines of a docstring that speak of an argument."""
+    lines, found = doc.splitlines(), []
+    for index, line in enumerate(lines):
+        if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line):
+            found.append(line)
+            found += [one for one in lines[index + 1 : index + 2] if not _NEXT.match(one)]
+    return "\n".join(found)
+
+
+def _documented_range(text: str, setting: NameContext) -> list[float] | None:
+    """The least and greatest value that the docstring of an argument gives, if it gives one that fits."""
+    pairs = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
+    seen = [value for value in setting.values if isinstance(value, int | float)]
+    found = [[least, most] for least, most in pairs if least < most and least <= min(seen, default=least)]
+    found = [pair for pair in found if max(seen, default=pair[0]) <= pair[1]]
+    return found[0] if len(found) == 1 else None
+
+
+def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
+    """The unit that numbers of this size have: no arm reaches 10 m, and 1.57 are no degrees."""
+    flat = [one for value in values for one in (value if isinstance(value, list) else [value])]
+    numbers = [abs(one) for one in flat if isinstance(one, int | float) and not isinstance(one, bool)]
+    largest = max(numbers, default=0.0)
+    is_whole = all(float(number).is_integer() for number in numbers)
+    if dimension == "length":
+        least = 100 if any(isinstance(one, list) for one in values) else 1000  # a list is the pose of an arm
+        return "m" if 0 < largest < 2 and not is_whole else "mm" if largest >= least else None
+    if dimension == "angle":
+        return "deg" if largest > 6.5 else "rad" if largest > 0 and not is_whole else None
+    if dimension == "time":
+        return "s" if 0 < largest <= 60 else None
+    return None
+
+
+def _opening(unit: str | None, name: str, setting: NameContext) -> Guess:
+    if _are_truth(setting):
+        return Guess({"kind": "opening", "values": [False, True]})
+    values = _distinct(setting.values)
+    if len(values) == 2 and set(values) == {0, 1}:
+        return Guess({"kind": "opening", "values": values})
+    about = _about(name, setting.doc)
+    said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about, setting)
+    if limits in ([0.0, 1.0], [0.0, 100.0]) and not said:
+        unit = "fraction" if limits[1] == 1.0 else "percent"
+        return Guess({"kind": "opening", "unit": unit, "range": limits})
+    table: Table = {"kind": "opening", **({"unit": said[0]} if said else {}), "range": ["…", "…"]}
+    asked = "what is fully closed, what is fully open?"
+    return Guess(table, [asked if said else f"{asked} in which unit (fraction, percent, mm, m)?"])
+
+
+def _output(setting: NameContext) -> Guess:
+    values = _distinct(setting.values)
+    if len(values) >= 2 and len(values) <= _MOST_VALUES:
+        return Guess({"kind": "output", "values": values})
+    if values and all(value in (0, 1) for value in values):
+        return Guess({"kind": "output", "values": [0, 1]})
+    return Guess({"kind": "output", "values": ["…", "…"]}, ["which values can it have?"])
+
+
+def _literals(annotation: str) -> list[str]:
+    literal = re.fullmatch(r"Literal\[(.*)\]", annotation)
+    return re.findall(r"'([^']*)'", literal[1]) if literal else []
+
+
+def guess_reading(name: str, setting: NameContext) -> Guess:
+    """What a result, or the part of it with this name, means."""
+    words, unit = _without_unit(words_of(name))
+    about = {*words, *setting.words}
+    while len(words) > 1 and words[0] in READERS:
+        words = words[1:]
+    noun, stem = noun_of(words), "_".join(words)
+    is_predicate = bool({"is", "has", "can"} & about)
+    is_reply = about & HOUSEKEEPING and (is_predicate or REPLIES & set(setting.owner))
+    if noun == "none" or INPUTS & set(setting.owner) or is_reply:
+        return Guess()
+    if _are_truth(setting) or (is_predicate and all(value in (0, 1) for value in setting.values)):
+        return Guess({"kind": "flag"})
+    if noun == "label" or setting.annotation == "str" or setting.annotation.startswith("Literal"):
+        return _label(setting)
+    if GRIPPER & about:
+        return measured({"kind": "distance"}, "length", unit, name, setting) if noun else Guess()
+    motion = _by_name("", stem)
+    if motion is not None:
+        kind, axis, _ = motion
+        turned = "angle" if axis is not None and axis.startswith("j") else "orientation"
+        read, dimension = {"translation": ("position", "length"), "rotation": (turned, "angle")}.get(
+            kind, (kind, kind)
+        )
+        return measured({"kind": read, **({"axis": axis} if axis else {})}, dimension, unit, name, setting)
+    noun = noun if noun in KINDS else noun_of(setting.words) if noun in ("", "generic") else noun
+    if noun in KINDS and KINDS[noun][1]:
+        _, kind, dimension = KINDS[noun]
+        return measured({"kind": kind}, dimension, unit, name, setting)
+    return Guess()
+
+
+def _label(setting: NameContext) -> Guess:
+    values = _literals(setting.annotation) or _distinct(setting.values)
+    texts = [value for value in values if isinstance(value, str)]
+    if len(values) > _MOST_LABELS or any(len(text) > _LONGEST_LABEL for text in texts):
+        return Guess()
+    if len(values) >= 2:
+        return Guess({"kind": "label", "values": list(values)})
+    return Guess({"kind": "label", "values": [*values, "…"]}, ["which values can it have?"])
+
+
+def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, written: bool) -> dict[str, Guess]:
+    """What the elements of a sequence mean, by path; nothing if neither its name nor the callable's tells.
+
+    ``setting.values`` are the sequences that were seen.
+    """
+    at, length = part.path, part.length or 0
+    words, verb = words_of(name), noun_of(setting.words)
+    noun = noun_of(words)
+    if written and (name.lower() in _ACTIONS or noun == "action"):
+        return {f"{at}[{index}]": _action(index, part.limits) for index in range(min(length, _MOST_JOINTS))}
+    if "speed" in (verb, noun) and length <= _MOST_JOINTS:
+        return {f"{at}[0:{length}]": Guess({"kind": "speed", "unit": "…"}, ["the unit, and the axis?"])}
+    if noun in ("none", "acceleration", "force", "torque", "time", "speed") or verb == "speed":
+        return {}
+    for about, told in ((words, noun), (setting.words, verb)):
+        is_turning = told == "joints" or (told == "angle" and length > 3)
+        is_turning = is_turning or (told == "place" and ("joint" in about or _is_no_pose(setting.values)))
+        is_turning = is_turning or bool({"movej", "servoj", "getj", "j"} & set(about))
+        if is_turning and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
+            axis = "j1" if length == 1 else f"j1..j{length}"
+            return {f"{at}[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
+        if told == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
+            return _pose(at, name, length, setting, written)
+    return {}
+
+
+def _is_no_pose(values: Sequence[Any]) -> bool:
+    """Whether seven numbers do not end with a quaternion: then they are joints."""
+    return any(len(one) == 7 and abs(sum(part * part for part in one[3:]) - 1) > 0.1 for one in values)
+
+
+def _element(kind: str, read: str, axis: str, name: str, setting: NameContext, written: bool) -> Guess:
+    if written:
+        told = replace(setting, words=(*setting.words, "to")) if _mode(setting) is None else setting
+        return _moved(kind, axis, None, None, name, told)
+    dimension = "length" if kind == "translation" else "angle"
+    return measured({"kind": read, "axis": axis}, dimension, None, name, setting)
+
+
+def _pose(at: str, name: str, length: int, setting: NameContext, written: bool) -> dict[str, Guess]:
+    count = min(length, 3)
+    first_part = replace(setting, values=[value[:count] for value in setting.values])
+    place = _element("translation", "position", "xyz"[:count], name, first_part, written)
+    found = {f"{at}[0:{count}]": place}
+    if length == 6:
+        asked = "a rotation vector, or Euler angles (kind, order)? the unit: rad, deg?"
+        found[f"{at}[3:6]"] = Guess({"kind": "rotation_vector", "unit": "rad"}, [asked])
+    if length == 7:
+        found[f"{at}[3:7]"] = Guess({"kind": "quaternion", "order": "…"}, ["the order: wxyz, xyzw?"])
+    return found
+
+
+def _action(index: int, limits: list[list[float]] | None) -> Guess:
+    """An element of a policy's action or of a simulator's controls: a number on a scale of its own."""
+    if limits is not None and limits[index][0] < limits[index][1]:
+        return Guess({"kind": "output", "range": limits[index]})
+    return Guess({"kind": "output", "range": ["…", "…"]}, ["its least and greatest value?"])
+
+
+def _without_unit(words: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
+    """A name's words without a unit at its end, and the unit."""
+    found = [unit for dimension in UNITS for unit in units_in(words[-1], dimension)] if words else []
+    if not found or words[-1] in ("t", "g"):
+        return words, None
+    return (words[:-1] or words), found[0]
+
+
+def _are_truth(setting: NameContext) -> bool:
+    seen = list(setting.values)
+    return setting.annotation == "bool" or (bool(seen) and all(isinstance(one, bool) for one in seen))
+
+
+def _distinct(values: Sequence[Any]) -> list[Any]:
+    kinds = {type(value) for value in values}
+    return list(dict.fromkeys(values if len(kinds) <= 1 or kinds == {int, float} else []))

@@ -1,0 +1,378 @@
+"""Calls that were seen, turned into proposed operations, and the commands that one call stands for.
+
+A text, or a node, register or name, tells such commands apart: patterns, and what stands beside them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from .guess import Guess, NameContext, guess_argument, guess_elements, guess_reading
+from .layout import with_compared
+from .watched import Command, WatchedCallable, WatchedPart
+from .words import COMMANDS, GRIPPER, HOUSEKEEPING, OPPOSITES, READERS, REPLIES, SETUP, TALK, words_of
+
+_REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
+#: what tells where something is that a motion of this kind moves, and what kinds of readings tell that
+_MOVED = {"translation": "position", "rotation": "orientation"}
+_TOLD = {"position": "position", "orientation": "orientation", "angle": "orientation"}
+
+
+@dataclass
+class Proposal:
+    """One proposed operation.
+
+    Attributes:
+        call: the callable and what was seen of it.
+        arguments, result: guesses by path; ``""`` is the result itself.
+        message: argument with a text command, or None.
+        patterns: notations of the text commands.
+        current, opposite: targets of other operations, or None.
+        reads_by_name: whether the text only says what to read.
+        is_plain: whether it is proposed although nothing tells what it means.
+        is_taken: whether it is proposed.
+    """
+
+    call: WatchedCallable
+    arguments: dict[str, Guess] = field(default_factory=dict)
+    result: dict[str, Guess] = field(default_factory=dict)
+    message: str | None = None
+    patterns: list[tuple[str, Guess]] = field(default_factory=list)
+    current: str | None = None
+    opposite: str | None = None
+    reads_by_name: bool = False
+    is_plain: bool = False
+    is_taken: bool = False
+
+    @property
+    def target(self) -> str:
+        """As vocabularies name it."""
+        return self.call.target
+
+    @property
+    def refusals(self) -> list[str]:
+        """Exceptions that look like a refusal."""
+        return [name for name in self.call.raised if _REFUSAL.search(name.partition(":")[2])]
+
+    @property
+    def is_reading(self) -> bool:
+        """Whether it takes nothing that matters and answers something."""
+        return bool(self.result) and not self.arguments and self.message is None
+
+    @property
+    def is_operation(self) -> bool:
+        """Whether it can be proposed as it is."""
+        if self.call.problem or (self.call.is_property and self.arguments) or _is_setup(self.call):
+            return False
+        if self.call.told_by and self.message == self.call.told_by and self.reads_by_name:
+            return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
+        sure = any(guess.is_sure for guess in [*self.arguments.values(), *self.result.values()])
+        is_written = bool(self.arguments) and not _reads(self.call)
+        return sure or is_written or bool(self.patterns) or self.is_plain or _is_command(self.call)
+
+
+def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
+    """What becomes of calls; ``groups``: constants that the program compares one and the same thing with."""
+    found = [_proposal(call, groups) for call in calls if not _is_housekeeping(call)]
+    taken = {one.target: one for one in found if one.is_operation}
+    for proposal in taken.values():
+        proposal.is_taken = True
+        _find_current(proposal, taken)
+        _find_opposite(proposal, taken)
+    return found
+
+
+def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposal:
+    proposal = Proposal(call)
+    proposal.message = _message(call)
+    proposal.reads_by_name = proposal.message is not None and _reads(call)
+    for name, values in call.arguments.items():
+        if name != proposal.message:
+            for part in values.parts.values():
+                if values.always(part) or part.path == name:
+                    proposal.arguments.update(_argument(name, part, call))
+    _share_units(proposal.arguments)
+    by_name = proposal.message is None or proposal.reads_by_name
+    if by_name and tells_commands(call) and (call.told_by != "self" or not proposal.arguments):
+        proposal.arguments = {}
+        proposal.message, proposal.reads_by_name = call.told_by, is_read(call)
+        proposal.patterns = commands_of(call, groups)
+    elif proposal.message is not None:
+        texts = [value for part in call.arguments[proposal.message].parts.values() for value in part.values]
+        proposal.patterns = patterns_of([str(text) for text in texts])
+    else:
+        proposal.result = _result(call, groups)
+        if (proposal.arguments or _is_command(call)) and call.name != "step":
+            # what a command answers says whether it was carried out; no sensor reads it
+            proposal.result = {}
+    return proposal
+
+
+def _share_units(guesses: dict[str, Guess]) -> None:
+    """Lengths, and angles, of one call have one unit: what tells that of one tells that of all."""
+    for kind in ("translation", "rotation"):
+        some = [guess for guess in guesses.values() if guess.table["kind"] == kind]
+        units = {guess.table["unit"] for guess in some if guess.is_sure}
+        for guess in some if len(units) == 1 else ():
+            if guess.questions and guess.questions[0].startswith("the unit"):
+                guess.table["unit"], guess.questions = next(iter(units)), guess.questions[1:]
+
+
+def _is_housekeeping(call: WatchedCallable) -> bool:
+    """Whether it asks a reply, or a connection, how it is."""
+    words = set(words_of(call.name))
+    return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & set(words_of(call.owner))))
+
+
+def _is_setup(call: WatchedCallable) -> bool:
+    words = set(words_of(call.name))
+    return bool(SETUP & words) or {"pin", "mode"} <= words
+
+
+def _is_command(call: WatchedCallable) -> bool:
+    words = set(words_of(call.name))
+    return not (call.is_property or words & TALK or _reads(call)) and bool(words & COMMANDS)
+
+
+def _reads(call: WatchedCallable) -> bool:
+    return bool(READERS & set(words_of(call.name)))
+
+
+def _message(call: WatchedCallable) -> str | None:
+    """The argument that holds a text command."""
+    if TALK & set(words_of(call.name)):
+        return None
+    for name, values in call.arguments.items():
+        is_text = any(isinstance(value, str) for part in values.parts.values() for value in part.values)
+        if is_text and (name in MESSAGES or (_reads(call) and name == "name")):
+            return name
+    return None
+
+
+def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[tuple[str, Guess]]:
+    is_whole = part.path == name
+    setting = _setting(call, part, call.annotations.get(name, "") if is_whole else "")
+    own = part.name or name
+    if part.length is not None:
+        yield from guess_elements(part, own, setting, written=True).items()
+        return
+    if not is_whole:
+        mode = ("to",) if not {"by", "relative"} & set(setting.words) else ()
+        words = (*setting.words, *words_of(name), *mode)
+        doc = f"{part.doc}\n{setting.doc}"
+        setting = replace(setting, words=words, doc=doc, annotation="", names=frozenset({"x", "y"}))
+    guess = guess_argument(own, setting)
+    if guess.table:
+        yield part.path, guess
+
+
+def _result(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
+    found: dict[str, Guess] = {}
+    parts = [part for part in call.result.parts.values() if call.result.always(part)]
+    sequences = [part for part in parts if part.length is not None]
+    for part in parts:
+        if part.path and not part.name and part.length is not None and len(sequences) > 1:
+            continue  # one of several sequences: nothing tells which one it is
+        if part.values:
+            found.update(_reading(call, part, groups))
+    return {path: guess for path, guess in found.items() if guess.table}
+
+
+def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
+    setting = _setting(call, part, call.returns if not part.path else "")
+    own = part.name or "_".join(words_of(call.name))
+    if part.name:  # a field says itself what it is
+        setting = NameContext((), setting.owner, part.doc + setting.doc, values=part.values)
+    if part.length is not None:
+        return guess_elements(part, own, setting, written=False)
+    if part.path and not part.name:  # an element of a tuple: only the flags of a step are known
+        return {part.path: Guess({"kind": "flag"})} if call.name == "step" and part.type == "bool" else {}
+    if not part.path:
+        values = tuple(with_compared(part.values, groups))
+        annotation = setting.annotation or (part.type if part.type in ("bool", "str") else "")
+        setting = NameContext(setting.words, setting.owner, setting.doc, annotation, values)
+    return {part.path: guess_reading(own, setting)}
+
+
+def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
+    """Look for the reading that tells where a moved thing is: of the same object, with all its axes."""
+    wanted, owner = _with_axes(proposal.arguments, _MOVED), proposal.target.rpartition(".")[0]
+    if not wanted or not owner:
+        return
+    for reading in found.values():
+        words = set(words_of(reading.call.name))
+        is_other = words & (GRIPPER | {"target", "goal", "speed", "limit"}) or reading.call.arguments
+        if reading.target.rpartition(".")[0] != owner or not reading.is_reading or is_other:
+            continue
+        are_sure = all(guess.is_sure for guess in reading.result.values())
+        if are_sure and wanted <= _with_axes(reading.result, _TOLD):
+            proposal.current = reading.target
+            return
+
+
+def _with_axes(guesses: Mapping[str, Guess], told: Mapping[str, str]) -> set[tuple[str, str]]:
+    """What is told of quantities, each with an axis."""
+    return {
+        (told[guess.table["kind"]], axis)
+        for guess in guesses.values()
+        if guess.table["kind"] in told
+        for axis in _axes(guess.table.get("axis", ""))
+    }
+
+
+def _axes(axis: str) -> list[str]:
+    return list(axis) if set(axis) <= set("xyz") else [axis]
+
+
+def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
+    owner, name = proposal.target.removesuffix(proposal.call.name), proposal.call.name
+    for other in _swapped(name):
+        candidate = found.get(f"{owner}{other}")
+        if candidate is not None and set(candidate.call.arguments) == set(proposal.call.arguments):
+            proposal.opposite = candidate.target
+            return
+
+
+def _swapped(text: str) -> Iterator[str]:
+    """The text with each of its words that has an opposite replaced by that."""
+    for pair in OPPOSITES:
+        for one, other in (pair, pair[::-1]):
+            swapped = re.sub(rf"(?<![a-z]){one}(?![a-z])", other, text)
+            if swapped != text:
+                yield swapped
+
+
+def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameContext:
+    module, _, qualname = call.target.partition(":")
+    owner = [*words_of(module.rpartition(".")[2]), *words_of(qualname.rpartition(".")[0])]
+    degrees = _said("degrees", call) | {not one for one in _said("radians", call) | _said("is_radian", call)}
+    return NameContext(
+        words=words_of(call.name),
+        owner=tuple(owner),
+        doc=f"{call.doc}\n{call.owner_doc}",
+        annotation=annotation if "[" in annotation else annotation.rpartition(".")[2],
+        values=part.values,
+        names=frozenset(call.arguments),
+        relative=_said("relative", call),
+        angle_unit=("deg" if True in degrees else "rad") if len(degrees) == 1 else "",
+    )
+
+
+def _said(name: str, call: WatchedCallable) -> frozenset[bool]:
+    """What an argument with this name said that is true or false."""
+    parts = call.arguments[name].parts.values() if name in call.arguments else ()
+    return frozenset(value for part in parts for value in part.values if isinstance(value, bool))
+
+
+#: names of arguments that hold a text command
+MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order"})
+_NUMBER = re.compile(r"(?<![\w{])[-+]?\d+(?:\.\d+)?(?!\w)")
+_FIELD = re.compile(r"\{(\w+):g\}")
+_FIELDS = {"lift": "height", "drop": "height", "turn": "angle", "rotate": "angle", "wait": "seconds"}
+_READS = re.compile(r"(?:^|_)(?:read|get)", re.IGNORECASE)
+#: arguments that say how to write rather than what
+_HOW = frozenset({"timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos"})
+#: more different numbers than these are no settings, but a scale
+_MOST_VALUES = 5
+
+
+def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
+    """Notations that take these texts, each with what its only field means (empty without a field)."""
+    notations: dict[str, list[float]] = {}
+    for text in filter(str.strip, texts):
+        numbers = [float(number) for number in _NUMBER.findall(text)]
+        notations.setdefault(_notation(text), []).extend(numbers)
+    found = []
+    for notation, numbers in notations.items():
+        guess = Guess()
+        if len(_FIELD.findall(notation)) == 1:
+            words = words_of(_FIELD.sub("", notation))
+            guess = guess_argument("value", NameContext(words, values=numbers))
+        opposite = next((one for one in _swapped(notation) if one in notations), None)
+        if opposite is not None:
+            guess.table["opposite"] = opposite
+        found.append((notation, guess))
+    return found
+
+
+def _notation(text: str) -> str:
+    if _FIELD.search(text):
+        return text
+    words = re.findall(r"[a-z]+", text.lower())
+    name = next((word for word in words if word not in ("to", "by")), "value")
+    literal = text.replace("{", "{{").replace("}", "}}")
+    if len(_NUMBER.findall(literal)) == 1:
+        return _NUMBER.sub(lambda _: "{" + _FIELDS.get(name, "value") + ":g}", literal)
+    fields = iter(range(1, 100))
+    return _NUMBER.sub(lambda _: f"{{value{next(fields)}:g}}", literal)
+
+
+def tells_commands(call: WatchedCallable) -> bool:
+    """Whether there are commands, and their texts look like names of something."""
+    if not call.commands:
+        return False
+    return call.told_by != "self" or len(call.commands) > 1 or "=" in next(iter(call.commands))
+
+
+def is_read(call: WatchedCallable) -> bool:
+    """Whether its commands read."""
+    return _READS.search(call.name) is not None
+
+
+def commands_of(call: WatchedCallable, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
+    """Each command as a notation, with what is written beside it or read.
+
+    ``groups``: constants that the program compares one and the same thing with.
+    """
+    found = []
+    for text, command in call.commands.items():
+        table = _read(text, command, groups) if is_read(call) else _written(text, command)
+        notation = text.replace("{", "{{").replace("}", "}}")
+        found.append((notation, Guess(table, note=_seen(command, is_read(call)))))
+    return found
+
+
+def _written(text: str, command: Command) -> dict[str, Any]:
+    tables = {}
+    for name, values in command.arguments.items():
+        part = values.parts.get(name)
+        table = _value(text, part) if name not in _HOW and part is not None and values.always(part) else {}
+        if table:
+            tables[name] = table
+    return {"arguments": tables} if tables else {}
+
+
+def _value(text: str, part: WatchedPart) -> dict[str, Any]:
+    """What a written value means: as the node is called, else as its values look."""
+    values = list(part.values)
+    if part.length is not None or not values or any(isinstance(value, str) for value in values):
+        return {}
+    if all(isinstance(value, bool) for value in values):
+        return {"kind": "output", "values": [False, True]}
+    words = words_of(text)
+    guess = guess_argument((words or ("",))[-1], NameContext((*words[:-1], "set"), values=values))
+    if guess.is_sure and guess.table["kind"] in ("translation", "rotation", "duration"):
+        return guess.table
+    return {"kind": "output", "values": values} if 2 <= len(values) <= _MOST_VALUES else {}
+
+
+def _read(text: str, command: Command, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    part = command.result.parts.get("")
+    if part is None or not command.result.always(part) or part.length is not None or not part.values:
+        return {}
+    if part.type == "bool":
+        return {"result": {"kind": "flag"}}
+    words = words_of(text)
+    annotation = "str" if part.type == "str" else ""
+    setting = NameContext(words, annotation=annotation, values=with_compared(part.values, groups))
+    guess = guess_reading((words or ("",))[-1], setting)
+    return {"result": guess.table} if guess.is_sure else {}
+
+
+def _seen(command: Command, reads: bool) -> str:
+    several = [command.result] if reads else list(command.arguments.values())
+    shown = [str(value) for values in several for part in values.parts.values() for value in part.values]
+    return ", ".join(shown[:4]) + (", …" if len(shown) > 4 else "")

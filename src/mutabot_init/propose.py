@@ -1,0 +1,314 @@
+"""``mutabot init``: look at a project, write a configuration and a vocabulary, say what comes next."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary.load import shipped
+from mutabot.errors import ConfigurationError, UsageError
+from mutabot.model import ANY, Vocabulary
+
+from .layout import Layout, compared_with, imported_modules, look
+from .messages import MessageEntry, entries
+from .observe import LIMIT, observe
+from .operations import Proposal, commands_of, proposals, tells_commands
+from .text import counted, questions_in, value_text, vocabulary_text
+from .watched import WatchedCallable
+
+CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
+#: vocabularies of environments that are reached through the wrappers of another one
+_BEHIND = {"metaworld": "gymnasium"}
+
+
+@dataclass(frozen=True)
+class ShippedVocabulary:
+    """A shipped vocabulary that describes calls of the program.
+
+    Attributes:
+        name: as the configuration names it.
+        vocabulary: what it says.
+        overridden: names of methods that it describes with all that override them.
+        packages: where these may come from.
+    """
+
+    name: str
+    vocabulary: Vocabulary
+    overridden: frozenset[str]
+    packages: frozenset[str]
+
+    def describes(self, call: WatchedCallable) -> bool:
+        """Whether it has this callable, as an operation or as its clock; wrappers and subclasses included."""
+        clock = self.vocabulary.clock
+        if call.name in self.overridden and call.package in self.packages:
+            return True
+        targets = [*(one.target for one in self.vocabulary.operations), *([clock.tick] if clock else [])]
+        return call.target in targets
+
+    def knows_arguments(self, call: WatchedCallable) -> bool:
+        """Whether it says what arguments of such a call mean."""
+        return self.describes(call) and any(
+            one.arguments for one in self.vocabulary.operations if one.target.endswith(f".{call.name}")
+        )
+
+    def reads(self, call: WatchedCallable) -> bool:
+        """Whether it has this callable as a reading."""
+        return any(one.target == call.target and not one.command for one in self.vocabulary.operations)
+
+
+def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list[ShippedVocabulary]:
+    """The shipped vocabularies with calls that were seen; without any calls, those that the text imports."""
+    files = (*layout.program, *layout.tests)
+    imported = {name.partition(".")[0] for path in files for name in imported_modules(path)}
+    every: dict[str, ShippedVocabulary] = {}
+    for name in shipped():
+        vocabulary = load([name], layout.root)
+        packages = frozenset(one.module.partition(".")[0] for one in vocabulary.operations)
+        overridden = frozenset(
+            one.target.rpartition(".")[2] for one in vocabulary.operations if one.overrides
+        )
+        every[name] = ShippedVocabulary(name, vocabulary, overridden, packages)
+    for name, wrapper in _BEHIND.items():
+        if name in imported:
+            own, other = every[name], every.pop(wrapper)
+            names, packages = own.overridden | other.overridden, own.packages | other.packages
+            every[name] = replace(own, overridden=names, packages=packages)
+    return [
+        known
+        for known in every.values()
+        if (any(map(known.describes, calls)) if calls else known.packages & imported)
+    ]
+
+
+class _Look:
+    """What was found out about a project.
+
+    Attributes:
+        layout: where what lies.
+        seen: the watched run of the tests.
+        known: shipped vocabularies that fit it.
+        named: proposed operations that have a name on a middleware.
+        operations: calls that no shipped vocabulary describes, whether or not they are proposed.
+        oracle: files on the tests' side that read from the robot.
+    """
+
+    def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
+        self.layout = look(root, given)
+        tell("running the tests once, to see what the program calls")
+        self.seen = observe(self.layout, limit)
+        self.program = [self.layout.relative(path) for path in self.layout.program]
+        self.calls = without_doubles([call for call in self.seen.calls if call.sites])
+        self.known = known_vocabularies(self.layout, self.calls)
+        self.named = entries(self.seen.uses)
+        groups = compared_with(self.layout)
+        mine, rest = _by_side([call for call in self.calls if not call.leads_to_names])
+        self.operations = proposals(self._new([call for call in mine if not call.own]), groups)
+        if self.is_empty:  # program and robot share a file
+            self.operations = proposals(mine, groups)
+        readings = [one for one in proposals(self._new(rest), groups) if one.is_taken and one.is_reading]
+        self.operations += readings
+        if self.is_empty:  # what is called at all can be skipped and repeated
+            for one in self.operations:
+                one.is_plain = one.is_taken = not one.call.problem and not one.call.is_property
+        self.oracle = self._files_that_read()
+
+    @property
+    def drafts(self) -> list[Proposal | MessageEntry]:
+        """All that the vocabulary is to say, be it as comments."""
+        return [*self.named, *self.operations]
+
+    @property
+    def taken(self) -> int:
+        """How many operations are proposed."""
+        return sum(one.is_taken for one in self.drafts)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is known of what the program does."""
+        return not (self.taken or self.known)
+
+    @property
+    def vocabulary(self) -> list[str]:
+        """Names for the configuration."""
+        names = [one.name for one in self.known]
+        return [*names, VOCABULARY] if self.taken or not names else names
+
+    @property
+    def needs_vocabulary(self) -> bool:
+        """Whether there is anything to say that no shipped vocabulary says."""
+        return bool(self.drafts or not self.known)
+
+    def text(self) -> str:
+        """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
+        text = vocabulary_text(self.drafts, self.program)
+        if not self.taken or _loads(text):
+            return text
+        for one in self.operations:
+            one.current = one.opposite = None
+        for draft in self.drafts:
+            draft.is_taken = draft.is_taken and _loads(vocabulary_text([draft], self.program))
+        return vocabulary_text(self.drafts, self.program)
+
+    def _new(self, calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
+        """Calls to be described here: those of shipped vocabularies only where the program tells more."""
+        return [
+            call
+            for call in calls
+            if not any(one.describes(call) for one in self.known)
+            or _nodes_tell(call)
+            or (_has_limits(call) and not any(one.knows_arguments(call) for one in self.known))
+        ]
+
+    def _files_that_read(self) -> list[str]:
+        targets = {one.target for one in self.operations if one.is_taken and one.is_reading}
+        files = [
+            where.rpartition(":")[0]
+            for call in self.seen.calls
+            if call.target in targets or any(one.reads(call) for one in self.known)
+            for where in call.sites
+        ]
+        files += [file for entry in self.named if entry.of_tests for file in entry.files]
+        return [file for file in dict.fromkeys(files) if file not in self.program]
+
+
+def propose(
+    root: Path,
+    program: Sequence[Path] = (),
+    *,
+    limit: float = LIMIT,
+    tell: Callable[[str], None] = lambda text: None,
+) -> list[str]:
+    """Write ``mutabot.toml`` and ``robot.toml``; the lines say what was found and what to do next.
+
+    ``program`` are files or folders of the robot program, relative to the working folder or to ``root``;
+    without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
+    program calls; ``tell`` is told before. No existing file is touched.
+
+    Raises UsageError if there is a configuration already, or no program.
+    """
+    root = root.resolve()
+    _refuse_existing(root)
+    found = _Look(root, program, limit, tell)
+    text = found.text()
+    if found.needs_vocabulary:
+        _write(root / VOCABULARY, text)
+    _write(root / CONFIGURATION, _configuration(found))
+    return _told(found, questions_in(text) if found.needs_vocabulary else 0)
+
+
+def without_doubles(calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
+    """Without methods of whatever has them where the robot's own was seen: a mock of it is one."""
+    owned = {
+        call.name
+        for call in calls
+        if not call.target.startswith(ANY) and "." in call.target.partition(":")[2]
+    }
+    return [call for call in calls if not (call.target.startswith(ANY) and call.name in owned)]
+
+
+def _nodes_tell(call: WatchedCallable) -> bool:
+    return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
+
+
+def _has_limits(call: WatchedCallable) -> bool:
+    """Whether it takes an action of which the environment tells least and greatest values."""
+    return any(part.limits for values in call.arguments.values() for part in values.parts.values())
+
+
+def _by_side(calls: Sequence[WatchedCallable]) -> tuple[list[WatchedCallable], list[WatchedCallable]]:
+    """What the program calls, and what only the tests do."""
+    mine = [call for call in calls if not call.of_tests]
+    targets = {call.target for call in mine}
+    return mine, [call for call in calls if call.target not in targets]
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def _refuse_existing(root: Path) -> None:
+    if not root.is_dir():
+        raise UsageError(f"{root}: there is no such folder")
+    for name in (CONFIGURATION, VOCABULARY):
+        if (root / name).exists():
+            raise UsageError(f"{root / name} exists already; init never overwrites a file")
+    try:
+        data = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+        return
+    if "mutabot" in data.get("tool", {}):
+        raise UsageError(f"{root / 'pyproject.toml'} has [tool.mutabot] already; there is nothing to propose")
+
+
+def _loads(text: str) -> bool:
+    with TemporaryDirectory() as folder:
+        (Path(folder) / VOCABULARY).write_text(text, encoding="utf-8")
+        try:
+            load([VOCABULARY], Path(folder))
+        except ConfigurationError:
+            return False
+    return True
+
+
+def _configuration(found: _Look) -> str:
+    listed = {"program": found.program, "oracle": found.oracle, "tests": found.layout.arguments or ["tests"],
+              "vocabulary": found.vocabulary}  # fmt: skip
+    notes = {
+        "program": "  # makes the robot's calls",
+        "oracle": "  # reads from the robot for the tests' checks",
+    }
+    lines = [f"{key} = {value_text(names)}{notes.get(key, '')}" for key, names in listed.items() if names]
+    return "\n".join([*lines, "rounds = 1", "seed = 1"]) + "\n"
+
+
+def _told(found: _Look, questions: int) -> list[str]:
+    seen = found.seen
+    how = " (guessed; to choose other files: mutabot init FILE…)" if found.layout.guessed else ""
+    counts = ", ".join(f"{count} {outcome}" for outcome, count in seen.outcomes.items())
+    lines = [f"program: {', '.join(found.program)}{how}"]
+    if seen.trouble:
+        lines.append(f"the tests could not be watched: {seen.trouble}")
+    if counts:
+        lines.append(f"tests: {counts}; {_counted(found)}")
+    lines += [f"  {problem}" for problem in seen.problems[:3] if not seen.trouble]
+    lines.append(f"wrote {CONFIGURATION}")
+    for one in found.known:
+        calls = counted(sum(map(one.describes, found.calls)), "call")
+        lines.append(f"vocabulary {one.name}: comes with mutabot, describes {calls}")
+    if found.needs_vocabulary:
+        asked = f" and {counted(questions, 'question')}" if questions else ""
+        what = f"with {counted(found.taken, 'operation')}{asked}" if found.taken else "without an operation"
+        left = len(found.drafts) - found.taken
+        also = f"; {counted(left, 'more call')} as comments" if left else ""
+        lines.append(f"wrote {VOCABULARY} {what}{also}")
+    mocked = [one.call for one in found.operations if one.is_taken and one.call.stands_in]
+    names = [call.name if call.target.startswith(ANY) else call.target for call in mocked]
+    if names:
+        how = "as what they stand for, or by name for any object that has it"
+        lines.append(f"seen on mocks or fakes, proposed {how}: {', '.join(names)}")
+    if not found.is_empty:
+        answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
+        return [*lines, f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"]
+    tests = " ".join(found.layout.arguments) or "tests"
+    return [
+        *lines,
+        f"next: make `python -m pytest {tests}` run tests that call the program, remove {CONFIGURATION} and "
+        f"{VOCABULARY}, and run `mutabot init` again; or describe the robot by hand (docs/vocabulary.md)",
+    ]
+
+
+def _counted(found: _Look) -> str:
+    mine, rest = _by_side([call for call in found.seen.calls if call.sites])
+    times = counted(sum(call.count for call in mine), "time")
+    names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}
+    more = f", the tests {len(rest)} more" if rest else ""
+    more += f", and uses {counted(len(names), 'name')} of ROS" if names else ""
+    return f"the program calls {counted(len(mine), 'callable')}, {times}{more}"

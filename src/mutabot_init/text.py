@@ -1,0 +1,226 @@
+"""Proposed operations as the text of a vocabulary file: lines that hold, and comments with questions."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from mutabot.model import ANY
+
+from .guess import Guess
+from .messages import DescribedPart, MessageEntry
+from .operations import Proposal
+from .watched import WatchedPart
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+#: the longest text that is shown as an example, and values of each part
+_LONGEST, _EXAMPLES = 60, 4
+_DONE = {
+    "topic": "message", "service": "call", "action": "goal, feedback or result", "parameter": "reading",
+    "timer": "tick", "rate": "turn", "tf": "reading",
+}  # fmt: skip
+
+
+def vocabulary_text(drafts: Sequence[Proposal | MessageEntry], program: Sequence[str]) -> str:
+    """The vocabulary file; what it cannot take as it is stands at its end, as comments."""
+    head = (
+        f"# Drafted by `mutabot init` from {', '.join(program)}. Lines follow from names, docstrings and\n"
+        "# values that were seen. To answer a question, correct the line and take its number sign away."
+    )
+    texts = [
+        (entry_text(one) if isinstance(one, MessageEntry) else operation_text(one), one) for one in drafts
+    ]
+    blocks = [head, *(text for text, one in texts if one.is_taken)]
+    others = [_commented(text) for text, one in texts if not one.is_taken]
+    if others:
+        blocks.append(
+            "# Also seen, but nothing shows what it means to the robot. For an operation, take the number\n"
+            "# signs away and say what its arguments or its result mean."
+        )
+    return "\n\n".join([*blocks, *others]) + "\n"
+
+
+def questions_in(text: str) -> int:
+    """How many questions a draft asks."""
+    return len(re.findall(r"# question: ", text))
+
+
+def key_text(path: str) -> str:
+    """A key, in quotes if it needs any."""
+    return path if _BARE.fullmatch(path) else value_text(path)
+
+
+def value_text(value: Any) -> str:
+    """A value."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key_text(key)} = {value_text(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join("…" if item == "…" else value_text(item) for item in value) + "]"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def short(value: Any) -> str:
+    """A value as an example."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(short, value[:8]))}{', …' if len(value) > 8 else ''}]"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    text = value_text(value)
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+
+
+def _line(table: str, path: str, part: WatchedPart, guess: Guess | None) -> str:
+    """A quantity, or as a comment the question that it depends on, or that nothing tells what it means."""
+    key, seen = f"{table}.{key_text(path)}" if path else table, _examples(part, path)
+    if guess is None:
+        return f"# {key}  # seen: {seen or part.type or 'nothing'}"
+    asked = [] if guess.is_sure else [f"question: {' '.join(guess.questions)}"]
+    notes = [*asked, *filter(None, (guess.note, f"seen: {seen}" if seen else ""))]
+    line = f"{'# ' if asked else ''}{key} = {value_text(guess.table)}"
+    return f"{line}  # {'; '.join(notes)}" if notes else line
+
+
+def operation_text(proposal: Proposal) -> str:
+    """One ``[[operation]]``, with what is not known as comments."""
+    call = proposal.call
+    lines = [f"[[operation]]  # seen: {counted(call.count, 'call')}, first at {next(iter(call.sites), '?')}"]
+    if call.problem:
+        lines.append(f"# {call.problem}")
+    lines += _subject(proposal)
+    is_asked = not any(guess.is_sure for guess in [*proposal.arguments.values(), *proposal.result.values()])
+    if proposal.is_plain:
+        lines.append("command = true  # it is left out and made twice; say what its values mean")
+    elif proposal.is_operation and is_asked and proposal.message is None:
+        lines.append("command = true")
+    any_object = f"{ANY}."
+    references = (
+        ("current", (proposal.current or "").removeprefix(any_object)),
+        ("opposite", (proposal.opposite or "").removeprefix(any_object)),
+        ("refusals", proposal.refusals),
+        ("message", proposal.message),
+    )
+    lines += [f"{key} = {value_text(value)}" for key, value in references if value]
+    lines += _arguments(proposal)
+    if proposal.message is not None:
+        return "\n".join([*lines, *_pattern_lines(proposal)])
+    for part in call.result.parts.values():
+        lines += _lines("result", part, proposal.result)
+    return "\n".join(lines)
+
+
+def _subject(proposal: Proposal) -> Iterator[str]:
+    """What is called."""
+    call = proposal.call
+    is_any = call.target.startswith(ANY)
+    why = "  # seen on a mock or a fake that stands for it" if call.stands_in and not is_any else ""
+    if is_any:
+        yield f"method = {value_text(call.name)}  # of any object: the tests stand in for the robot"
+    else:
+        yield f"call = {value_text(call.target)}{why}"
+    if call.signature and (is_any or call.is_documented):
+        yield f"signature = {value_text(call.signature)}"
+    elif (
+        not call.signature and call.arguments and not call.positional.times
+    ):  # of a mock, which tells no order
+        yield f'signature = "({", ".join(f"{name}=…" for name in call.arguments)})"'
+
+
+def _commented(text: str) -> str:
+    return "\n".join(line if line.startswith("#") else f"# {line}" for line in text.splitlines())
+
+
+def counted(count: int, noun: str) -> str:
+    """``1 call``, ``2 calls``."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _arguments(proposal: Proposal) -> Iterator[str]:
+    call = proposal.call
+    if proposal.message is not None and proposal.message == call.told_by:
+        return  # each command says what is beside it
+    for name, values in call.arguments.items():
+        for part in values.parts.values() if name != proposal.message else ():
+            yield from _lines("arguments", part, proposal.arguments)
+    if call.positional.times:
+        parts = sorted(call.positional.parts.values(), key=lambda part: part.path)
+        shown = ", ".join(short(part.values[0]) if part.values else part.type for part in parts)
+        yield f'# signature = "(…)"  # nothing tells its arguments\' names; seen: ({shown})'
+
+
+def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator[str]:
+    """The lines of a part: its guesses, else a comment with what was seen."""
+    mine = {path: guess for path, guess in guesses.items() if _belongs(path, part)}
+    for path, guess in mine.items():
+        yield _line(table, path, part, guess)
+    if not mine and (part.values or part.length or table == "arguments"):
+        yield _line(table, part.path, part, None)
+
+
+def _belongs(path: str, part: WatchedPart) -> bool:
+    """Whether a guess is about this part, or about elements of it."""
+    return path == part.path or (part.length is not None and path.rpartition("[")[0] == part.path)
+
+
+def _examples(part: WatchedPart, path: str = "") -> str:
+    """Values that were seen, of the elements that the path names."""
+    step = re.search(r"\[(\d+)(?::(\d+))?\]$", path) if part.length is not None else None
+    values = part.values[:_EXAMPLES]
+    if step is not None and path != part.path:
+        first = int(step[1])
+        values = [one[first : int(step[2])] if step[2] else one[first] for one in values if len(one) > first]
+    texts = [short(value) for value in values[: 1 if part.length is not None else _EXAMPLES]]
+    return ", ".join(texts) + (", …" if len(part.values) > len(texts) else "")
+
+
+def _pattern_lines(proposal: Proposal) -> list[str]:
+    rows = []
+    for text, guess in proposal.patterns:
+        asked = guess.questions and guess.table
+        told = {} if asked else guess.table
+        opposite = {key: value for key, value in guess.table.items() if key == "opposite"}
+        rest = value_text({key: value for key, value in guess.table.items() if key != "opposite"})
+        notes = [f"question: {' '.join(guess.questions)} {rest}"] if asked else []
+        notes += [f"seen: {guess.note}"] if guess.note else []
+        rows.append(
+            f"  {value_text({'text': text, **told, **opposite})},"
+            + (f"  # {'; '.join(notes)}" if notes else "")
+        )
+    lines = ["patterns = [", *rows, "]"]
+    if not proposal.reads_by_name:
+        return lines
+    if not all(guess.table for _, guess in proposal.patterns):
+        hint = '{ text = "color", result = { kind = "label", values = ["red", "blue"] } }'
+        lines.insert(0, f"# question: what does each pattern read? as in: {hint}")
+    return ["command = false", *lines]
+
+
+def entry_text(entry: MessageEntry) -> str:
+    """One ``[[operation]]`` of a middleware, with what nothing tells as a comment."""
+    count = sum(sum(use.sites.values()) for use in entry.uses)
+    where = f"{counted(count, _DONE[entry.key])}, first at {next(iter(entry.uses[0].sites))}"
+    lines = [
+        f"[[operation]]  # seen: {where}",
+        f"{entry.key} = {value_text(entry.name.replace(' → ', ' -> '))}",
+    ]
+    if entry.direction:
+        lines.append(f"direction = {value_text(entry.direction)}")
+    if entry.type:
+        lines.append(f"type = {value_text(entry.type)}")
+    lines += [
+        _line(part.table, part.path, part.part, part.guess)
+        for part in entry.parts
+        if part.guess is not None or not _says_no(part)
+    ]
+    if any(map(_says_no, entry.parts)):
+        lines.append(
+            '# refused = { path = "success", values = [false] }  # question: is that how it refuses?'
+        )
+    if entry.key == "action":
+        lines.append('# refused = ["ABORTED", "REJECTED"]  # question: were goals that end so refused?')
+    return "\n".join(lines)
+
+
+def _says_no(part: DescribedPart) -> bool:
+    return part.table == "response" and part.path == "success" and part.part.type in ("bool", "boolean")

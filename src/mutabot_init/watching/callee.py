@@ -1,0 +1,234 @@
+"""Who is called: the name by which a vocabulary would call it, and what it says about itself."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import inspect
+import os
+import re
+import sys
+import textwrap
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
+from typing import Any
+
+from mutabot.model import ANY
+from mutabot.model.path import class_name
+from mutabot.model.signature import parse_signature, signature_of, takes_anything
+from mutabot.runtime.targets.target import NotFoundError, resolve
+from mutabot_init.watched import WatchedCallable
+
+#: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
+_OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)
+_UNNAMED, _NAMES = re.compile(r"\barg(\d+)\b"), re.compile(r"Parameter ``(\w+)``")
+
+
+@dataclass(frozen=True)
+class Callee:
+    """A callable that the program uses.
+
+    Attributes:
+        target: as vocabularies name it.
+        raw: the function itself, unbound; None if only a stand-in was seen.
+        owner: its class, or None.
+        file: where its text stands; empty for a native one.
+        stands_in: whether a mock or a fake was called in its place.
+    """
+
+    target: str
+    raw: Any
+    owner: type | None
+    file: str
+    stands_in: bool = False
+
+    @functools.cached_property
+    def signature(self) -> inspect.Signature | None:
+        """Its arguments without ``self``; None if nothing tells them."""
+        return self._told[0]
+
+    @property
+    def is_documented(self) -> bool:
+        """Whether only a docstring tells its arguments, as those that pybind11 writes do."""
+        return self._told[1]
+
+    @functools.cached_property
+    def _told(self) -> tuple[inspect.Signature | None, bool]:
+        signature = signature_of(_function(self.raw))
+        if signature is None:
+            documented = self._documented()
+            return documented, documented is not None
+        parameters = list(signature.parameters.values())
+        if self.owner is not None and not isinstance(self.raw, staticmethod):
+            parameters = parameters[1:]
+        return signature.replace(parameters=parameters), False
+
+    def _documented(self) -> inspect.Signature | None:
+        """Return the signature in a docstring; of several overloads, that with most arguments."""
+        text = _OBJECT.sub("...", getattr(_function(self.raw), "__doc__", None) or "")
+        name = self.target.rpartition(":")[2].rpartition(".")[2]
+        found = []
+        for part in _OVERLOAD.split(text):
+            first = part.strip().partition("\n")[0].strip()
+            if first.startswith(f"{name}("):
+                names = dict(enumerate(_NAMES.findall(part)))
+                named = _UNNAMED.sub(lambda match, names=names: names.get(int(match[1]), match[0]), first)
+                with suppress(ValueError):
+                    found.append(parse_signature(named.removeprefix(name).rstrip(":.")))
+        telling = (one for one in found if not takes_anything(one))
+        return max(telling, key=lambda one: len(one.parameters), default=None)
+
+
+def meant_by(kind: type, name: str) -> Callee | None:
+    """The method ``name`` of a class that a mock or a fake stands for, even if a patch hides the class."""
+    owner = next((one for one in kind.__mro__ if name in vars(one)), None)
+    if owner is None or "<" in owner.__qualname__:
+        return None
+    raw = vars(owner)[name]
+    return Callee(f"{class_name(owner)}.{name}", raw, owner, _file_of(raw), stands_in=True)
+
+
+def method_of(value: Any, name: str) -> Callee | None:
+    """The method or property ``name`` of an object, class or module; None if it has no name of its own."""
+    if isinstance(value, ModuleType):
+        return function_of(vars(value).get(name), f"{value.__name__}:{name}")
+    if isinstance(value, super):
+        parts: Any = value
+        classes = type(parts.__self__).__mro__
+        classes = classes[classes.index(parts.__thisclass__) + 1 :]
+    elif isinstance(value, type):
+        classes = value.__mro__
+    else:
+        if name in getattr(value, "__dict__", ()):
+            return function_of(getattr(value, name))
+        classes = type(value).__mro__
+    owner = next((one for one in classes if name in vars(one)), None)
+    if owner is None:
+        return None
+    return _nameable(f"{class_name(owner)}.{name}", vars(owner)[name], owner)
+
+
+def any_method(name: str, seen: Callee | None = None) -> Callee:
+    """The method ``name`` of whatever has it; its arguments are those of one that was seen."""
+    target = f"{ANY}.{name}"
+    return (
+        Callee(target, None, None, "", True) if seen is None else replace(seen, target=target, stands_in=True)
+    )
+
+
+def function_of(found: Any, spelt: str = "") -> Callee | None:
+    """A function by the name it has where it is defined, or as it is spelt."""
+    if isinstance(found, MethodType):
+        return method_of(found.__self__, found.__name__)
+    is_wrapper = "__wrapped__" in getattr(found, "__dict__", {})  # hasattr is true of all names of mock.call
+    if not isinstance(found, FunctionType | BuiltinFunctionType) and not is_wrapper:
+        return None
+    holder = found.__self__ if isinstance(found, BuiltinFunctionType) else None
+    is_bound = not isinstance(holder, ModuleType | None)
+    if is_bound and not type(holder).__name__.startswith(("PyCapsule", "pybind11")):
+        return None  # a method of a type written in C; those of pybind11 are bound to its own records
+    names = [f"{found.__module__}:{getattr(found, '__qualname__', '')}", spelt]
+    made = (_nameable(name, found, None) for name in names if name)
+    return next((callee for callee in made if callee is not None), None)
+
+
+def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
+    """A call with all that the callable says about itself."""
+    function, signature, owner = _function(callee.raw), callee.signature, callee.owner
+    parameters = signature.parameters.values() if signature is not None else ()
+    return WatchedCallable(
+        callee.target,
+        of_tests,
+        own,
+        doc=(inspect.getdoc(function) or "")[:3000] if function is not None else "",
+        owner=owner.__name__ if owner is not None else "",
+        owner_doc=(owner.__doc__ or "")[:1500] if owner is not None else "",
+        is_property=isinstance(callee.raw, property | functools.cached_property),
+        signature=spell_signature(signature) if signature is not None else "",
+        is_documented=callee.is_documented,
+        annotations={one.name: _written(one.annotation) for one in parameters if one.name != "self"},
+        returns=_written(signature.return_annotation) if signature is not None else "",
+        raised=list(dict.fromkeys(_raised_by(function))),
+        stands_in=callee.stands_in,
+    )
+
+
+def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:
+    """The callee, if its name leads to it."""
+    module, _, qualname = target.partition(":")
+    if module not in sys.modules or "<" in qualname or not qualname:
+        return None
+    try:
+        _, _, found = resolve(sys.modules[module], qualname)
+    except NotFoundError:
+        return None
+    if found is not raw:
+        return None
+    return Callee(target, raw, owner, _file_of(raw))
+
+
+def _file_of(raw: Any) -> str:
+    code = getattr(inspect.unwrap(_function(raw)), "__code__", None)
+    return os.path.realpath(code.co_filename) if code is not None else ""
+
+
+def _function(raw: Any) -> Any:
+    if isinstance(raw, property):
+        return raw.fget
+    if isinstance(raw, functools.cached_property):
+        return raw.func
+    return raw.__func__ if isinstance(raw, classmethod | staticmethod) else raw
+
+
+def _written(annotation: Any) -> str:
+    """An annotation as it is written."""
+    if annotation is inspect.Parameter.empty:
+        return ""
+    if isinstance(annotation, str):
+        return annotation
+    return annotation.__name__ if isinstance(annotation, type) else str(annotation).replace("typing.", "")
+
+
+def _raised_by(function: Any) -> Iterator[str]:
+    """Exceptions that its text raises."""
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    except (OSError, TypeError, SyntaxError):
+        return
+    names = getattr(function, "__globals__", {})
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Raise) and node.exc is not None:
+            spelt = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
+            first, *rest = ast.unparse(spelt).split(".")
+            raised = functools.reduce(lambda found, name: getattr(found, name, None), rest, names.get(first))
+            if isinstance(raised, type) and issubclass(raised, BaseException):
+                yield class_name(raised)
+
+
+def spell_signature(signature: inspect.Signature) -> str:
+    """The text that is read as this signature, bar annotations. Defaults that are no literals are ``…``."""
+    parameters = [
+        parameter.replace(annotation=inspect.Parameter.empty, default=_spelt(parameter.default))
+        for parameter in signature.parameters.values()
+        if parameter.name not in ("self", "cls")
+    ]
+    return str(inspect.Signature(parameters))
+
+
+class _Unknown:
+    """Prints itself as an ellipsis."""
+
+    def __repr__(self) -> str:
+        return "…"
+
+
+def _spelt(default: Any) -> Any:
+    if default is inspect.Parameter.empty:
+        return default
+    try:
+        ast.literal_eval(repr(default))
+    except Exception:  # a default may be any object
+        return _Unknown()
+    return _Unknown() if default is ... else default

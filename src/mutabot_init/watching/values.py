@@ -1,0 +1,170 @@
+"""Values in words that need no import: plain numbers, texts and sequences by path."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from mutabot.model.quantity import seconds_of
+from mutabot_init.watched import Values, WatchedPart
+
+#: different values that are kept of each part, elements of a sequence, parts of a value
+MOST_VALUES, MOST_ELEMENTS, MOST_PARTS = 8, 16, 64
+_DEPTH, _DEPTH_OF_MESSAGES = 3, 8
+_LONGEST = 80
+#: largest array that is turned into a list
+_LARGEST = 4096
+#: parts of an object that is no declared record but may be one
+_MOST_FIELDS = 12
+#: messages that mean something only as a whole
+_WHOLE = frozenset({"geometry_msgs/Quaternion"})
+#: what is worth a look in objects of a package written in C
+_OF_NATIVE = {"MjData": ("ctrl",)}
+
+
+def look(values: Values, value: Any, root: str = "", *, message: bool = False) -> None:
+    """Look at one more value; the paths of a ``message`` begin with the names of its fields."""
+    values.times += 1
+    values.type = values.type or type_of(value)
+    whole = WatchedPart(root, type=type_of(value) if message else "")
+    found = _parts(value, whole, _DEPTH_OF_MESSAGES if message else _DEPTH)
+    for _, part in zip(range(MOST_PARTS), found, strict=False):
+        if message:
+            part.path = part.path.removeprefix(".")
+        merge_part(values, part)
+
+
+def merge_part(values: Values, part: WatchedPart) -> None:
+    """Add what is known of a part to what was seen of it before."""
+    known = values.parts.get(part.path)
+    part.count = part.count or 1
+    if known is None:
+        values.parts[part.path] = part
+        return
+    known.count += part.count
+    if part.length is not None and known.length is not None:
+        known.length = min(part.length, known.length)
+    for one in part.values:
+        is_new = all(one != other or type(one) is not type(other) for other in known.values)
+        if is_new and len(known.values) < MOST_VALUES:
+            known.values.append(one)
+
+
+def type_of(value: Any) -> str:
+    """``package/Name`` of a message; the name of the class of anything else."""
+    kind = type(value)
+    own = getattr(kind, "_type", None)
+    if isinstance(own, str) and hasattr(kind, "_slot_types"):
+        return own
+    if hasattr(kind, "get_fields_and_field_types"):
+        return f"{kind.__module__.partition('.')[0]}/{kind.__name__}"
+    return kind.__name__
+
+
+def _parts(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
+    value = plain(value)
+    declared, part.type = part.type, part.type or type_of(value)
+    is_stamp = hasattr(type(value), "sec") or hasattr(
+        type(value), "secs"
+    )  # the type's: a mock has any attribute
+    seconds = seconds_of(value) if is_stamp else None
+    if value is None:
+        return
+    if seconds is not None or isinstance(value, bool | int | float | str):
+        value = seconds if seconds is not None else value
+        part.values = [value[:_LONGEST] if isinstance(value, str) else value] if _is_finite(value) else []
+        yield part
+    elif isinstance(value, enum.Enum) or depth == 0 or declared in _WHOLE:
+        yield part
+    elif isinstance(value, list | tuple) and not hasattr(type(value), "_fields"):
+        yield from _elements(value, part, depth)
+    else:
+        yield from _fields(value, part, depth)
+
+
+def _elements(value: list[Any] | tuple[Any, ...], part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
+    if value and _message_fields(value[-1]) is not None:
+        yield from _parts(value[-1], dataclasses.replace(part, path=f"{part.path}[-1]", type=""), depth - 1)
+        return
+    items = [plain(one) for one in value[:MOST_ELEMENTS]]
+    if all(isinstance(one, int | float) and not isinstance(one, bool) for one in items):
+        part.length = len(value)
+        part.values = [items] if items and all(map(_is_finite, items)) else []
+        yield part
+        return
+    for index, item in enumerate(items[:8]):
+        yield from _parts(item, WatchedPart(f"{part.path}[{index}]", doc=part.doc), depth - 1)
+
+
+def _fields(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
+    types = _message_fields(value)
+    doc = (type(value).__doc__ or "")[:300] if types is None else ""
+    empty = True
+    for step, name, inner in _named(value, types):
+        empty = False
+        within = (*part.within, (type_of(value), name)) if types is not None else ()
+        kind = types[name] if types is not None else ""
+        yield from _parts(inner, WatchedPart(f"{part.path}{step}", name, doc, kind, within), depth - 1)
+    if empty:
+        yield part
+
+
+def plain(value: Any) -> Any:
+    """Arrays and scalars of numeric libraries as Python has them, if they are small enough."""
+    is_array = hasattr(type(value), "tolist") and getattr(value, "size", 0) <= _LARGEST
+    return value.tolist() if is_array else value
+
+
+def _named(value: Any, types: Mapping[str, str] | None) -> Iterator[tuple[str, str, Any]]:
+    """Step, name and value of the parts of an object that have names."""
+    if isinstance(value, Mapping):
+        for key, part in list(value.items())[:MOST_PARTS]:
+            if isinstance(key, str) and '"' not in key and "]" not in key:
+                yield f'["{key}"]', key, part
+        return
+    for name in types if types is not None else _names(value):
+        if not name.startswith("_") and hasattr(value, name):
+            yield f".{name}", name, getattr(value, name)
+
+
+def _names(value: Any) -> tuple[str, ...]:
+    kind = type(value)
+    if isinstance(value, type) or callable(value):
+        return ()
+    if kind.__name__ in _OF_NATIVE:
+        return _OF_NATIVE[kind.__name__]
+    names: Any = getattr(kind, "_fields", None)  # the type's: a mock has any attribute
+    if names is None and (dataclasses.is_dataclass(value) or _is_record(value)):
+        names = vars(value) if hasattr(value, "__dict__") else getattr(kind, "__slots__", ())
+    return (names,) if isinstance(names, str) else tuple(names or ())
+
+
+def _is_record(value: Any) -> bool:
+    """Whether an object does little more than hold plain values, as a pose does."""
+    parts = vars(value).values() if hasattr(value, "__dict__") else ()
+    slots = hasattr(type(value), "__slots__") and not parts
+    return slots or (0 < len(parts) <= _MOST_FIELDS and all(map(_is_plain_part, parts)))
+
+
+def _is_plain_part(part: Any) -> bool:
+    part = plain(part)
+    if isinstance(part, list | tuple):
+        return len(part) <= MOST_ELEMENTS and all(map(_is_plain_part, part))
+    return isinstance(part, bool | int | float | str | None | enum.Enum) or dataclasses.is_dataclass(part)
+
+
+def _message_fields(value: Any) -> Mapping[str, str] | None:
+    """The types of the fields of a message, by name; None for what is no message."""
+    kind = type(value)
+    if hasattr(kind, "_slot_types"):
+        return dict(zip(kind.__slots__, kind._slot_types, strict=True))
+    if hasattr(kind, "get_fields_and_field_types"):
+        return dict(kind.get_fields_and_field_types())
+    return None
+
+
+def _is_finite(value: Any) -> bool:
+    return not isinstance(value, float) or math.isfinite(value)

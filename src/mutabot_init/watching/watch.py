@@ -1,0 +1,426 @@
+"""What one process sees of the calls in some files: which callables and names of a middleware, which values.
+
+Every call, and every attribute that is read, asks the watch first: see ``program_text.call_sites``. Nothing
+changes that the program can see. What is done under the names of a middleware passes the hooks of a campaign
+(``runtime.targets.target``).
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from functools import cache, cached_property
+from types import FrameType, ModuleType
+from typing import Any
+
+from mutabot.model import Role, Span
+from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
+from mutabot.model.path import class_name
+from mutabot.runtime.interception.adapter import is_mock
+from mutabot.runtime.interception.dispatcher import Untracked, is_under_way
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
+from mutabot.runtime.targets.target import NOWHERE, Handler, Messages, Where
+from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
+from mutabot_init.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
+from mutabot_init.watching.values import look, plain
+
+#: calls of one callable whose values are looked at; more are only counted
+MOST_CALLS = 300
+#: packages that talk to no robot
+_NO_ROBOTS = frozenset(
+    {
+        "_pytest", "pytest", "pluggy", "mutabot", "numpy", "scipy", "pandas", "matplotlib", "hypothesis",
+        "yaml", "loguru", "attr", "attrs", "pydantic", "typing_extensions", "torch", "jax", "sympy", "rich",
+        "networkx", "click", "typer", "PIL", "math3d", "transforms3d",
+    }
+)  # fmt: skip
+#: names of arguments that tell which command a call is
+_TELLING = frozenset(
+    {
+        "node", "node_id", "nodeid", "name", "address", "register", "tag", "channel", "signal", "topic",
+        "variable",
+    }
+)  # fmt: skip
+_TALKS = re.compile(r"(?:^|_)(?:read|write|get|set|send|publish)(?:_|$)", re.IGNORECASE)
+#: more commands than these, and longer texts, are no list of commands
+_MOST_COMMANDS, _LONGEST = 24, 60
+
+
+@dataclass(slots=True)
+class _Seen:
+    """A callable and what was seen of it."""
+
+    callee: Callee
+    call: WatchedCallable
+    has_no_commands: bool = False
+
+
+#: the calls that are under way here, the outermost first
+_under_way: ContextVar[tuple[_Seen, ...]] = ContextVar("mutabot_watched_calls", default=())
+
+
+#: uses of one name whose messages are looked at; more are only counted
+_MOST_USES = 300
+_LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
+
+
+class NamesSeen(Messages):
+    """All that the program and the tests do under names.
+
+    Args:
+        locator: tells whose file is whose.
+        passed: told of each use: calls that are under way lead to it.
+    """
+
+    def __init__(
+        self,
+        locator: Locator,
+        passed: Callable[[], None],
+    ) -> None:
+        self._locator, self._passed = locator, passed
+        self.uses: dict[tuple[Form, str, bool, bool], Use] = {}
+        self._lock = threading.RLock()
+        super().__init__(lambda target, finding: None)
+
+    def find(self, form: Form, name: str, node: str | None) -> Handler | None:
+        """What looks at a use; None where something is set up, which is noted at once."""
+        self._passed()
+        if form in SETTING_UP and not is_under_way():
+            self._use(form, name, self._locator.locate(sys._getframe(1)), False)
+        if form not in _LOOKED_AT:
+            return None
+
+        def handle(
+            wrapped: Callable[..., Any],
+            instance: Any,
+            args: tuple[Any, ...],
+            kwargs: dict[str, Any],
+            where: Where = NOWHERE,
+        ) -> Any:
+            if is_under_way():
+                return wrapped(*args, **kwargs)
+            code, locator = where.code, self._locator
+            place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
+            use = self._use(form, name, place, code is not None)
+            if use is not None and args:
+                self._look(use.written, args[0])
+            if inspect.iscoroutinefunction(wrapped):
+                return self._awaited(use, wrapped(*args, **kwargs))
+            with Untracked(None):  # only the outermost counts, as in a campaign
+                result = wrapped(*args, **kwargs)
+            self._answer(use, result)
+            return result
+
+        return handle
+
+    def _use(
+        self, form: Form, name: str, place: tuple[Span, Role] | None, is_called_back: bool
+    ) -> Use | None:
+        """The use that a place is one of, if its message is to be looked at."""
+        if place is None:
+            return None
+        span, role = place
+        with self._lock:
+            key = (form, name, role is Role.ORACLE, is_called_back)
+            use = self.uses.setdefault(key, Use(*key))
+            where = f"{span.file}:{span.line}"
+            use.sites[where] = use.sites.get(where, 0) + 1
+            return use if sum(use.sites.values()) <= _MOST_USES else None
+
+    async def _awaited(self, use: Use | None, waiting: Any) -> Any:
+        result = await waiting
+        self._answer(use, result)
+        return result
+
+    def _answer(self, use: Use | None, result: Any) -> None:
+        if use is not None and (use.form not in WRITTEN or use.form is Form.CALL):
+            self._look(use.read, result)
+
+    def _look(self, values: Values, value: Any) -> None:
+        with self._lock, suppress(Exception):  # looking at values must not disturb the program
+            look(values, value, message=True)
+
+
+class _Public:
+    """All names that are not private."""
+
+    def __contains__(self, name: object) -> bool:
+        return not str(name).startswith("_")
+
+
+class Watch:
+    """What is seen of the calls in some files.
+
+    Args:
+        locator: tells whose file is whose.
+        libraries: client libraries of middlewares, with ``*`` for any text: what is done through them has a
+            name of its own.
+    """
+
+    def __init__(
+        self,
+        locator: Locator,
+        libraries: Iterable[str] = (),
+    ) -> None:
+        self._locator, self._libraries = locator, tuple(libraries)
+        self._seen: dict[tuple[str, bool], _Seen] = {}
+        self._method_of = cache(method_of)
+        self._only_class = cache(_only_class)
+        self._names: NamesSeen | None = None
+        self.sites = CallSites(_Public(), locator.role, self.called, hands=self.read, are_read=True)
+
+    @classmethod
+    def of(cls, order: Mapping[str, Any]) -> Watch:
+        """Return the watch of a process; ``order`` is what ``mutabot init`` asks for."""
+        program, tests = (tuple(order[kind].values()) for kind in ("program", "tests"))
+        return cls(Locator(order["root"], program, tests), order["libraries"])
+
+    def install(self) -> None:
+        """Watch what is imported from now on."""
+        self._names = NamesSeen(self._locator, self._leads)
+        self.sites.install()
+        loading.hook_runpy()
+
+    def called(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """Return what is called in the place of ``found``, which was read from ``receiver``."""
+        is_plain = receiver is NOTHING
+        if isinstance(found, type):
+            return found
+        callee = function_of(found) if is_plain else self._method(receiver, site.name)
+        if not is_plain and site.role is Role.PROGRAM:
+            callee = self._stood_for(receiver, site.name, callee, found)
+        return self._wrapped(found, self._of(callee, site), site)
+
+    def read(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """Note that an attribute was read from ``receiver``."""
+        raw = inspect.getattr_static(type(receiver), site.name, None)
+        if isinstance(raw, property | cached_property):
+            seen = self._of(method_of(receiver, site.name), site)
+            if seen is not None and self._counts(seen, site):
+                self._answer(seen, found)
+        return found
+
+    def data(self) -> WatchedCalls:
+        """What was seen: callables, and what was done under names."""
+        uses = list(self._names.uses.values()) if self._names is not None else []
+        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses)
+
+    def _leads(self) -> None:
+        """Something is done under a name: the calls that are under way lead to it."""
+        for seen in _under_way.get():
+            seen.call.leads_to_names = True
+
+    def _place(self, site: CallSite) -> tuple[str, int]:
+        return self._locator.relative(site.path), site.extent[0]
+
+    def _is_of_tests(self, callee: Callee) -> bool:
+        return self._locator.role(callee.file) is Role.ORACLE
+
+    def _method(self, value: Any, name: str) -> Callee | None:
+        """A method by its name; looked up once for each class."""
+        if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
+            return method_of(value, name)
+        return self._method_of(value if isinstance(value, type) else type(value), name)
+
+    def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
+        """What a mock or a class of the tests stands for: the robot's callable, or any of its name."""
+        if is_mock(value):
+            spelt = re.split(r"\W", value._extract_mock_name())[0]
+            kind = vars(value).get("_spec_class") or self._only_class(spelt, name)
+            return (meant_by(kind, name) if kind is not None else None) or any_method(name)
+        if is_mock(found) and isinstance(value, type | ModuleType):
+            where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
+            is_class = name[:1].isupper()
+            return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
+        if callee is None or callee.owner is None or not self._is_of_tests(callee):
+            return callee
+        meant = (meant_by(kind, name) for kind in callee.owner.__mro__[1:-1])
+        robots = next((one for one in meant if one is not None and not self._is_of_tests(one)), None)
+        return robots or any_method(name, callee)
+
+    def _of(self, callee: Callee | None, site: CallSite) -> _Seen | None:
+        """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
+        if callee is None:
+            return None
+        key = (callee.target, site.role is Role.ORACLE)
+        known = self._seen.get(key)
+        if known is None or (known.callee.raw is None and callee.raw is not None):
+            top = callee.target.partition(":")[0].partition(".")[0]
+            if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
+                return None
+            call = described(callee, of_tests=key[1], own=self._locator.role(callee.file) is Role.PROGRAM)
+            call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
+            known = self._seen[key] = _Seen(callee, call)
+        return known
+
+    def _wrapped(self, function: Any, seen: _Seen | None, site: CallSite) -> Any:
+        if seen is None or not self._counts(seen, site):
+            return function
+
+        instance = getattr(function, "__self__", None)
+
+        def watched(*args: Any, **kwargs: Any) -> Any:
+            command: Command | None = None
+            with suppress(Exception):  # looking at values must not disturb the program
+                values = self._arguments(seen, args, kwargs, instance)
+                command = _command(seen, instance, values)
+            with _making(seen):
+                result = function(*args, **kwargs)
+            if inspect.iscoroutine(result):
+                self._check_coroutine(seen)
+                return self._awaited(seen, command, result)
+            self._answer(seen, result, command)
+            return result
+
+        return watched
+
+    async def _awaited(self, seen: _Seen, command: Command | None, waiting: Any) -> Any:
+        with _making(seen):
+            result = await waiting
+        self._answer(seen, result, command)
+        return result
+
+    def _check_coroutine(self, seen: _Seen) -> None:
+        raw = seen.callee.raw
+        if not seen.call.stands_in and not inspect.iscoroutinefunction(getattr(raw, "__func__", raw)):
+            text = "it returns a coroutine but is no coroutine function: name the one behind it"
+            seen.call.problem = text
+
+    def _counts(self, seen: _Seen, site: CallSite) -> bool:
+        """Count a call; whether its values are to be looked at."""
+        if seen.call.of_tests and (seen.call.own or self._is_of_tests(seen.callee)):
+            return False
+        file, line = self._place(site)
+        where = f"{file}:{line}"
+        seen.call.sites[where] = seen.call.sites.get(where, 0) + 1
+        return seen.call.count <= MOST_CALLS
+
+    def _arguments(
+        self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any], instance: Any
+    ) -> dict[str, Any]:
+        """Look at the arguments of a call, and return those whose names are known."""
+        values, signature, call = dict(kwargs), seen.callee.signature, seen.call
+        if signature is None:
+            for index, value in enumerate(args):
+                look(call.positional, value, f"#{index}")
+        else:
+            try:
+                bound = signature.bind(*args, **kwargs)
+            except TypeError:
+                return {}
+            bound.apply_defaults()
+            values = dict(bound.arguments)
+            for name, parameter in signature.parameters.items():
+                if parameter.kind is inspect.Parameter.VAR_KEYWORD:
+                    values.update(values.pop(name, {}))
+        for name, value in values.items():
+            known = call.arguments.setdefault(name, Values())
+            look(known, value, name)
+            limits = _limits(value, instance) if "step" in call.name else None
+            for part in known.parts.values():
+                if part.length is not None and limits is not None and len(limits) == part.length:
+                    part.limits = limits
+        return values
+
+    def _answer(self, seen: _Seen, result: Any, command: Command | None = None) -> None:
+        with suppress(Exception):
+            look(seen.call.result, result)
+            if command is not None:
+                look(command.result, result)
+
+    def _call(self, seen: _Seen) -> WatchedCallable:
+        """Return a callable with what it raised on either side: tests make robots refuse."""
+        sides = (self._seen.get((seen.call.target, of_tests)) for of_tests in (False, True))
+        raised = dict.fromkeys(
+            name for side in (seen, *sides) if side is not None for name in side.call.raised
+        )
+        return replace(seen.call, raised=list(raised))
+
+
+@contextmanager
+def _making(seen: _Seen) -> Iterator[None]:
+    """Note that a call is under way, and what it raises."""
+    token = _under_way.set((*_under_way.get(), seen))
+    try:
+        yield
+    except Exception as error:
+        name = class_name(type(error))
+        if name not in seen.call.raised:
+            seen.call.raised.append(name)
+        raise
+    finally:
+        with suppress(ValueError):  # a coroutine that is closed from elsewhere
+            _under_way.reset(token)
+
+
+def _only_class(name: str, method: str) -> type | None:
+    """Return the class that a mock of this name stands for: the only one of the name with such a method."""
+    kinds = {
+        id(kind): kind
+        for module in list(sys.modules.values())
+        for kind in [getattr(module, "__dict__", {}).get(name)]
+        if isinstance(kind, type) and kind.__name__ == name and callable(getattr(kind, method, None))
+    }
+    return next(iter(kinds.values())) if len(kinds) == 1 else None
+
+
+def _limits(value: Any, instance: Any) -> list[list[float]] | None:
+    """Least and greatest values of an action, as the environment or the simulated model tells them."""
+    space: Any = getattr(instance, "action_space", None)
+    if hasattr(space, "low") and hasattr(space, "high"):
+        pairs = zip(plain(space.low), plain(space.high), strict=True)
+        return [[float(low), float(high)] for low, high in pairs]
+    model = getattr(value, "model", None) if type(value).__name__ == "MjData" else None
+    return plain(model.actuator_ctrlrange) if model is not None else None
+
+
+def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command | None:
+    """Which command a call is, by a node, register or name that tells it apart; None if nothing does."""
+    call = seen.call
+    if seen.has_no_commands:
+        return None
+    by, text = _told_by(call.name, instance, values)
+    if not by or call.told_by not in ("", by) or len(text) > _LONGEST or len(call.commands) > _MOST_COMMANDS:
+        seen.has_no_commands, call.told_by = True, ""
+        call.commands.clear()
+        return None
+    call.told_by = by
+    command = call.commands.setdefault(text, Command())
+    for name, value in values.items():
+        if name != by:
+            look(command.arguments.setdefault(name, Values()), value, name)
+    return command
+
+
+def _told_by(name: str, instance: Any, values: Mapping[str, Any]) -> tuple[str, str]:
+    """Path and text of what tells a command apart; empty texts if nothing does."""
+    if not _TALKS.search(name):
+        return "", ""
+    for argument, value in values.items():
+        is_plain = isinstance(value, str | int) and not isinstance(value, bool)
+        if argument.lower() in _TELLING and (is_plain or _prints_itself(value)):
+            return argument, str(value)
+    return ("self", str(instance)) if _prints_itself(instance) else ("", "")
+
+
+def _prints_itself(value: Any) -> bool:
+    """Whether an object prints as a name of its own, as a node does by its id."""
+    own: Any = type(value).__str__
+    if value is None or own is object.__str__ or not hasattr(value, "__dict__"):
+        return False
+    text = str(value)
+    return "\n" not in text and " object at " not in text
+
+
+def _is_no_robot(top: str) -> bool:
+    """Whether nothing of a top-level package is to be described as a call."""
+    return top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest")

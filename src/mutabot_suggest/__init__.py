@@ -1,0 +1,1 @@
+"""Suggesting checks that kill survivors, proven by running them."""

@@ -1,0 +1,16 @@
+"""What this package brings to mutabot."""
+
+from __future__ import annotations
+
+from mutabot.extensions import Described, Extension
+
+EXTENSION = Extension(
+    interface=1,
+    commands={
+        "suggest": Described(
+            "mutabot_suggest.command:suggest",
+            "Suggest checks that kill survivors.",
+            before="results",
+        )
+    },
+)

@@ -1,0 +1,401 @@
+"""A project's test files: places where a check can stand, statements added there, and private copies.
+
+Three styles: test functions of pytest, methods of ``TestCase``, and tests that another tool makes of
+something else, as pytest-bdd does of scenarios. No diff changes the last ones, but checks are tried in them.
+Nothing is ever written to the project itself.
+"""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import os
+import shutil
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest.mock import patch
+
+import libcst as cst
+from libcst.codemod import CodemodContext
+from libcst.codemod.visitors import AddImportsVisitor
+
+from mutabot.campaign.request import Request
+from mutabot.errors import ConfigurationError
+from mutabot.frozen import frozen
+from mutabot.journal.files import HOME
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+Definition = ast.ClassDef | Function
+_NO_END = "\\ No newline at end of file\n"
+
+
+@dataclass(slots=True)
+class ProjectFiles:
+    """The files of a project.
+
+    Attributes:
+        request: of the campaign: root, program, oracle and vocabulary.
+    """
+
+    request: Request
+    _modules: dict[str, ast.Module | None] = field(default_factory=dict)
+
+    @property
+    def root(self) -> Path:
+        """The project's folder."""
+        return self.request.root
+
+    def text(self, file: str) -> str:
+        """The text of a file, with its own ends of lines."""
+        return (self.root / file).read_bytes().decode("utf-8")
+
+    def module(self, file: str) -> ast.Module | None:
+        """The parsed file; None if it cannot be read."""
+        if file not in self._modules:
+            try:
+                self._modules[file] = ast.parse(self.text(file))
+            except (OSError, SyntaxError, ValueError):
+                self._modules[file] = None
+        return self._modules[file]
+
+    def import_name(self, file: str) -> str:
+        """The name under which pytest and the tests import a file: with the packages that it is in."""
+        path = self.root / file
+        parts = [path.stem]
+        folder = path.parent
+        while (folder / "__init__.py").exists() and folder != self.root:
+            parts.insert(0, folder.name)
+            folder = folder.parent
+        return ".".join(parts)
+
+    def python_files(self, folders: tuple[str, ...]) -> list[str]:
+        """The Python files that a list of files and folders names, relative to the root."""
+        found: list[str] = []
+        for name in folders:
+            path = self.root / name
+            files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
+            files = [one for one in files if one.suffix == ".py" and one.exists()]
+            found += [str(one.relative_to(self.root)) for one in files]
+        return found
+
+    def beside(self, file: str) -> Iterator[ast.Module]:
+        """A test file and the ``conftest.py`` files that hold for it, nearest first."""
+        folders = [folder for folder in (self.root / file).parents if folder.is_relative_to(self.root)]
+        conftests = [str((folder / "conftest.py").relative_to(self.root)) for folder in folders]
+        return (module for one in (file, *conftests) if (module := self.module(one)) is not None)
+
+    def diff(self, texts: Mapping[str, str]) -> str:
+        """One unified diff of all changed files, for ``git apply`` and ``patch -p1``."""
+        parts: list[str] = []
+        for file, text in sorted(texts.items()):
+            before, after = self.text(file).splitlines(keepends=True), text.splitlines(keepends=True)
+            parts += difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
+        return "".join(one if one.endswith("\n") else f"{one}\n{_NO_END}" for one in parts)
+
+
+def name_in(
+    module: ast.Module, wanted: str, attribute: str, taken: Iterable[str] = ()
+) -> tuple[str, tuple[str, ...]]:
+    """How a file can name ``attribute`` of the module ``wanted``, and the import that it lacks, if it does.
+
+    ``taken`` are names of other things.
+    """
+    bound: set[str] = set(taken)
+    for node in module.body:
+        if isinstance(node, ast.ImportFrom) and node.module == wanted and not node.level:
+            for alias in node.names:
+                if alias.name == attribute and (alias.asname or alias.name) not in bound:
+                    return alias.asname or alias.name, ()
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                if alias.name == wanted and (alias.asname or alias.name.partition(".")[0]) not in bound:
+                    return f"{alias.asname or alias.name}.{attribute}", ()
+    bound |= top_names(module)
+    if attribute not in bound:
+        return attribute, (f"from {wanted} import {attribute}",)
+    return f"{wanted}.{attribute}", (f"import {wanted}",)
+
+
+def top_names(module: ast.Module) -> set[str]:
+    """The names that a file binds at its top level."""
+    found: set[str] = set()
+    for node in module.body:
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            found |= {alias.asname or alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, Definition):
+            found.add(node.name)
+        else:
+            found |= {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
+    return found
+
+
+PYTEST, UNITTEST, OTHER = "pytest", "unittest", "other"
+
+
+@frozen
+class PlaceInTest:
+    """A test at whose end something can be looked at; all parameters of it are one place.
+
+    Attributes:
+        style: name of its style.
+        file: its module, relative to the project.
+        node: its node id without parameters.
+        names: what it is given: fixtures and parameters.
+    """
+
+    style: str
+    file: str
+    node: str
+    names: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Its name in its module, below that of its class."""
+        return tuple(self.node.split("::")[1:])
+
+
+@frozen
+class Addition:
+    """What is added to the end of a test.
+
+    Attributes:
+        place: the test.
+        lines: statements.
+        uses: names of the place that the statements use.
+        imports: what they need.
+    """
+
+    place: PlaceInTest
+    lines: tuple[str, ...]
+    uses: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
+
+
+def text_of(node: ast.expr) -> str:
+    """The text of an expression, with the quotes that formatters write and that readings have."""
+    text = ast.unparse(node)
+    return text if '"' in text or "\\" in text else text.replace("'", '"')
+
+
+def place_of(project: ProjectFiles, test: str) -> PlaceInTest | None:
+    """The place of a test by its node id; None if nothing can be added to it."""
+    node = test.partition("[")[0]
+    file, *path = node.split("::")
+    module = project.module(file)
+    if module is None or len(path) not in (1, 2):
+        return None
+    function = function_of(module, PlaceInTest(OTHER, file, node))
+    if len(path) == 1 and (function is None or _is_scenario(function)):
+        return PlaceInTest(OTHER, file, node, _given_around(project, file))
+    if function is None or not _has_end(function):
+        return None
+    is_case = len(path) == 2 and _is_test_case(module, path[0])
+    return PlaceInTest(UNITTEST if is_case else PYTEST, file, node, _names(function))
+
+
+def function_of(module: ast.Module | None, place: PlaceInTest) -> Function | None:
+    """The function of a place in its parsed file; None where it has none."""
+    found: ast.Module | Definition | None = module
+    for name in place.path:
+        found = _defined(found, name) if found is not None else None
+    return found if isinstance(found, Function) else None
+
+
+def _is_scenario(function: Function) -> bool:
+    """Whether it only stands for a scenario of pytest-bdd."""
+    called = (ast.unparse(one).partition("(")[0] for one in function.decorator_list)
+    return any(one.rpartition(".")[2] == "scenario" for one in called)
+
+
+def _given_around(project: ProjectFiles, file: str) -> tuple[str, ...]:
+    """What fixtures and steps of a test file are given: fixtures, as far as a test has asked for them."""
+    functions = [
+        node
+        for module in project.beside(file)
+        for node in module.body
+        if isinstance(node, Function) and node.decorator_list
+    ]
+    return tuple(dict.fromkeys(name for one in functions for name in arguments_of(one)))
+
+
+def _has_end(function: Function) -> bool:
+    """Whether statements can follow: not in a body on the line of its ``def``, nor if it ends by raising."""
+    return function.body[0].lineno != function.lineno and not isinstance(function.body[-1], ast.Raise)
+
+
+def _names(function: Function) -> tuple[str, ...]:
+    """Arguments, and what is assigned on the way."""
+    assigned = [
+        one.id
+        for statement in function.body
+        for one in ast.walk(statement)
+        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    ]
+    return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
+
+
+def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
+    owner = _defined(module, name)
+    bases = [ast.unparse(one) for one in owner.bases] if isinstance(owner, ast.ClassDef) else []
+    return any(
+        base.endswith("TestCase") or (depth > 0 and _is_test_case(module, base, depth - 1)) for base in bases
+    )
+
+
+def _defined(owner: ast.Module | Definition, name: str) -> Definition | None:
+    """The class or function of this name in a module or class."""
+    return next(
+        (one for one in reversed(owner.body) if isinstance(one, Definition) and one.name == name), None
+    )
+
+
+def arguments_of(function: Function) -> tuple[str, ...]:
+    """The names of its arguments."""
+    given = function.args
+    return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
+
+
+def within(style: str, text: str, value: str, tolerance: str) -> str:
+    """The statement that ``text`` reads ``value`` within ``tolerance``."""
+    if style == UNITTEST:
+        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
+    return f"assert {text} == pytest.approx({value}, abs={tolerance})"
+
+
+#: values that have statements of their own: the method of ``TestCase``, and what pytest asserts
+_PLAIN = {
+    "True": ("assertTrue", "{}"),
+    "False": ("assertFalse", "not {}"),
+    "None": ("assertIsNone", "{} is None"),
+}
+
+
+def equal(style: str, text: str, value: str) -> str:
+    """The statement that ``text`` reads ``value`` exactly."""
+    if value in _PLAIN:
+        method, expression = _PLAIN[value]
+        return f"self.{method}({text})" if style == UNITTEST else f"assert {expression.format(text)}"
+    return f"self.assertEqual({text}, {value})" if style == UNITTEST else f"assert {text} == {value}"
+
+
+_AT_END = "from mutabot_suggest.noted import at_end as _mutabot_at_end"
+
+
+def edited(project: ProjectFiles, additions: Iterable[Addition]) -> dict[str, str]:
+    """The new texts of the files with these additions, by file.
+
+    What is added to tests that another tool makes runs beside mutabot alone.
+    """
+    by_file: dict[str, list[Addition]] = {}
+    for one in additions:
+        by_file.setdefault(one.place.file, []).append(one)
+    return {file: _edited(project.text(file), found) for file, found in by_file.items()}
+
+
+def _edited(text: str, additions: Sequence[Addition]) -> str:
+    imports = [line for one in additions for line in one.imports]
+    written = [one for one in additions if one.place.style != OTHER]
+    made = dict.fromkeys(one.place for one in additions if one.place.style == OTHER)
+    lines = [_AT_END] if made else []
+    for number, place in enumerate(made):
+        lines += _around(place, [one for one in additions if one.place == place], number)
+    context = CodemodContext()
+    for line in imports:
+        _, source, *names = line.split()
+        AddImportsVisitor.add_needed_import(context, source, names[-1] if names else None)
+    module = cst.parse_module(text)
+    module = module.with_changes(body=_with_ends(module.body, written))
+    changed = AddImportsVisitor(context).transform_module(module)
+    code, newline = changed.code, changed.default_newline
+    if lines:
+        code += "" if code.endswith(newline) else newline
+        code += newline.join([*lines, ""])
+    return code
+
+
+def _around(place: PlaceInTest, additions: Sequence[Addition], number: int) -> list[str]:
+    """What follows a test of which the file has no function that could be added to."""
+    (test,) = place.path
+    uses = dict.fromkeys(use for one in additions for use in one.uses)
+    return [
+        "",
+        f"def _mutabot_end_{number}(value_of):",
+        *(f"    {use} = value_of({use!r})" for use in uses),
+        *(f"    {line}" for one in additions for line in one.lines),
+        "",
+        f"{test} = _mutabot_at_end({test}, _mutabot_end_{number})",
+    ]
+
+
+def _with_ends(
+    body: Sequence[cst.CSTNode], additions: Sequence[Addition], path: tuple[str, ...] = ()
+) -> list[cst.CSTNode]:
+    """The statements of a module or class, with additions at the ends of its functions."""
+    found: list[cst.CSTNode] = []
+    for one in body:
+        changed = one
+        if isinstance(one, cst.ClassDef):
+            inner = _with_ends(one.body.body, additions, (*path, one.name.value))
+            changed = one.with_changes(body=one.body.with_changes(body=inner))
+        elif isinstance(one, cst.FunctionDef):
+            here = [each for each in additions if each.place.path == (*path, one.name.value)]
+            changed = _with_end(one, here) if here else one
+        found.append(changed)
+    return found
+
+
+def _with_end(function: cst.FunctionDef, additions: Sequence[Addition]) -> cst.FunctionDef:
+    body = [*function.body.body]
+    last = body[-1]
+    returns = isinstance(last, cst.SimpleStatementLine) and isinstance(last.body[-1], cst.Return)
+    end = len(body) - 1 if returns else len(body)
+    body[end:end] = cst.parse_module("".join(f"{line}\n" for one in additions for line in one.lines)).body
+    return function.with_changes(body=function.body.with_changes(body=body))
+
+
+#: folders that no test needs and that may be large
+_LEFT = {HOME, ".git", ".hg", "__pycache__", ".pytest_cache", ".mypy_cache", ".ruff_cache", ".tox", ".nox"}
+_LEFT |= {"node_modules"}
+_PATH = "PYTHONPATH"
+
+
+@contextmanager
+def copy_of(request: Request, texts: Mapping[str, str]) -> Iterator[Request]:
+    """The request for a private copy of the project in which files have these texts.
+
+    Raises ConfigurationError if there is no place for it.
+    """
+    with TemporaryDirectory(prefix="mutabot-suggest-", ignore_cleanup_errors=True) as home:
+        root = Path(home) / request.root.name
+        try:
+            shutil.copytree(request.root, root, symlinks=True, ignore=_ignored)
+            for file, text in texts.items():
+                (root / file).write_bytes(text.encode("utf-8"))
+        except (OSError, shutil.Error) as error:
+            problem = f"the project cannot be copied to {home} (set TMPDIR to another place): {error}"
+            raise ConfigurationError(problem) from error
+        paths = _paths(request.root, root, os.environ.get(_PATH, ""))
+        with patch.dict(os.environ, {_PATH: os.pathsep.join(paths)}):
+            yield replace(request, configuration=request.configuration.model_copy(update={"root": root}))
+
+
+def _ignored(folder: str, names: Sequence[str]) -> set[str]:
+    return {name for name in names if name in _LEFT or Path(folder, name, "pyvenv.cfg").exists()}
+
+
+def _paths(own: Path, copy: Path, before: str) -> list[str]:
+    """Where the copy's modules are found, before those of an installation that points to the project."""
+    found = [str(copy / "src")] if (copy / "src").is_dir() else []
+    given = [entry for entry in before.split(os.pathsep) if entry]
+    for entry in [*given, *sys.path[1:]]:  # the first is where this process was started
+        path = Path(entry).resolve()
+        copied = copy / path.relative_to(own) if path.is_relative_to(own) else None
+        if copied is not None and copied.is_dir():
+            found.append(str(copied))
+        elif copied is None and entry in given:
+            found.append(entry)
+    return list(dict.fromkeys(found))

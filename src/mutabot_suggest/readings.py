@@ -1,0 +1,263 @@
+"""What tests could read at their ends, and what they read there: the original in many rounds, and survivors.
+
+A test can read in three ways: by the functions by which the tests read already, by what the vocabulary's
+probes and readings name, and by what it has at hand.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeGuard
+
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.controls import run_controls
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.run import as_it_is_now, open_executor
+from mutabot.frozen import frozen
+from mutabot.model import Mutant, Operation, Probe
+from mutabot.model.events import TestEnd
+from mutabot.model.operation import owner_of
+from mutabot.model.quantity import step_of
+
+from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in, text_of, top_names
+
+#: from the one that a reader of the tests knows best
+ORACLE, PROBE, HAND = 0, 1, 2
+#: steps of a reading that are no difference, where it comes in steps: one up or down
+_STEPS = 1.5
+
+
+@frozen
+class ReadExpression:
+    """An expression that reads something.
+
+    Attributes:
+        text: the expression.
+        way: ``ORACLE``, ``PROBE`` or ``HAND``.
+        tolerance: greatest difference of equal worlds in it.
+        needs: imports that it needs.
+    """
+
+    text: str
+    way: int
+    tolerance: float
+    needs: tuple[str, ...] = ()
+
+
+def is_number(value: Any) -> TypeGuard[float]:
+    """Whether a value is one that can be near another."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpression]:
+    """The readings of a place, those first by which the tests read already."""
+    module = project.module(place.file)
+    assert module is not None
+    vocabulary = project.request.vocabulary
+    coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
+    found = [*_by_oracle(project, place, module, coarse)]
+    found += [ReadExpression(text, ORACLE, coarse) for text in _by_tests(place, module)]
+    calls = [(one.target, ["()", ""], one.tolerance) for one in vocabulary.probes if not owner_of(one.target)]
+    calls += [(one.target, list(_calls(one)), coarse) for one in vocabulary.operations]
+    for target, endings, tolerance in calls:
+        where, _, attribute = target.partition(":")
+        if attribute and endings:
+            name, needs = name_in(module, where, attribute, place.names)
+            found += [ReadExpression(name + ending, PROBE, tolerance, needs) for ending in endings]
+    return list({one.text: one for one in reversed(found)}.values())[::-1]
+
+
+def of_objects(project: ProjectFiles) -> list[tuple[str, float]]:
+    """Readings of objects, ``module:Class.name``, each with its tolerance."""
+    vocabulary = project.request.vocabulary
+    coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
+    found = {probe.target: probe.tolerance for probe in vocabulary.probes if owner_of(probe.target)}
+    for one in vocabulary.operations:
+        if _only_reads(one) and not one.patterns and "." in one.qualname:
+            found.setdefault(one.target, coarse)
+    return list(found.items())
+
+
+def _by_oracle(
+    project: ProjectFiles, place: PlaceInTest, module: ast.Module, tolerance: float
+) -> Iterator[ReadExpression]:
+    """The oracle's functions, where all that they need is at hand under the same name."""
+    for file in project.python_files(project.request.configuration.oracle):
+        oracle = project.module(file)
+        for node in oracle.body if oracle is not None and file != place.file else ():
+            if not isinstance(node, ast.FunctionDef) or node.name.startswith(("_", "test")):
+                continue
+            given = node.args
+            needed = [one.arg for one in (*given.posonlyargs, *given.args)]
+            needed = needed[: len(needed) - len(given.defaults)]
+            strict = any(default is None for default in given.kw_defaults)
+            if strict or not set(needed) <= set(place.names) or node.decorator_list:
+                continue
+            name, needs = name_in(module, project.import_name(file), node.name, place.names)
+            yield ReadExpression(f"{name}({', '.join(needed)})", ORACLE, tolerance, needs)
+
+
+def _by_tests(place: PlaceInTest, module: ast.Module) -> Iterator[str]:
+    """What the tests of a file compare and only ``len`` is called for, where all of its names are at hand."""
+    at_hand = {*place.names, *top_names(module)}
+    for compared in (node for node in ast.walk(module) if isinstance(node, ast.Compare)):
+        called = [node.func for node in ast.walk(compared) if isinstance(node, ast.Call)]
+        for one in ast.walk(compared):
+            parts = [*ast.walk(one)]
+            names = {part.id for part in parts if isinstance(part, ast.Name)} - {"len"}
+            calls = {ast.unparse(part.func) for part in parts if isinstance(part, ast.Call)}
+            is_plain = one not in called and calls <= {"len"} and ast.Slice not in map(type, parts)
+            if isinstance(one, ast.Attribute | ast.Subscript | ast.Call) and names <= at_hand and is_plain:
+                yield text_of(one)
+
+
+def _only_reads(operation: Operation) -> bool:
+    is_callable = operation.named is None and operation.kind is None
+    return is_callable and not operation.command and not operation.arguments
+
+
+def _calls(operation: Operation) -> Iterator[str]:
+    """What follows the name of a function that only reads: no argument, or a text that says what to read."""
+    if not _only_reads(operation) or "." in operation.qualname:
+        return
+    if not operation.patterns:
+        yield "()"
+    if operation.message and operation.message.isidentifier():
+        for pattern in operation.patterns:
+            if pattern.command is not True and pattern.notation and not pattern.fields and not pattern.when:
+                yield f'({operation.message}="{pattern.notation}")'
+
+
+#: what notes readings in the tests' process, and the probe that carries them out of it
+_NOTED = "mutabot_suggest.noted"
+_PROBE = f"{_NOTED}:values"
+
+#: what was read at the end of one test: expression to number, text or truth value
+Read = Mapping[str, Any]
+
+
+@dataclass(slots=True)
+class Measured:
+    """What was read.
+
+    Attributes:
+        originals: per place, by (round, node id), what the original's tests read.
+        mutants: the same per place and mutant id.
+        readings: per place, what is known of its readings.
+        objects: readings of objects, each with its tolerance.
+    """
+
+    originals: dict[PlaceInTest, dict[tuple[int, str], Read]] = field(default_factory=dict)
+    mutants: dict[PlaceInTest, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
+    readings: dict[PlaceInTest, list[ReadExpression]] = field(default_factory=dict)
+    objects: list[tuple[str, float]] = field(default_factory=list)
+
+
+def measure(
+    request: Request,
+    project: ProjectFiles,
+    places: Mapping[str, PlaceInTest],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+    progress: Progress,
+) -> Measured:
+    """Run a copy of the project whose tests note what they can read.
+
+    Args:
+        request: for all rounds, fresh ones included.
+        places: by node id with parameters.
+        survivors: each with the rounds in which it survived.
+
+    Raises what a baseline raises.
+    """
+    measured = Measured(objects=of_objects(project))
+    additions = []
+    for place in dict.fromkeys(places.values()):
+        measured.readings[place] = readings_at(project, place)
+        additions.append(_noting(place, measured.readings[place], measured.objects))
+    with copy_of(request, edited(project, additions)) as copied:
+        probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
+        noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
+        with open_executor(noting, progress) as opened:
+            baseline, results = take_baseline(noting, opened, progress, repetitions=1)
+            for result in results:
+                for place, test, read in _read_in(result.ends, places):
+                    measured.originals.setdefault(place, {})[result.task.key[0], test] = read
+            _run_survivors(Campaign(noting, baseline, opened, progress), measured, places, survivors)
+    return measured
+
+
+def _run_survivors(
+    campaign: Campaign,
+    measured: Measured,
+    places: Mapping[str, PlaceInTest],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+) -> None:
+    baseline, progress = campaign.baseline, campaign.progress
+    now = [(as_it_is_now(campaign.request, baseline, mutant), rounds) for mutant, rounds in survivors]
+    for _ in run_controls(campaign, [mutant for mutant, _ in now]):
+        pass
+    trials = [(mutant, round) for mutant, rounds in now for round in rounds]
+    progress.stage("survivors", len(trials))
+    tasks = (
+        campaign.task(mutant, round, baseline.suite(round))
+        for mutant, round in trials
+        if baseline.tests_reaching(round, mutant)
+    )
+    for result in campaign.executor.run(tasks):
+        mutant, round = result.task.key
+        progress.advance(f"#{mutant.number} round {round + 1}")
+        reaching = baseline.tests_reaching(round, mutant)  # a check stands where the mutant is reached
+        for place, test, read in _read_in(result.ends, places):
+            if test in reaching:
+                measured.mutants.setdefault(place, {}).setdefault(mutant.id, {})[round, test] = read
+
+
+def _read_in(
+    ends: Iterable[TestEnd], places: Mapping[str, PlaceInTest]
+) -> Iterator[tuple[PlaceInTest, str, Read]]:
+    """What passed tests read, each with its place and node id."""
+    prefix = f"{_PROBE}."
+    for end in ends:
+        values = end.probes.items()
+        read = {name.removeprefix(prefix): value for name, value in values if name.startswith(prefix)}
+        if end.test in places and read and end.outcome == "passed":
+            yield places[end.test], end.test, read
+
+
+def _noting(
+    place: PlaceInTest, readings: Sequence[ReadExpression], objects: Sequence[tuple[str, float]]
+) -> Addition:
+    """The lines that note; they are plain statements, and never fail."""
+    # what the oracle does when it reads must not be seen by what only looks
+    ordered = sorted(readings, key=lambda one: one.way == ORACLE)
+    pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
+    classes = [target for target, _ in objects]
+    lines = (
+        f"from {_NOTED} import note as _mutabot_note",
+        f"_mutabot_note(locals(), [{pairs}], {classes!r})",
+    )
+    needs = dict.fromkeys(line for one in readings for line in one.needs)
+    return Addition(place, lines, tuple(place.names), tuple(needs))
+
+
+def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
+    """What is known of a part; one that comes in steps may be a step off where it never was yet."""
+    of = [
+        one
+        for one in measured.readings[place]
+        if text == one.text or text.startswith((f"{one.text}.", f"{one.text}["))
+    ]
+    if of:
+        found = replace(max(of, key=lambda one: len(one.text)), text=text)
+    else:
+        objects = [size for target, size in measured.objects if f".{target.rpartition('.')[2]}" in text]
+        coarse = max((one.tolerance for one in measured.readings[place]), default=1e-6)
+        found = ReadExpression(text, *((PROBE, objects[0]) if objects else (HAND, coarse)))
+    runs = measured.originals.get(place, {}).values()
+    values = {read[text] for read in runs if is_number(read.get(text))}
+    step = step_of(values) if len(values) > 1 else None
+    return found if step is None else replace(found, tolerance=max(found.tolerance, _STEPS * step))

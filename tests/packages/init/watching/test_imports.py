@@ -1,0 +1,50 @@
+"""What watches runs beside the user's program and in processes of the tests: it imports next to nothing."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import mutabot_init.watching
+
+#: beside the standard library: what the core's runtime may import, and the runtime itself
+ALLOWED = (
+    "pytest", "mutabot.errors", "mutabot.extensions", "mutabot.model", "mutabot.runtime",
+    "mutabot_init.watched", "mutabot_init.watching",
+)  # fmt: skip
+
+
+def imported(tree: ast.AST) -> Iterator[str]:
+    """Names of modules that a file imports, and of what it takes out of the top package."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            names = [alias.name for alias in node.names] if node.module == "mutabot" else [""]
+            yield from (f"{node.module}.{name}".strip(".") for name in names)
+
+
+def test_it_imports_the_standard_library_pytest_and_what_runs_beside_programs() -> None:
+    files = sorted(Path(mutabot_init.watching.__file__).parent.glob("*.py"))
+    names = {name for file in files for name in imported(ast.parse(file.read_text(encoding="utf-8")))}
+    assert "mutabot.extensions" in names
+    wrong = {
+        name
+        for name in names
+        if name.partition(".")[0] not in sys.stdlib_module_names
+        and not any(name == one or name.startswith(f"{one}.") for one in ALLOWED)
+    }
+    assert wrong == set()
+
+
+def test_processes_below_the_tests_need_no_pytest_for_it() -> None:
+    code = (
+        "import sys, mutabot_init.watching.elsewhere\n"
+        "heavy = {'pytest', '_pytest', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'libcst'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

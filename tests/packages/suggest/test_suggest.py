@@ -1,0 +1,94 @@
+"""``mutabot suggest`` on a small project with tests in three styles: what it suggests really kills."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.cli.app import main
+from mutabot.journal.journal import Journal
+
+from .projects import STYLES, TESTS, found_by, make, passes, patched
+
+SUGGEST = ["suggest", "--seeds", "5"]
+
+
+DOCUMENT = Path(__file__).parents[3] / "docs" / "suggest.md"
+PROJECTS = Path(__file__).parents[2] / "suites" / "projects"
+
+
+def survivors(found: dict[str, Any]) -> set[str]:
+    """The ids of mutants that a campaign let through."""
+    return {one["id"] for one in found["mutants"] if one["rounds"][0]["verdict"] == "survived"}
+
+
+def killed(found: dict[str, Any]) -> set[str]:
+    """The ids of mutants that suggestions are said to kill."""
+    return {kill["mutant"]["id"] for one in found["suggestions"] for kill in one["kills"]}
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A project without tests."""
+    monkeypatch.chdir(make(tmp_path, {}))
+    return tmp_path
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("files", [["test_functions.py"], list(TESTS)], ids=["one", "all"])
+def test_what_is_suggested_kills_when_it_is_applied(
+    files: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    make(folder, {name: TESTS[name] for name in files})
+    before = survivors(found_by(["run"], capsys))
+    tree = {path: path.read_bytes() for path in folder.rglob("*.*") if ".mutabot" not in path.parts}
+
+    found = found_by(SUGGEST, capsys)
+
+    assert {path: path.read_bytes() for path in tree} == tree, "the user's tree has changed"
+    assert {one["style"] for one in found["suggestions"]} == {
+        STYLES[name] for name in files if name in STYLES
+    }
+    left = {one["mutant"]["id"] for one in found["unsolved"]}
+    assert killed(found) | left == before
+    assert killed(found).isdisjoint(left)
+    section = DOCUMENT.read_text(encoding="utf-8").partition("\n## JSON\n")[2]
+    documented = set(re.findall(r"`(\w+)`", section))
+    parts = [found, *found["suggestions"], *found["unsolved"], *found["suggestions"][0]["kills"]]
+    assert {key for part in parts for key in part} <= documented
+    patched(folder, found["diff"])
+    assert passes(folder)[0] == 0
+    in_diff = {"suggestions": [one for one in found["suggestions"] if not one["by_hand"]]}
+    assert (len(in_diff["suggestions"]) < len(found["suggestions"])) == (len(files) > 1)
+    # checks that kill one mutant may kill more than was promised
+    assert survivors(found_by(["run"], capsys)) <= before - killed(in_diff)
+
+
+@pytest.mark.whole
+def test_the_page_lists_what_is_suggested_for_the_project_with_all_kinds_of_quantities(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project = shutil.copytree(PROJECTS / "fault_catalogue", tmp_path / "cell")
+    monkeypatch.chdir(project)
+    found_by(["run"], capsys)
+    suggested = {one["statement"] for one in found_by(SUGGEST, capsys)["suggestions"]}
+    rows = re.findall(
+        r"^\| fault_catalogue \| `(.+?)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert {one.removeprefix("assert ").replace("pytest.", "") for one in suggested} == {*rows}
+
+
+def test_there_must_be_something_to_suggest_checks_for(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["suggest"]) == 2
+    assert "mutabot run" in capsys.readouterr().err
+    with Journal.prepare(folder / ".mutabot" / "journal.sqlite", meta={}) as journal:
+        journal.begin({})
+        journal.finish("complete")
+    assert main(["suggest"]) == 3
+    assert "no mutants" in capsys.readouterr().err
