@@ -384,10 +384,11 @@ class ForkServerProcess:
         self._jobs.close()
         self._listen_until(lambda: False, _ANSWER if self.serving is not None else 0.0)
         self.process.end()
+        left = self.process.left or []  # it is told in the home
         self.process.release()
         self.events.close()
         self._home.remove()
-        return self.process.left or []
+        return left
 
     def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
         """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""
