@@ -360,7 +360,9 @@ def test_a_fault_of_the_catalogue_is_an_edit_too(tmp_path: Path, operator: str) 
     assert found.decode() == f"x = [{expected}, arm]\n"
 
 
-@pytest.mark.parametrize("name", [name for name in names() if operator_of(name).family == "catalogue"])
-def test_the_judge_knows_every_operator_of_the_catalogue(name: str) -> None:
-    units = ("cm-for-m", "mm-for-m", "inch-for-mm", "deg-for-rad", "ms-for-s")
-    assert name in units or hasattr(CatalogueEditor, "_" + name.replace("-", "_"))
+def test_the_judge_knows_every_operator_of_the_catalogue() -> None:
+    units = {"cm-for-m", "mm-for-m", "inch-for-mm", "deg-for-rad", "ms-for-s"}
+    found = {name for name in names() if operator_of(name).family == "catalogue"}
+    assert units < found
+    edits = {name: "_" + name.replace("-", "_") for name in found - units}
+    assert [name for name, edit in edits.items() if not hasattr(CatalogueEditor, edit)] == []
