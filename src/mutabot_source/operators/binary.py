@@ -122,23 +122,6 @@ class ShiftReplacement(_BinaryOperator):
     )
 
 
-_ARITHMETIC: _Signs = {
-    ast.Add: ("add", "+="),
-    ast.Sub: ("sub", "-="),
-    ast.Mult: ("mul", "*="),
-    ast.Div: ("div", "/="),
-    ast.FloorDiv: ("floordiv", "//="),
-    ast.Mod: ("mod", "%="),
-    ast.Pow: ("pow", "**="),
-}
-_BITS: _Signs = {
-    ast.BitAnd: ("and", "&="),
-    ast.BitOr: ("or", "|="),
-    ast.BitXor: ("xor", "^="),
-}
-_SHIFTS: _Signs = {ast.LShift: ("left", "<<="), ast.RShift: ("right", ">>=")}
-
-
 class AssignmentReplacement(ConventionalOperator):
     """Replaces ``+=`` and its like."""
 
@@ -156,11 +139,10 @@ class AssignmentReplacement(ConventionalOperator):
     def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.AugAssign):
             return
-        kind = type(node.op)
-        for group, needs in ((_ARITHMETIC, "number"), (_BITS, "bits"), (_SHIFTS, "integer")):
-            if kind not in group:
+        for group in (ArithmeticReplacement, LogicalReplacement, ShiftReplacement):
+            if type(node.op) not in group.signs:
                 continue
-            for other, (variant, sign) in group.items():
-                if other is not kind:
-                    yield Draft(variant, (node.target, f" {sign} ", node.value), needs)
-            yield Draft("assign", (node.target, " = ", node.value), needs)
+            for kind, (variant, sign) in group.signs.items():
+                if kind is not type(node.op):
+                    yield Draft(variant, (node.target, f" {sign}= ", node.value), group.needs)
+            yield Draft("assign", (node.target, " = ", node.value), group.needs)
