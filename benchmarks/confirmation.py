@@ -24,7 +24,7 @@ from pathlib import Path
 from statistics import median
 from textwrap import dedent
 
-from mutabot.campaign import schedule
+from mutabot.campaign import confirmation
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
@@ -110,10 +110,10 @@ def generate(folder: Path, tests: int) -> Path:
 def campaign(folder: Path, mode: str) -> None:
     """One campaign; prints what came of it."""
     if mode != USUAL:
-        schedule.LEAST = math.inf if mode == WHOLE else -1.0
+        confirmation.LEAST = math.inf if mode == WHOLE else -1.0
     if mode == REACHING:
-        schedule._fixed = lambda campaign: -math.inf  # all else is dearer
-        schedule._affordable = lambda *given: iter(())
+        confirmation._fixed = lambda campaign: -math.inf  # all else is dearer
+        confirmation._affordable = lambda *given: iter(())
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
     request = Request(

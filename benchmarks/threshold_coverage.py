@@ -18,7 +18,7 @@ from statistics import NormalDist, median
 
 import numpy as np
 
-from mutabot.campaign.schedule import LadderSearch
+from mutabot.campaign.search import LadderSearch
 from mutabot.model.graded import Bracket, MagnitudeResult, bracket_of
 from mutabot.results.ladders import median_between
 

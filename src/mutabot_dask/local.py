@@ -24,7 +24,7 @@ from mutabot.execution.task import last_line
 #: what the processes run; nothing outlives whoever started it
 _CODE = (
     "import sys\n"
-    "from mutabot.runtime.isolation.forkable import die_with_parent\n"
+    "from mutabot.runtime.isolation.namespaces import die_with_parent\n"
     "die_with_parent(int(sys.argv[1]))\n"
     "from distributed.cli.dask_{what} import main\n"
     "sys.argv[:] = ['dask-{what}', *sys.argv[2:]]\n"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign import schedule
+from mutabot.campaign import confirmation
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
@@ -134,7 +134,7 @@ def project(folder: Path, notices: str = "pass", many: int = 30) -> Path:
 @pytest.fixture
 def always(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also small suites leave tests out."""
-    monkeypatch.setattr(schedule, "LEAST", 0.0)
+    monkeypatch.setattr(confirmation, "LEAST", 0.0)
 
 
 def campaign(folder: Path, **changes: object) -> tuple[list[Outcome], list[str]]:
@@ -151,7 +151,7 @@ ENGINE = pytest.mark.parametrize("engine", ["fork", REPLAY])
 def half(monkeypatch: pytest.MonkeyPatch) -> None:
     """Half of what was let through is confirmed, however long anything takes here: one that is wrong, too."""
     monkeypatch.setattr(
-        schedule, "_affordable", lambda campaign, by_id, left, seconds: left[: len(left) // 2]
+        confirmation, "_affordable", lambda campaign, by_id, left, seconds: left[: len(left) // 2]
     )
 
 

@@ -37,7 +37,7 @@ class Campaign:
         progress: is told what is going on.
         evidence: what is recorded; None if nothing is.
         proven: ways of running that controls have proven: an engine and ``Control.way``.
-        is_short: whether mutants are run without tests that do not reach them, see ``campaign.schedule``.
+        is_short: whether mutants are run without tests that do not reach them, see ``campaign.confirmation``.
         real: the same over the real middleware, if this one is over a simulation of it.
         again: outcomes that were found so, and are to be found with the whole suite before they count.
     """

@@ -22,6 +22,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.campaign import Campaign, on_this_machine
+from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.engine import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
@@ -31,7 +32,7 @@ from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reachin
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, State
-from mutabot.campaign.schedule import OUT_OF_TIME, decide, earlier_decision, run_planned
+from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.errors import JournalError, NothingToDoError, SelectionError, in_short

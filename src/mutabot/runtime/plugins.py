@@ -24,7 +24,7 @@ import pytest
 
 from mutabot.frozen import frozen
 from mutabot.model.events import Watched
-from mutabot.runtime.isolation.forkable import left_out
+from mutabot.runtime.isolation.namespaces import left_out
 from mutabot.runtime.seeds import node_id
 
 

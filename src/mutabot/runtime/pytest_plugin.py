@@ -89,7 +89,7 @@ def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
     status = yield
     is_last = config.hook.pytest_cmdline_main.get_hookimpls()[-1].plugin is sys.modules[__name__]
     if _hooks is not None and is_last and isinstance(status, int):
-        from mutabot.runtime.isolation.forkable import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
+        from mutabot.runtime.isolation.namespaces import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         leave(int(status))
     return status

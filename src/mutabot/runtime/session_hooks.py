@@ -23,7 +23,8 @@ from mutabot.runtime.evidence import limit_memory
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.isolation.files import LOG, PrivateFiles
 from mutabot.runtime.isolation.fork_parent import ForkParent
-from mutabot.runtime.isolation.forkable import die_with_parent, track_event_loops
+from mutabot.runtime.isolation.forkable import track_event_loops
+from mutabot.runtime.isolation.namespaces import die_with_parent
 from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
@@ -31,7 +32,8 @@ from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.test_hooks import ForkedRun, TestHooks, classify, with_evidence
+from mutabot.runtime.test_end import classify, with_evidence
+from mutabot.runtime.test_hooks import ForkedRun, TestHooks
 
 if TYPE_CHECKING:
     from mutabot.runtime.isolation.fork_server import ForkServer

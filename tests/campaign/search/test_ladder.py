@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.campaign.schedule import LadderSearch
+from mutabot.campaign.search import LadderSearch
 from mutabot.model.graded import MagnitudeResult, bracket_of
 
 SIZE = 7

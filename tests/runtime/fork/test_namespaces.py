@@ -16,7 +16,7 @@ ORDINARY = ["unshare", "--user", "--map-user=1000", "--map-group=1000"]
 
 FORKED = """
 import os, subprocess
-from mutabot.runtime.isolation.forkable import end_first, fork
+from mutabot.runtime.isolation.namespaces import end_first, fork
 
 reading, writing = os.pipe()
 me = os.getpid()
@@ -39,7 +39,7 @@ print("gone" if not os.path.exists(f"/proc/{pids.first}") else "there")
 
 CLOCK = """
 import os, subprocess, sys, time
-from mutabot.runtime.isolation.forkable import leave_out, left_out
+from mutabot.runtime.isolation.namespaces import leave_out, left_out
 
 began = time.monotonic()
 time.sleep(0.3)

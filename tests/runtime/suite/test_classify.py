@@ -23,7 +23,7 @@ from mutabot.model import By, Vocabulary
 from mutabot.model.events import TestEnd
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, is_due_to, leaves
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.test_hooks import classify
+from mutabot.runtime.test_end import classify
 
 
 class Refused(Exception):  # noqa: N818  # as users name it

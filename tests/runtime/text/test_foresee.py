@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.runtime.program_text.switches import ForeseenForm, Forms, UnforeseenError, is_identical
+from mutabot.runtime.program_text.foresee import ForeseenForm, Forms, UnforeseenError, is_identical
 
 
 def foresee(text: str, **variables: Any) -> Any:

@@ -20,7 +20,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
 
-from mutabot.runtime.isolation.forkable import asks_for_id, call, descriptors, keeps_ids, own_event_loops
+from mutabot.runtime.isolation.forkable import descriptors, own_event_loops
+from mutabot.runtime.isolation.namespaces import asks_for_id, call, keeps_ids
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE = 4096, 16384, 1 << 18

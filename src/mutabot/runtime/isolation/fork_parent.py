@@ -28,7 +28,7 @@ from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Un
 from mutabot.model.job import Forking
 from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.isolation import forkable
+from mutabot.runtime.isolation import forkable, namespaces
 from mutabot.runtime.isolation.files import PrivateFiles
 from mutabot.runtime.plugins import alarm_held
 
@@ -67,7 +67,7 @@ class Child:
 
     mutant: str
     fork: int
-    pids: forkable.ForkedPids
+    pids: namespaces.ForkedPids
     pidfd: int
     test: int
     limit: float
@@ -234,9 +234,9 @@ class ForkParent:
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
             with suppress(OSError):
-                forkable.leave_out(monotonic() - began)
+                namespaces.leave_out(monotonic() - began)
 
-    def _fork_one(self, mutant: Mutant, began: float) -> forkable.ForkedPids | None:
+    def _fork_one(self, mutant: Mutant, began: float) -> namespaces.ForkedPids | None:
         """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
         slot = self._slots[mutant.id]
         self._finished[slot], self._tests[slot] = 0, self._number
@@ -248,7 +248,7 @@ class ForkParent:
         reading, writing = os.pipe()
         self._forking = True
         try:
-            pids = forkable.fork()
+            pids = namespaces.fork()
         except OSError:
             os.close(reading)
             os.close(writing)
@@ -257,7 +257,7 @@ class ForkParent:
             self._forking = False
         if pids is None:
             os.close(reading)
-            forkable.die_with_parent(pipe=writing)
+            namespaces.die_with_parent(pipe=writing)
             random.setstate(state)
             forkable.go_on_running(loop)
             self._begin_child(mutant, began)
@@ -276,7 +276,7 @@ class ForkParent:
             os.close(descriptor)
         try:
             folder = self.files.enter(self.pipe.name)
-            forkable.leave_out(monotonic() - began)
+            namespaces.leave_out(monotonic() - began)
         except OSError as error:
             try:
                 self._tell_unforked(mutant, error)
@@ -383,7 +383,7 @@ class ForkParent:
     def _bury(self, child: Child) -> None:
         """Tell how a child has ended."""
         _, status = os.waitpid(child.pids.fork, 0)
-        forkable.end_first(child.pids.first)
+        namespaces.end_first(child.pids.first)
         os.close(child.pidfd)
         slot, code = self._slots[child.mutant], os.waitstatus_to_exitcode(status)
         # at the end of the session the exit code is the suite's own

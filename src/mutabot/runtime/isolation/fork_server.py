@@ -20,7 +20,8 @@ from mutabot.frozen import compile_all
 from mutabot.model.events import ForkEnded, Serving
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import isolate_files, may_be_private
-from mutabot.runtime.isolation.forkable import STARTED, die_with_parent, open_now, why_not
+from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
+from mutabot.runtime.isolation.namespaces import die_with_parent
 
 _MESSAGE_BYTES = 1 << 12
 #: what a copy is to do: its folder with the job file in it, and the writing end of the pipe by which the

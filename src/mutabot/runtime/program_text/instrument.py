@@ -29,7 +29,8 @@ from mutabot.model.mutant import RUNTIME, Extent, kept_name
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text import loading
-from mutabot.runtime.program_text.switches import Alternatives, ForeseenForm, Forms, Sightings
+from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
+from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:
     from mutabot.model import Call

@@ -1,0 +1,124 @@
+"""Confirm with the whole suite what mutants did that were run without some of its tests.
+
+The whole suite judges a mutant. Where the tests that do not reach survivors, after the first that does, would
+take longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than
+as a survivor after tests were left out is run with all of them before it counts. Of those that are let
+through, so many are run again with the whole suite, drawn at random, as at most double the campaign. If that
+notices one, all are run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import accumulate
+
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.engine import run_trials
+from mutabot.campaign.faults.demanded import split_ladders
+from mutabot.campaign.request import REPLAY
+from mutabot.campaign.reuse.keys import OutcomeWriter
+from mutabot.journal.journal import Journal
+from mutabot.journal.records import CONFIRMATION, is_wrong, run_short
+from mutabot.model import Mutant, Outcome
+
+#: seconds of tests below which nothing is left out
+LEAST = 30.0
+#: the share of mutants that are taken to survive, before any has run. To leave out tests saves time for these
+#: alone: most of the others end early, and those that do not are run twice
+SURVIVORS = 1 / 3
+
+
+def earlier_decision(journal: Journal) -> bool | None:
+    """What was decided in the campaign that this one goes on with; None if that had come to its end."""
+    return journal.meta().get(CONFIRMATION) if journal.finished != "complete" else None
+
+
+def decide(campaign: Campaign, mutants: Sequence[Mutant], journal: Journal, earlier: bool | None) -> Campaign:
+    """The campaign with or without the tests that are left out at first. The journal says which.
+
+    This goes by what the tests took in the baseline, and by how many mutants are taken to survive.
+    ``earlier``: what this campaign has decided before it was interrupted.
+    """
+    short = replace(campaign, is_short=not campaign.request.every_test)
+    alone, _ = split_ladders(mutants)  # a search goes by what it finds: it needs the whole suite
+    without, rest = _fixed(campaign), 0.0
+    for round in range(campaign.request.rounds):
+        walls = [campaign.baseline.ends[round, test].wall for test in campaign.baseline.suite(round)]
+        until = [0.0, *accumulate(walls)]
+        for numbers in filter(None, short.reaching(alone, round).values()):
+            reaching = sum(walls[number] for number in numbers)
+            without += reaching
+            rest += until[-1] - until[numbers[0]] - reaching
+    is_short = rest * SURVIVORS > max(without, LEAST) if earlier is None else earlier and short.is_short
+    journal.set_meta(CONFIRMATION, is_short)
+    return replace(campaign, is_short=is_short)
+
+
+def confirm(
+    campaign: Campaign,
+    mutants: Sequence[Mutant],
+    writer: OutcomeWriter,
+    done: Collection[tuple[str, int]] = (),
+) -> None:
+    """Run with the whole suite what counts with that only, and a sample of what was let through without it.
+
+    If it notices one of these, all of them are run. ``done``: ids and rounds of outcomes that were known
+    before this campaign.
+
+    Raises ControlError for a control that ends wrongly.
+    """
+    by_id = {mutant.id: mutant for mutant in mutants}
+    found = [one for one in writer.journal.outcomes() if one.mutant in by_id]
+    drawn = run_short(found, campaign.request.seed)
+    left = [one for one in drawn if not one.confirmed]
+    again = list(campaign.again)
+    campaign.again.clear()
+    spent = _fixed(campaign)
+    spent += sum(one.wall for one in (*found, *again) if (one.mutant, one.round) not in done)
+    due = left if any(map(is_wrong, drawn)) else list(_affordable(campaign, by_id, left, spent))
+    if left:
+        campaign.progress.note(
+            f"{len(left)} mutants were let through without tests that do not reach them; {len(due)} of these "
+            "are run with the whole suite as well"
+        )
+
+    def run(some: Iterable[Outcome], let_through: Iterable[Outcome]) -> int:
+        ended: list[Outcome] = []
+        confirmed = {(one.mutant, one.round) for one in let_through}
+        runs = [(by_id[one.mutant], one.round) for one in some]
+        run_trials(campaign.whole, runs, writer, ended.append, confirmed)
+        return sum(map(is_wrong, ended))
+
+    wrong = run([*again, *due], due)
+    if wrong and len(due) < len(left):
+        campaign.progress.note(
+            f"{wrong} of them ended otherwise with the whole suite, so all are run with it"
+        )
+        run(left[len(due) :], left)
+
+
+def _affordable(
+    campaign: Campaign, mutants: Mapping[str, Mutant], left: Iterable[Outcome], seconds: float
+) -> Iterator[Outcome]:
+    """The first of these that take so many seconds with the whole suite, and one at least."""
+    baseline = campaign.baseline
+    rounds: set[int] = set()
+    for number, one in enumerate(left):
+        is_fresh, suite = one.engine == REPLAY, baseline.suite(one.round)
+        tests = suite if is_fresh else baseline.tests_judging(one.round, mutants[one.mutant])
+        seconds -= baseline.seconds(one.round, tests) + (baseline.startup if is_fresh else 0.0)
+        if not is_fresh and one.round not in rounds:  # the original runs beside them
+            seconds -= baseline.seconds(one.round, suite)
+        rounds.add(one.round)
+        if seconds < 0 and number:
+            return
+        yield one
+
+
+def _fixed(campaign: Campaign) -> float:
+    """Seconds that a campaign takes for the original alone, in all its runs."""
+    request, baseline = campaign.request, campaign.baseline
+    rounds = range(request.rounds)
+    once = sum(baseline.seconds(round, baseline.suite(round)) for round in rounds)
+    return once * (request.repetitions + request.forks)

@@ -1,0 +1,237 @@
+"""What an expression would give, found out without letting anything happen.
+
+The fork parent looks ahead with it: a mutant of the program text needs no process of its own as long as its
+value is the original's. And a mutant tells by it what the original would have given. Operators on plain
+numbers and texts are computed, and a few functions; what they work on are constants, names, and stored
+attributes and items. All else is left to a real evaluation.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import math
+import types
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from mutabot.model.mutant import RUNTIME
+
+#: integers of more bits are left to a real evaluation
+_LARGEST = 256
+_NUMBERS = frozenset((bool, int, float))
+_PLAIN_TYPES = _NUMBERS | {str, type(None)}
+#: expressions that are computed: those that may take long for anything but numbers, and all others
+_CALCULATING = (ast.Call, ast.UnaryOp, ast.BinOp)
+_KNOWN = (*_CALCULATING, ast.Name, ast.Constant, ast.BoolOp, ast.IfExp, ast.Compare)
+#: they may take long or warn; and whether equal values are one object is up to the compiler
+_LEFT_OUT = (ast.Pow, ast.LShift, ast.Invert, ast.Is, ast.IsNot)
+_CALLABLE = (
+    abs, bool, float, int, max, min, round, math.acos, math.asin, math.atan, math.atan2, math.ceil,
+    math.copysign, math.cos, math.degrees, math.dist, math.exp, math.fabs, math.floor, math.fmod, math.hypot,
+    math.isclose, math.log, math.pow, math.radians, math.sin, math.sqrt, math.tan, math.trunc,
+)  # fmt: skip
+#: functions that hand out the local names
+_LOOKING = frozenset(("locals", "vars", "dir", "eval", "exec", "f_locals"))
+#: descriptors that only hand out what is stored in the object
+_STORED = (types.MemberDescriptorType, type(vars(NamedTuple("_Sample", [("item", int)]))["item"]))
+_PLAIN_LOOK_UPS: list[Any] = [kind.__getattribute__ for kind in (object, tuple, types.ModuleType)]
+
+
+class UnforeseenError(Exception):
+    """What an expression gives cannot be known without evaluating it."""
+
+
+def _fail_if(value: Any, wrong: Any, *told: str) -> Any:
+    if value == wrong:
+        raise ZeroDivisionError
+    return value
+
+
+#: what templates call (``Alternatives``)
+_HELPERS = types.SimpleNamespace(absolute=abs, fail_if=_fail_if)
+_HELPER_NAMES = frozenset(f"{RUNTIME}[0].{name}" for name in vars(_HELPERS))
+
+
+class ForeseenForm:
+    """An expression whose value is known as soon as those of its leaves are.
+
+    The value of one that does more than to calculate and to compare is never known. The tree is changed.
+    """
+
+    def __init__(self, tree: ast.expr) -> None:
+        leaves = _Leaves()
+        self._code: types.CodeType | None = None
+        with suppress(UnforeseenError):
+            tree = leaves.visit(tree)
+            self._kinds = _NUMBERS if leaves.calculates else _PLAIN_TYPES
+            self._check(leaves.constants)
+            self._code = compile(ast.Expression(tree), "<foreseen>", "eval")
+        self._leaves, self._functions = leaves.found, leaves.functions
+
+    def value(self, frame: types.FrameType) -> Any:
+        """What it gives in a frame.
+
+        Raises UnforeseenError if that cannot be known; and whatever the evaluation itself would raise.
+        """
+        if self._code is None:
+            raise UnforeseenError
+        values = {name: _read(leaf, frame) for name, leaf in self._leaves.items()}
+        self._check(values.values())
+        functions = {name: _read(leaf, frame) for name, leaf in self._functions.items()}
+        if not all(any(function is known for known in _CALLABLE) for function in functions.values()):
+            raise UnforeseenError
+        found = eval(self._code, {"__builtins__": {}, RUNTIME: [_HELPERS]}, values | functions)
+        if type(found) is tuple:  # as ``max((a, b), (c, d))`` gives
+            raise UnforeseenError
+        return found
+
+    def _check(self, values: Iterable[Any]) -> None:
+        for value in values:
+            if type(value) not in self._kinds or (type(value) is int and value.bit_length() > _LARGEST):
+                raise UnforeseenError
+
+
+class _Leaves(ast.NodeTransformer):
+    """Puts names in the place of all that is read in a frame, and refuses what is not known.
+
+    Attributes:
+        found: what is read, by the name that stands for it.
+        functions: the same for what is called.
+        constants: all constants.
+        calculates: whether anything in it works with numbers only.
+    """
+
+    def __init__(self) -> None:
+        self.found: dict[str, ast.expr] = {}
+        self.functions: dict[str, ast.expr] = {}
+        self.constants: list[object] = []
+        self.calculates = False
+
+    def visit(self, node: ast.AST) -> Any:
+        if isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
+            return self._stand_in(node, self.found)
+        if isinstance(node, _LEFT_OUT) or (isinstance(node, ast.expr) and not isinstance(node, _KNOWN)):
+            raise UnforeseenError
+        self.calculates |= isinstance(node, _CALCULATING)
+        if isinstance(node, ast.Constant):
+            self.constants.append(node.value)
+        return super().visit(node)
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:  # the name that ast looks for
+        if node.keywords:
+            raise UnforeseenError
+        told: list[ast.expr] = []
+        if ast.unparse(node.func) in _HELPER_NAMES:
+            told = [one for one in node.args if isinstance(getattr(one, "value", None), str)]
+        else:
+            node.func = self._stand_in(node.func, self.functions)
+        node.args = [argument if argument in told else self._argument(argument) for argument in node.args]
+        return node
+
+    def _argument(self, node: ast.expr) -> Any:
+        """An argument; a tuple of values, such as a point, is one as well, but not the value of anything."""
+        if isinstance(node, ast.Tuple):
+            node.elts = [self.visit(item) for item in node.elts]
+            return node
+        return self.visit(node)
+
+    def _stand_in(self, node: ast.expr, among: dict[str, ast.expr]) -> ast.expr:
+        name = f"leaf_{len(self.found) + len(self.functions)}"
+        among[name] = node
+        return ast.copy_location(ast.Name(name, ast.Load()), node)
+
+
+@dataclass(frozen=True, slots=True)
+class Forms:
+    """A place as an expression, and what it could read instead."""
+
+    original: ForeseenForm
+    alternatives: tuple[ForeseenForm, ...]
+
+    def differing(self, indexes: frozenset[int], frame: types.FrameType) -> frozenset[int]:
+        """Of these alternatives, those that would not give what the original gives in a frame, or may not."""
+        try:
+            given = self.original.value(frame)
+        except Exception:  # whatever it is: a real evaluation will tell
+            return indexes
+        return frozenset(index for index in indexes if not self._gives(index, given, frame))
+
+    def _gives(self, index: int, given: Any, frame: types.FrameType) -> bool:
+        try:
+            return is_identical(given, self.alternatives[index].value(frame))
+        except Exception:  # as above; what raises differs from what did not
+            return False
+
+
+def is_identical(one: Any, other: Any) -> bool:
+    """Whether no program could tell two plain values apart, but for which of them it has."""
+    if type(one) is not type(other) or one != other:
+        return False
+    return type(one) is not float or math.copysign(1.0, one) == math.copysign(1.0, other)
+
+
+def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
+    """The local names of a frame.
+
+    Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring up to date what it
+    may have kept.
+    """
+    code = frame.f_code
+    if code.co_flags & inspect.CO_OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
+        raise UnforeseenError
+    return frame.f_locals
+
+
+def plain_attribute(owner: Any, name: str) -> Any:
+    """An attribute that is merely stored: on the object, in a slot, in a named tuple, or in a module.
+
+    Raises UnforeseenError for all others: to read a property may be to read a robot.
+    """
+    kind = type(owner)
+    if isinstance(owner, type) or kind.__getattribute__ not in _PLAIN_LOOK_UPS or _is_mangled(name):
+        raise UnforeseenError
+    found = next((vars(base)[name] for base in kind.__mro__ if name in vars(base)), None)
+    if isinstance(found, _STORED):
+        return found.__get__(owner, kind)
+    if found is not None and hasattr(type(found), "__get__"):
+        raise UnforeseenError
+    stored = getattr(owner, "__dict__", None)
+    if type(stored) is dict and name in stored:
+        return stored[name]
+    if found is None:
+        raise UnforeseenError
+    return found
+
+
+def _read(leaf: ast.expr, frame: types.FrameType) -> Any:
+    if isinstance(leaf, ast.Name):
+        return _named(leaf.id, frame)
+    if isinstance(leaf, ast.Attribute):
+        return plain_attribute(_read(leaf.value, frame), leaf.attr)
+    if isinstance(leaf, ast.Subscript):
+        container, key = _read(leaf.value, frame), _read(leaf.slice, frame)
+        if type(container) in (tuple, list, dict, str) and type(key) in _PLAIN_TYPES:
+            return container[key]
+    if isinstance(leaf, ast.Constant):
+        return leaf.value
+    raise UnforeseenError
+
+
+def _named(name: str, frame: types.FrameType) -> Any:
+    """What a name stands for in a frame; a function's own without a value yet is no global of that name."""
+    local, code = locals_of(frame), frame.f_code
+    if name in local:
+        return local[name]
+    is_own = name in code.co_varnames or name in code.co_cellvars or name in code.co_freevars
+    for names in (frame.f_globals, frame.f_builtins):
+        if name in names and not is_own and not _is_mangled(name):
+            return names[name]
+    raise UnforeseenError
+
+
+def _is_mangled(name: str) -> bool:
+    """Whether a class body changes this name into another one."""
+    return name.startswith("__") and not name.endswith("__")
