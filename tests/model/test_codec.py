@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from mutabot import model
 from mutabot.model import Call, Reply, job
-from mutabot.model.codec import from_data, to_data
+from mutabot.model.codec import from_data, to_data, to_json
 from mutabot.model.events import EVENTS, event_from_data, event_to_data
 from mutabot.model.path import Step
 
@@ -86,6 +86,7 @@ def test_every_dataclass_survives_the_way_over_json(kind: type[Any]) -> None:
     @given(value=instances_of(kind))
     def survives(value: Any) -> None:
         assert from_data(kind, over_json(to_data(value))) == value
+        assert from_data(kind, json.loads(to_json(value, default=str))) == value
 
     survives()
 
@@ -116,3 +117,7 @@ def test_no_field_has_another_default_where_none_means_something(kind: type[Any]
     for each in fields(kind):
         optional = type(None) in get_args(hints[each.name])
         assert not optional or each.default in (None, MISSING), f"{kind.__name__}.{each.name}"
+
+
+def test_keys_that_are_no_texts_are_written_as_texts() -> None:
+    assert json.loads(to_json({(1, 2): 3, None: 4}, default=str)) == {"(1, 2)": 3, "None": 4}

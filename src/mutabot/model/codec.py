@@ -49,16 +49,24 @@ def shallow(value: Any) -> dict[str, Any]:
 
 
 def sparse(value: Any) -> dict[str, Any]:
-    """The fields of a dataclass that are neither None nor the very object that they are by default."""
-    kind: Any = type(value)
-    given = ((name, getattr(value, name), default) for name, default in _defaults(kind))
-    return {name: item for name, item, default in given if item is not None and item is not default}
+    """The fields of a dataclass that are neither None nor as by default."""
+    found = {}
+    for name, default, is_made in _defaults(type(value)):
+        item = getattr(value, name)
+        if item is not None and item is not default and not (is_made and item == default):
+            found[name] = item
+    return found
 
 
 @cache
-def _defaults(kind: type[Any]) -> tuple[tuple[str, Any], ...]:
-    """The fields of a dataclass with their defaults."""
-    return tuple((field.name, field.default) for field in fields(kind))
+def _defaults(kind: type[Any]) -> tuple[tuple[str, Any, bool], ...]:
+    """The fields of a dataclass with their defaults, and whether each object has a default of its own."""
+    return tuple(
+        (one.name, one.default, False)
+        if one.default_factory is MISSING
+        else (one.name, one.default_factory(), True)
+        for one in fields(kind)
+    )
 
 
 @cache
@@ -176,16 +184,24 @@ def printable(text: str) -> str:
 
 
 def to_json(value: Any, default: Callable[[Any], Any]) -> bytes:
-    """A value, as ``to_data`` makes it data, as JSON in ASCII that any reader can take.
+    """A value as JSON in ASCII that any reader can take, dataclasses without what is as by default.
 
-    ``default`` gives data for what JSON does not know.
+    ``default`` gives data for what neither JSON nor ``to_data`` knows.
     """
+
+    def known(one: Any) -> Any:
+        if _names(type(one)) is not None:
+            return sparse(one)
+        if isinstance(one, Enum):
+            return one.value
+        return dict(one) if isinstance(one, Mapping) else default(one)
+
     try:
-        text = json.dumps(to_data(value), default=default, separators=(",", ":"))
+        text = json.dumps(value, default=known, separators=(",", ":"))
         if _is_fine(text):
             return text.encode()
-    except (ValueError, RecursionError, OverflowError):
-        pass  # numbers of thousands of digits, objects that hold themselves
+    except (ValueError, TypeError, RecursionError, OverflowError):
+        pass  # numbers of thousands of digits, objects that hold themselves, keys that are no texts
     return json.dumps(storable(value, default), separators=(",", ":")).encode()
 
 

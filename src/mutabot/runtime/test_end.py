@@ -70,8 +70,13 @@ def classify(
     )
 
 
-def with_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) -> TestEnd:
-    """The end of a test with what its mutant did.
+def with_evidence(end: TestEnd, evidence: Evidence) -> TestEnd:
+    """The end of a test with what its mutant did."""
+    return replace(end, **of_evidence(end, evidence))
+
+
+def of_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) -> dict[str, Any]:
+    """What a mutant did, as fields of the end of a test.
 
     ``cause``: what ended it otherwise: also what a test said that it would do.
     """
@@ -81,17 +86,16 @@ def with_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None
         refusal = None
     # what follows a refusal that is data follows from what the program makes of it
     is_caught = refusal is not None and evidence.said is None
-    return replace(
-        end,
-        failure=evidence.failure or cause.failure,
-        invalid=cause.invalid,
-        refused=refusal,
-        caught=is_caught and end.outcome == FAILED and cause.refused is None,
-        hits=evidence.hits,
-        acted=evidence.acted,
-        away=evidence.away,
-        example=evidence.example,
-    )
+    return {
+        "failure": evidence.failure or cause.failure,
+        "invalid": cause.invalid,
+        "refused": refusal,
+        "caught": is_caught and end.outcome == FAILED and cause.refused is None,
+        "hits": evidence.hits,
+        "acted": evidence.acted,
+        "away": evidence.away,
+        "example": evidence.example,
+    }
 
 
 def outcome_so_far(report: pytest.TestReport, before: str) -> str:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from mutabot.model import By, Mutant
-from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
+from mutabot.model.events import Event, ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
 from mutabot.model.process_time import TimeUsed
 from mutabot.runtime import seeds
@@ -32,7 +32,7 @@ from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
-from mutabot.runtime.test_end import FAILED, PASSED, classify, outcome_so_far, with_evidence
+from mutabot.runtime.test_end import FAILED, PASSED, classify, of_evidence, outcome_so_far
 
 if TYPE_CHECKING:
     pass
@@ -184,10 +184,10 @@ class TestHooks:
         self._address = self._logged = None
         self.looks.clear()
         session = self.session
-        session.pipe.send(TestStart(test))
+        self._tell(TestStart(test))
         limit = watched_by_faulthandler(item)
         if limit is not None:
-            session.pipe.send(limit)
+            self._tell(limit)
         seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
         if session.passing.fork_parent is not None:
             session.passing.fork_parent.begin_test(test)
@@ -195,6 +195,11 @@ class TestHooks:
         if self.members is not None:
             self.members.start_test(test)
         session.start_test(test, partial(objects_of_fixtures, item))
+
+    def _tell(self, event: Event) -> None:
+        """Tell what the controller needs to watch this process; a fork is watched by its parent."""
+        if self.fork is None:
+            self.session.pipe.send(event)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Note a fixed address that the test waits at: two processes cannot have it at the same time."""
@@ -215,7 +220,7 @@ class TestHooks:
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
         """Pytest-timeout is about to watch a test: its thread leaves the process without a word."""
         if settings.method == "thread":
-            self.session.pipe.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
+            self._tell(watched(node_id(item), settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_call(self, item: pytest.Item) -> None:
@@ -277,10 +282,11 @@ class TestHooks:
         # of a test that a mutant neither reached nor failed, it is told what was executed in that test alone
         is_mutant = session.job.mutant is not None or self.fork is not None
         is_alone = is_mutant and not evidence.hits and self._outcome != FAILED
+        is_compared = session.job.record
         end = self._failure or TestEnd(test, self._outcome)
-        end = with_evidence(end, evidence, self._failure or self._expected)
-        end = replace(
+        return replace(
             end,
+            **of_evidence(end, evidence, self._failure or self._expected),
             timeout=meter.exceeded or end.timeout,
             # what the machine had to do with a time-out of the suite's own
             hindered=self._used.hindrance([os.getpid()]) if end.timeout is not None else None,
@@ -301,15 +307,10 @@ class TestHooks:
             more_checks=len(self.looks.more),
             recording=session.recording.text(session.recorder.told()),
             executed=self.units.of_test(alone=is_alone),
-        )
-        if not session.job.record:
-            return end
-        return replace(
-            end,
-            trace=tuple(session.recorder.trace),
-            returned=tuple(returns.entries) if returns is not None else (),
-            moments=tuple(session.along.entries),
-            checks=tuple(self.looks.noted.values()),
+            trace=tuple(session.recorder.trace) if is_compared else (),
+            returned=tuple(returns.entries) if is_compared and returns is not None else (),
+            moments=tuple(session.along.entries) if is_compared else (),
+            checks=tuple(self.looks.noted.values()) if is_compared else (),
         )
 
 

@@ -28,7 +28,9 @@ def test_a_detour_over_a_third_unit_changes_nothing(
     unit, other = units
     if dimension_of(middle) is dimension_of(unit):
         detour = convert(convert(value, unit, middle), middle, other)
-        assert detour == pytest.approx(convert(value, unit, other), rel=1e-12, abs=1e-300)
+        # where zeros differ, numbers near one of them are rounded as sums with the distance of the zeros
+        rounding = 8 * math.ulp(500.0) if dimension_of(unit) is Dimension.TEMPERATURE else 1e-300
+        assert detour == pytest.approx(convert(value, unit, other), rel=1e-12, abs=rounding)
 
 
 @given(value=values, unit=st.sampled_from(sorted(UNITS)))
