@@ -7,7 +7,6 @@ units say. A unit says its syntax tree, without positions, comments and layout.
 from __future__ import annotations
 
 import ast
-import copy
 import hashlib
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
@@ -120,7 +119,7 @@ class File:
         for name, node in functions_of(tree):
             number = sum(one.partition("#")[0] == name for one in found)
             found[f"{name}#{number}" if number else name] = node
-        found[""] = _ModuleLevel(is_test_file(self.name)).visit(copy.deepcopy(tree))
+        found[""] = _ModuleLevel(is_test_file(self.name)).visit(ast.parse(self._text))
         return found
 
     @cached_property
