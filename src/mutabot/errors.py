@@ -25,10 +25,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from enum import IntEnum
 
-from .limits import shortened
-
-#: signs of a name that a message shows
-_LONGEST_NAME = 300
+#: signs of a value, and of a name, that a message shows
+_SHOWN, _LONGEST_NAME = 80, 300
 
 
 class ExitCode(IntEnum):
@@ -182,6 +180,11 @@ def in_short(names: Sequence[str], most: int = 3) -> str:
     """The first of these, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return ", ".join(names[:most]) + more
+
+
+def shortened(text: str, most: int = _SHOWN) -> str:
+    """A text as a message shows it."""
+    return text if len(text) <= most else f"{text[:most]}…"
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:

@@ -21,9 +21,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from mutabot.errors import ExitCode, MutabotError, UsageError
+from mutabot.errors import ExitCode, MutabotError, UsageError, shortened
 from mutabot.extensions import brought, not_installed
-from mutabot.limits import shortened
 
 from .options import Version, with_options
 

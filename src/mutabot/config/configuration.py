@@ -14,12 +14,11 @@ import pydantic
 from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic_core import CoreSchema
 
-from mutabot import limits
-from mutabot.errors import ConfigurationError, nearest_name
+from mutabot.config import options
+from mutabot.errors import ConfigurationError, nearest_name, shortened
 from mutabot.extensions import brought, not_installed
 from mutabot.families import USUAL
 from mutabot.faults import families_brought, known_families, need_vocabulary, why_unknown
-from mutabot.limits import shortened
 from mutabot.model import Moment
 from mutabot.model.graded import Demand
 from mutabot.model.mutant import EVERY
@@ -123,17 +122,17 @@ class Settings(Table):
 
         vocabulary = ["robot.toml"]
     """
-    rounds: Annotated[int, Field(ge=1, le=limits.ROUNDS)] = 1
+    rounds: Annotated[int, Field(ge=1, le=options.ROUNDS)] = 1
     """How often everything is repeated, each time with other seeds (`--rounds`).
 
         rounds = 5
     """
-    seed: Annotated[int, Field(ge=0, le=limits.SEED)] = 1
+    seed: Annotated[int, Field(ge=0, le=options.SEED)] = 1
     """The campaign's seed, from which those of all rounds and tests come (`--seed`).
 
         seed = 42
     """
-    jobs: Annotated[int, Field(ge=1, le=limits.JOBS)] | None = None
+    jobs: Annotated[int, Field(ge=1, le=options.JOBS)] | None = None
     """Runs at a time (`--jobs`); by default one per core.
 
         jobs = 1
@@ -143,12 +142,12 @@ class Settings(Table):
 
         selection = "published.txt"
     """
-    timeout_factor: Annotated[float, Field(gt=1, le=limits.FACTOR)] = 10.0
+    timeout_factor: Annotated[float, Field(gt=1, le=options.FACTOR)] = 10.0
     """How many times the original's operations and simulated time a mutant may use in a test.
 
         timeout_factor = 3.0
     """
-    timeout_seconds: Annotated[float, Field(gt=0, le=limits.SECONDS)] = 60.0
+    timeout_seconds: Annotated[float, Field(gt=0, le=options.SECONDS)] = 60.0
     """Seconds of wall clock that every test gets at least:
     [limits of time](verdicts.md#limits-of-time).
 
@@ -159,12 +158,12 @@ class Settings(Table):
 
         private_files = false
     """
-    evidence: Annotated[int, Field(le=limits.BYTES), _Room] = 200_000_000
+    evidence: Annotated[int, Field(le=options.BYTES), _Room] = 200_000_000
     """Room for [recordings](evidence.md#where-it-is-kept) of what the robot did. 0 records nothing.
 
         evidence = "1 GB"
     """
-    memory: Annotated[int, Field(le=limits.BYTES), _Memory] = 4_000_000_000
+    memory: Annotated[int, Field(le=options.BYTES), _Memory] = 4_000_000_000
     """Address space of a process, as a text with a unit or in bytes.
 
         memory = "16 GB"
@@ -204,7 +203,7 @@ class Settings(Table):
 
         families = ["robot", "conventional"]
     """
-    baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
+    baseline_repetitions: Annotated[int, Field(ge=1, le=options.BASELINES)] | None = None
     """How often the original is run per round, to [find flaky tests](verdicts.md#a-second-look); by default
     as often as the engine needs.
 

@@ -9,16 +9,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mutabot import limits
 from mutabot.errors import ConfigurationError, VocabularyError
 
 #: the way to a value from the top of a document: keys of tables and indices of lists
 KeyPath = tuple[str | int, ...]
 
-_TOO_DEEP = f"is nested too deeply: at most {limits.DEPTH} lists and tables lie in each other"
-_TOO_LARGE = (
-    f"a whole number beyond 64 bits; it must lie between {limits.LEAST_WHOLE} and {limits.MOST_WHOLE}"
-)
+#: lists in lists and tables in tables; entries of one list or table; bytes of a TOML file
+_DEPTH, _ENTRIES, _FILE_BYTES = 32, 10_000, 4_000_000
+#: whole numbers of TOML have 64 bits
+_LEAST_WHOLE, _MOST_WHOLE = -(2**63), 2**63 - 1
+_TOO_DEEP = f"is nested too deeply: at most {_DEPTH} lists and tables lie in each other"
+_TOO_LARGE = f"a whole number beyond 64 bits; it must lie between {_LEAST_WHOLE} and {_MOST_WHOLE}"
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _AT_LINE = re.compile(r" \(at line (\d+), column (\d+)\)$")
 
@@ -48,8 +49,8 @@ class Document:
         text = ""
         try:
             raw = path.read_bytes()
-            if len(raw) > limits.FILE_BYTES:
-                problem = f"has {len(raw):,} bytes; at most {limits.FILE_BYTES:,} are read"
+            if len(raw) > _FILE_BYTES:
+                problem = f"has {len(raw):,} bytes; at most {_FILE_BYTES:,} are read"
                 raise error_type(problem, file=file)
             text = raw.decode("utf-8-sig").replace("\r\n", "\n")
             data = tomllib.loads(text)
@@ -96,15 +97,15 @@ def _extremes(data: Any) -> Iterator[tuple[KeyPath, str]]:
     left: list[tuple[KeyPath, Any]] = [((), data)]
     while left:
         place, value = left.pop()
-        if isinstance(value, int) and not limits.LEAST_WHOLE <= value <= limits.MOST_WHOLE:
+        if isinstance(value, int) and not _LEAST_WHOLE <= value <= _MOST_WHOLE:
             yield place, f"is {_TOO_LARGE}"
         if not isinstance(value, dict | list):
             continue
         items = list(value.items()) if isinstance(value, dict) else list(enumerate(value))
-        if len(place) > limits.DEPTH:
+        if len(place) > _DEPTH:
             yield place[:1], _TOO_DEEP
-        elif len(items) > limits.ENTRIES:
-            yield place, f"has {len(items)} entries; at most {limits.ENTRIES:,} can be meant"
+        elif len(items) > _ENTRIES:
+            yield place, f"has {len(items)} entries; at most {_ENTRIES:,} can be meant"
         else:
             left += [((*place, key), item) for key, item in items]
 

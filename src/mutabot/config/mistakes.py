@@ -10,8 +10,7 @@ from typing import Any, ParamSpec, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, unknown_name_text
-from mutabot.limits import shortened
+from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, shortened, unknown_name_text
 from mutabot.model.events import Problem
 
 from .document import Document, KeyPath

@@ -12,10 +12,28 @@ from collections.abc import Collection, Mapping, Sequence
 from decimal import ROUND_HALF_UP, Decimal
 from typing import Any
 
-from mutabot import limits
-from mutabot.errors import UsageError
+from mutabot.errors import UsageError, shortened
 from mutabot.frozen import frozen
-from mutabot.limits import shortened
+
+# The greatest numbers that options and settings take: more cannot be meant, and cannot be done.
+#: repetitions of a whole campaign: each has a baseline of its own
+ROUNDS = 10_000
+#: processes side by side: each takes a Python with pytest, some 50 MB
+JOBS = 1_024
+#: what every program that reads JSON can hold without loss
+SEED = 2**53 - 1
+#: runs of the original per round
+BASELINES = 1_000
+#: outcomes to look at again: all that there are
+VERIFIED = 1_000_000_000
+#: seconds, 11 days: what a system can wait for at once is no more than twice of it
+SECONDS = 1_000_000
+#: times the time of the original
+FACTOR = 1_000_000
+#: bytes, one petabyte
+BYTES = 10**15
+#: seconds that a campaign may take, 10,000 hours
+BUDGET = 36_000_000
 
 _PART = re.compile(r"(\d{1,12}(?:\.\d{1,12})?)\s*(h|min|m|s)")
 _SECONDS = {"h": 3600.0, "min": 60.0, "m": 60.0, "s": 1.0}
@@ -30,8 +48,8 @@ def seconds_of(text: str) -> float:
     found = sum(float(number) * _SECONDS[unit] for number, unit in parts)
     if found <= 0:
         raise UsageError(f"--budget {text}: nothing can be run in it; write 90s, 10m or 1h30m")
-    if found > limits.BUDGET:
-        raise UsageError(f"--budget {text}: at most {limits.BUDGET // 3600:,} hours can be meant")
+    if found > BUDGET:
+        raise UsageError(f"--budget {text}: at most {BUDGET // 3600:,} hours can be meant")
     return found
 
 

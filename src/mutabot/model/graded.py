@@ -12,8 +12,8 @@ import re
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 
+from mutabot.errors import shortened
 from mutabot.frozen import frozen
-from mutabot.limits import shortened
 from mutabot.model.mutant import Mutant, fits, is_like
 from mutabot.model.quantity import Kind
 from mutabot.model.units import UNITS, convert_difference, dimension_of

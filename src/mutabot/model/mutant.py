@@ -14,9 +14,9 @@ from enum import StrEnum
 from random import Random
 from typing import Any
 
+from mutabot.errors import shortened
 from mutabot.families import CALLS
 from mutabot.frozen import frozen
-from mutabot.limits import shortened
 from mutabot.model.notation import Notation
 
 

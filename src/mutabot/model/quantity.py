@@ -18,7 +18,7 @@ from enum import StrEnum
 from math import isclose
 from typing import Any
 
-from mutabot.model.answer import is_member, member_of, written_of
+from mutabot.model.enumeration import is_member, member_of, written_of
 from mutabot.model.path import Path, Step
 from mutabot.model.units import UNITS, Dimension, Quaternion, convert, distance, to_quaternion, to_values
 

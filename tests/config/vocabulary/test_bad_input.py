@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load, problem_error
+from mutabot.config.mistakes import problem_error
+from mutabot.config.vocabulary import load
 from mutabot.errors import ConfigurationError, UnknownNameError, VocabularyError
 from mutabot.model.events import Problem
 

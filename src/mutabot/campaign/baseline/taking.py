@@ -15,7 +15,7 @@ from typing import Any
 from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
-from mutabot.config.vocabulary import problem_error
+from mutabot.config.mistakes import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Executor, Result, Task, death, said_in
 from mutabot.families import OF_CALLS

@@ -11,7 +11,7 @@ from typing import Any
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.comparison import parts_of, readings_of
 from mutabot.campaign.request import Progress
-from mutabot.config.vocabulary import problem_error
+from mutabot.config.mistakes import problem_error
 from mutabot.extensions import brought
 from mutabot.model import Operation, Pattern, Probe, Quantity, Vocabulary
 from mutabot.model.events import Problem, Remark, TestEnd

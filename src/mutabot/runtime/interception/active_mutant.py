@@ -12,7 +12,8 @@ from typing import Any
 
 from mutabot.errors import OperatorError, PathError
 from mutabot.model import Call, Moment, Mutant, Operation, Path, Proceed, Reply, Span
-from mutabot.model.answer import is_member, member_of, restore
+from mutabot.model.answer import restore
+from mutabot.model.enumeration import is_member, member_of
 from mutabot.model.job import Idle, RefusedAt
 from mutabot.model.operation import Form, Refused
 from mutabot.operators import Need, Subject, operator

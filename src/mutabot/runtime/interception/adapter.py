@@ -20,7 +20,8 @@ from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, NotToldError, Operation, Path, Pattern, Quantity, Reply, Vocabulary
-from mutabot.model.answer import NotKeptError, is_member, is_of_numpy, keep, name_of, restore
+from mutabot.model.answer import NotKeptError, is_of_numpy, keep, restore
+from mutabot.model.enumeration import is_member, name_of
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
 from mutabot.model.quantity import Value, changes, is_reading_of, is_same
