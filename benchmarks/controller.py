@@ -39,7 +39,7 @@ from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.snapshot import Snapshot, State
-from mutabot.campaign.run import begin, open_executor, selected
+from mutabot.campaign.beginning import begin, open_executor, selected
 from mutabot.cli.request import request_of
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.journal.journal import Journal

@@ -13,10 +13,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any, TypeGuard
 
 from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.beginning import open_executor
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import as_it_is_now, open_executor
+from mutabot.campaign.run import as_it_is_now
 from mutabot.frozen import frozen
 from mutabot.model import Mutant, Operation, Probe
 from mutabot.model.events import TestEnd

@@ -8,9 +8,8 @@ from rich.console import Console
 from rich.text import Text
 
 from mutabot.report.document import data_of
-from mutabot.report.sections import Section, plural
+from mutabot.report.sections import Section, lines_of, plural
 from mutabot.report.terminal.console import print_section
-from mutabot.report.terminal.mutant import lines_of
 from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
 
 #: lines of a section that are shown; --json has all

@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from mutabot.campaign.beginning import open_executor
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import open_executor, run_campaign
+from mutabot.campaign.run import run_campaign
 from mutabot.errors import MutabotError, NothingToDoError
 from mutabot.execution.task import Task, death
 from mutabot.frozen import frozen

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.check import check
-from mutabot.campaign.run import plan_only, run_campaign
+from mutabot.campaign.beginning import check
+from mutabot.campaign.beginning import plan_only
+from mutabot.campaign.run import run_campaign
 from mutabot.campaign.verdict import Run, _ruling
 from mutabot.errors import NothingToDoError
 from mutabot.model import By, LeftOut, Mutant, Outcome, Role, Site, Span, Verdict

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.campaign.run import at_it, begin
+from mutabot.campaign.beginning import at_it, begin
 from mutabot.model.source_units import ALL_FILES, File
 from tests.campaign.project import Quiet, request_for, write_project
 

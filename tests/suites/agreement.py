@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.campaign.request import Request
-from mutabot.campaign.run import plan_only, run_campaign
+from mutabot.campaign.beginning import plan_only
+from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot.errors import MutabotError

@@ -8,153 +8,43 @@ from __future__ import annotations
 import errno
 import platform
 import time
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from mutabot import __version__, extensions
-from mutabot.campaign import simulation
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
-from mutabot.campaign.campaign import Campaign, on_this_machine
+from mutabot.campaign.beginning import at_it, begin, open_executor, selected
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.engine import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
 from mutabot.campaign.faults.providers import family_of, prepare
-from mutabot.campaign.plan import Plan, carry, draw, drawing, make_plan, reaching, summaries
+from mutabot.campaign.plan import Plan, carry, drawing, make_plan, reaching, summaries
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, State
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
-from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of, write_shard
-from mutabot.errors import JournalError, NothingToDoError, SelectionError, in_short
+from mutabot.errors import JournalError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
-from mutabot.execution.processes import provide
 from mutabot.execution.task import Executor, Result
 from mutabot.journal import records
-from mutabot.journal.files import at_work
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.model import LeftOut, Mutant
+from mutabot.model import Mutant
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
 
 from .reuse.reuse import Reused, Revision, altered_since, note_outdated, only_altered, open_others, reuse
 
-#: remarks that are told where there are no mutants
-_REMARKS = 8
-
-
-def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
-    """What runs the tasks of a campaign."""
-    if request.executor is None:
-        return on_this_machine(request, progress.note)
-    return request.executor.open(request, progress.note)
-
-
-@contextmanager
-def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
-    """The same, while the project is locked and Ctrl-C takes effect where it is safe.
-
-    Raises UsageError if the system allows too few open files.
-    """
-    provide(request.jobs)
-    with (
-        interruptions_kept(),
-        at_work(request.journal_path.parent),
-        open_executor(request, progress) as opened,
-    ):
-        yield opened
-
-
-def begin(
-    request: Request,
-    executor: Executor,
-    progress: Progress,
-    evidence: CampaignEvidence | None = None,
-    *,
-    stack: ExitStack | None = None,
-) -> tuple[Campaign, list[Result]]:
-    """Take the baseline. Returns the campaign and the raw results of the baseline.
-
-    ``stack``: until when a simulation of the robot's middleware may run tests; None for no simulation.
-
-    Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary,
-    and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
-    """
-    refuse_typos(request)
-    refuse_unhooked(request.vocabulary)
-    prepared = prepare(request.project)
-
-    def take(request: Request, executor: Executor, least: int = 0) -> tuple[Campaign, list[Result]]:
-        repetitions = max(request.repetitions, least)
-        baseline, results = take_baseline(
-            request, executor, progress, prepared=prepared, repetitions=repetitions
-        )
-        refuse_unfit(baseline, request.vocabulary)
-        return Campaign(request, baseline, executor, progress, evidence), results
-
-    tried = None
-    if stack is not None:
-        tried = simulation.try_original(
-            request, lambda other: take(other, stack.enter_context(open_executor(other, progress)))
-        )
-    is_compared = tried is not None and tried.campaign is not None
-    campaign, results = take(request, executor, 2 if is_compared else 0)
-    if tried is not None:
-        campaign, results = simulation.chosen(campaign, results, tried)
-    note_fit(campaign.baseline, request.vocabulary, progress)
-    return campaign, results
-
-
-def selected(campaign: Campaign, plan: Plan) -> Plan:
-    """The plan with the mutants that were asked for.
-
-    Raises NothingToDoError if none is left, saying why.
-    """
-    request = campaign.request
-    if not plan.mutants:
-        raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
-    mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
-    if not mutants:
-        raise NothingToDoError("the selection leaves no mutant to run")
-    if request.sample is None:
-        return Plan(mutants, plan.left_out)
-    drawn, how = draw(mutants, request.seed, request.sample)
-    return Plan(drawn, plan.left_out, how)
-
-
-def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
-    reasons = Counter(one.reason for one in baseline.faults.left_out_beforehand)
-    if reasons:
-        reason, count = reasons.most_common(1)[0]
-        return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
-    if baseline.hits:
-        return f"no mutants: all {len(plan.left_out)} would change nothing"
-    files = ", ".join((*request.configuration.program, *request.configuration.oracle))
-    lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
-    lines += [str(remark) for remark in baseline.remarks[:_REMARKS]]
-    more = len(baseline.remarks) - _REMARKS
-    return "\n".join([*lines, *([f"… and {more} more"] if more > 0 else [])])
-
-
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "pytest-bdd")
-
-
-def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
-    """Take the baseline and plan, without running a mutant."""
-    with at_it(request, progress) as opened, ExitStack() as stack:
-        campaign, _ = begin(request, opened, progress, stack=stack)
-    plan = selected(campaign, make_plan(campaign.baseline, request.project))
-    return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
 
 
 def run_campaign(request: Request, progress: Progress) -> Path:

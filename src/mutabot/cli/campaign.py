@@ -9,7 +9,7 @@ from typing import Annotated, Unpack
 
 import typer
 
-from mutabot.campaign import check as checking
+from mutabot.campaign import beginning
 from mutabot.campaign import run as running
 from mutabot.campaign.plan import listed_rules
 from mutabot.campaign.request import Progress, Request
@@ -39,7 +39,7 @@ def check(context: typer.Context, json: options.Json = False, **given: Unpack[op
     """Try the set-up without running mutants."""
     request = request_of(context.obj, **given)
     with progress_shown() as progress:
-        report = checking.check(request, progress)
+        report = beginning.check(request, progress)
     print_json(report.data) if json else echo("\n".join(report.lines))
 
 
@@ -52,7 +52,7 @@ def list_(
     """List the mutants that would run."""
     request = request_of(context.obj, **given)
     with progress_shown() as progress:
-        mutants, left_out = running.plan_only(request, progress)
+        mutants, left_out = beginning.plan_only(request, progress)
     if json:
         print_json(plan_data(mutants, left_out))
     else:

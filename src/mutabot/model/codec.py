@@ -51,7 +51,8 @@ def shallow(value: Any) -> dict[str, Any]:
 def sparse(value: Any) -> dict[str, Any]:
     """The fields of a dataclass that are neither None nor as by default."""
     found = {}
-    for name, default, is_made in _defaults(type(value)):
+    kind: Any = type(value)
+    for name, default, is_made in _defaults(kind):
         item = getattr(value, name)
         if item is not None and item is not default and not (is_made and item == default):
             found[name] = item
@@ -190,7 +191,8 @@ def to_json(value: Any, default: Callable[[Any], Any]) -> bytes:
     """
 
     def known(one: Any) -> Any:
-        if _names(type(one)) is not None:
+        kind: Any = type(one)
+        if _names(kind) is not None:
             return sparse(one)
         if isinstance(one, Enum):
             return one.value

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.check import check
-from mutabot.campaign.run import at_it, begin, run_campaign
+from mutabot.campaign.beginning import check
+from mutabot.campaign.beginning import at_it, begin
+from mutabot.campaign.run import run_campaign
 from mutabot.errors import ConfigurationError
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_forks, request_for, write_project

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.check import check
-from mutabot.campaign.run import plan_only, run_campaign
+from mutabot.campaign.beginning import check
+from mutabot.campaign.beginning import plan_only
+from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 

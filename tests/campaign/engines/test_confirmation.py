@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign import run as beginning
+from mutabot.campaign import beginning
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.check import check
+from mutabot.campaign.beginning import check
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import CONFIGURATION, ROBOT, Quiet, outcomes, request_for, write_project

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.run import plan_only, run_campaign
+from mutabot.campaign.beginning import plan_only
+from mutabot.campaign.run import run_campaign
 from mutabot.campaign.sharding.shards import merge
 from mutabot.config.options import Shard
 from mutabot.errors import MergeError, UsageError

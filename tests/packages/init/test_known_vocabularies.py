@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.check import check
+from mutabot.campaign.beginning import check
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot_init.propose import propose

@@ -24,8 +24,8 @@ from mutabot.journal.files import REPORT_MARK
 from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
+from mutabot.report.sections import check_on_page
 from mutabot.report.terminal.console import mark_of
-from mutabot.report.terminal.mutant import check_on_page
 from mutabot.report.texts import effect_text, mapped, status_of
 from mutabot.results.divergence import worst_of
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked

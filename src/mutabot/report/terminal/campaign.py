@@ -14,14 +14,14 @@ from typing import Any
 from rich.console import Console, RenderableType
 from rich.text import Text
 
-from mutabot.model import LeftOut, Mutant, Outcome
+from mutabot.model import LeftOut, Mutant
 from mutabot.report.document import data_of
 from mutabot.report.sections import Section, plural, sections, size_text, skipped
 from mutabot.results.ladders import Ladder
 from mutabot.results.results import Results
 from mutabot.results.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
 
-from .console import below, heading, legend, make_table, mark_of, marks_in, plain, print_section, short_place
+from .console import below, heading, legend, letters, make_table, plain, print_section, short_place
 
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12
@@ -101,15 +101,6 @@ def _mutants(results: Results) -> Iterator[RenderableType]:
         )
     yield table
     yield legend(outcome for result in results.mutants for outcome in result.rounds)
-
-
-def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
-    """Return one letter per round, or how often each occurs."""
-    if many:
-        parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in marks_in(rounds)]
-    else:
-        parts = [Text(mark_of(one).letter, style=mark_of(one).style) for one in rounds]
-    return Text(" ").join(parts)
 
 
 def print_plan(

@@ -154,6 +154,15 @@ def marks_in(outcomes: Iterable[Outcome | None]) -> list[tuple[VerdictMark, int]
     return [(mark, marks.count(mark)) for mark in _ORDER if mark in marks]
 
 
+def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
+    """Return one letter per round, or how often each occurs."""
+    if many:
+        parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in marks_in(rounds)]
+    else:
+        parts = [Text(mark_of(one).letter, style=mark_of(one).style) for one in rounds]
+    return Text(" ").join(parts)
+
+
 def legend(outcomes: Iterable[Outcome | None]) -> Text:
     """Explain the letters that occur."""
     # Spaces that do not break keep a letter and its words on one line.

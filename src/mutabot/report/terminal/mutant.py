@@ -12,14 +12,13 @@ from rich.text import Text
 from mutabot.journal.records import Replayed
 from mutabot.model import Diverged, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import end_in_words
-from mutabot.report.sections import Section, between, plural
+from mutabot.report.sections import Section, between, check_on_page, plural
 from mutabot.report.texts import effect_text, telling
 from mutabot.results.divergence import numbers_text
 from mutabot.results.results import MutantResult
-from mutabot.results.suggested import Suggestion, Suggestions
+from mutabot.results.suggested import Suggestions
 
-from .campaign import letters
-from .console import below, heading, make_table, mark_of, plain, print_section
+from .console import below, heading, letters, make_table, mark_of, plain, print_section
 
 #: lines of a message on the one screen; the journal and JSON have more
 _LINES = 8
@@ -174,35 +173,6 @@ def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
     ]
 
 
-def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
-    """Yield the assertion, what it kills, its tolerance, and its false alarms."""
-    yield one.statement
-    yield f"kills {_kills(one, found)}"
-    seen = f"{plural(one.runs, 'run')} of the original"
-    yield f"{seen} spread {one.spread:.3g}" if one.spread else f"equal in {seen}"
-    yield (
-        f"false alarms: none in {plural(one.fresh, 'new seed')} "
-        f"(so at most {100 * one.unseen:.2g} % of runs, 95 % confidence)"
-    )
-    if one.by_hand:
-        yield "another tool makes this test: add this by hand where it ends:"
-        yield from (f"  {line}" for line in one.by_hand.splitlines())
-
-
-def _kills(one: Suggestion, found: Suggestions) -> str:
-    """The mutants by the rounds in which they are killed: ``#7, #9 in all rounds``."""
-    by_rounds: dict[tuple[int, ...], list[int]] = {}
-    for mutant, rounds in one.kills.items():
-        by_rounds.setdefault(tuple(rounds), []).append(found.numbers.get(mutant, 0))
-    parts = []
-    for rounds, numbers in by_rounds.items():
-        where = f" in {numbers_text(round + 1 for round in rounds)}"
-        if len(rounds) == found.rounds:
-            where = " in all rounds" if found.rounds > 1 else ""
-        parts.append(", ".join(f"#{number}" for number in sorted(numbers)) + where)
-    return "; ".join(parts)
-
-
 def suggested_sections(result: MutantResult, found: Suggestions | None) -> Iterator[Section]:
     """Yield the section of a survivor; nothing for other mutants."""
     if not result.is_survivor or result.mutant.ladder:
@@ -220,13 +190,3 @@ def suggested_sections(result: MutantResult, found: Suggestions | None) -> Itera
     else:
         lines = [f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."]
     yield Section("A check that would catch it", lines=lines)
-
-
-def check_on_page(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
-    """Return the check that was suggested for a mutant, with its notes; None if there is none."""
-    suggestions = found.suggestions if found is not None else ()
-    one = next((one for one in suggestions if result.mutant.id in one.kills), None)
-    if one is None or found is None:
-        return None
-    statement, *notes = lines_of(one, found)
-    return {"code": statement, "test": one.test, "notes": notes}

@@ -1,0 +1,226 @@
+"""The beginning of a campaign: its baseline and its plan. ``check`` and ``--plan`` end there."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+
+from mutabot.campaign import simulation
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
+from mutabot.campaign.campaign import Campaign, on_this_machine
+from mutabot.campaign.engines.engine import Unhandled, try_controls
+from mutabot.campaign.evidence import CampaignEvidence
+from mutabot.campaign.faults.providers import prepare
+from mutabot.campaign.plan import Plan, draw, make_plan
+from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
+from mutabot.campaign.reuse.snapshot import OpenedFiles
+from mutabot.campaign.selection import refuse_typos, select
+from mutabot.campaign.sharding.shards import part_of
+from mutabot.config.configuration import Configuration
+from mutabot.errors import NothingToDoError, in_short
+from mutabot.execution.interruption import interruptions_kept
+from mutabot.execution.processes import provide
+from mutabot.execution.task import Executor, Result
+from mutabot.extensions import brought
+from mutabot.journal.files import at_work, refuse_tracked
+from mutabot.model import LeftOut, Mutant, Vocabulary
+from mutabot.model.codec import to_data
+
+#: operations that are named of those that no test reaches
+_SHOWN = 5
+#: remarks that are told where there are no mutants
+_REMARKS = 8
+
+
+def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
+    """What runs the tasks of a campaign."""
+    if request.executor is None:
+        return on_this_machine(request, progress.note)
+    return request.executor.open(request, progress.note)
+
+
+@contextmanager
+def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
+    """The same, while the project is locked and Ctrl-C takes effect where it is safe.
+
+    Raises UsageError if the system allows too few open files.
+    """
+    provide(request.jobs)
+    with (
+        interruptions_kept(),
+        at_work(request.journal_path.parent),
+        open_executor(request, progress) as opened,
+    ):
+        yield opened
+
+
+def begin(
+    request: Request,
+    executor: Executor,
+    progress: Progress,
+    evidence: CampaignEvidence | None = None,
+    *,
+    stack: ExitStack | None = None,
+) -> tuple[Campaign, list[Result]]:
+    """Take the baseline. Returns the campaign and the raw results of the baseline.
+
+    ``stack``: until when a simulation of the robot's middleware may run tests; None for no simulation.
+
+    Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary,
+    and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
+    """
+    refuse_typos(request)
+    refuse_unhooked(request.vocabulary)
+    prepared = prepare(request.project)
+
+    def take(request: Request, executor: Executor, least: int = 0) -> tuple[Campaign, list[Result]]:
+        repetitions = max(request.repetitions, least)
+        baseline, results = take_baseline(
+            request, executor, progress, prepared=prepared, repetitions=repetitions
+        )
+        refuse_unfit(baseline, request.vocabulary)
+        return Campaign(request, baseline, executor, progress, evidence), results
+
+    tried = None
+    if stack is not None:
+        tried = simulation.try_original(
+            request, lambda other: take(other, stack.enter_context(open_executor(other, progress)))
+        )
+    is_compared = tried is not None and tried.campaign is not None
+    campaign, results = take(request, executor, 2 if is_compared else 0)
+    if tried is not None:
+        campaign, results = simulation.chosen(campaign, results, tried)
+    note_fit(campaign.baseline, request.vocabulary, progress)
+    return campaign, results
+
+
+def selected(campaign: Campaign, plan: Plan) -> Plan:
+    """The plan with the mutants that were asked for.
+
+    Raises NothingToDoError if none is left, saying why.
+    """
+    request = campaign.request
+    if not plan.mutants:
+        raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
+    mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
+    if not mutants:
+        raise NothingToDoError("the selection leaves no mutant to run")
+    if request.sample is None:
+        return Plan(mutants, plan.left_out)
+    drawn, how = draw(mutants, request.seed, request.sample)
+    return Plan(drawn, plan.left_out, how)
+
+
+def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
+    reasons = Counter(one.reason for one in baseline.faults.left_out_beforehand)
+    if reasons:
+        reason, count = reasons.most_common(1)[0]
+        return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
+    if baseline.hits:
+        return f"no mutants: all {len(plan.left_out)} would change nothing"
+    files = ", ".join((*request.configuration.program, *request.configuration.oracle))
+    lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
+    lines += [str(remark) for remark in baseline.remarks[:_REMARKS]]
+    more = len(baseline.remarks) - _REMARKS
+    return "\n".join([*lines, *([f"… and {more} more"] if more > 0 else [])])
+
+
+def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
+    """Take the baseline and plan, without running a mutant."""
+    with at_it(request, progress) as opened, ExitStack() as stack:
+        campaign, _ = begin(request, opened, progress, stack=stack)
+    plan = selected(campaign, make_plan(campaign.baseline, request.project))
+    return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
+
+
+def check(request: Request, progress: Progress) -> CheckReport:
+    """Try the whole set-up, controls included, without running mutants."""
+    refuse_tracked(request.journal_path)
+    previews = dict(_previews(request.configuration))
+    with at_it(request, progress) as opened, ExitStack() as stack:
+        folders = {folder for one in previews.values() for folder in one.folders_left_out}
+        with OpenedFiles(request.root, folders) as watch:
+            campaign, _ = begin(request, opened, progress, stack=stack)
+        plan = make_plan(campaign.baseline, request.project)
+        mutants = selected(campaign, plan).mutants
+        controls, unhandled = try_controls(campaign, mutants)
+    report = _report(campaign, plan, mutants, controls, unhandled)
+    for name, preview in previews.items():
+        lines, data = preview.check(watch.opened)
+        report = CheckReport([*report.lines, *lines], {name: data, **report.data})
+    return report
+
+
+def _previews(configuration: Configuration) -> Iterator[tuple[str, Preview]]:
+    """What executors that the configuration has a table for would take elsewhere, by their names."""
+    if not configuration.tables:
+        return
+    for name, part in brought("executors").items():
+        if name in configuration.tables:
+            preview = part.load_class(ExecutorChoice).preview(configuration)  # type: ignore[type-abstract]
+            if preview is not None:
+                yield name, preview
+
+
+def _report(
+    campaign: Campaign, plan: Plan, mutants: list[Mutant], controls: int, unhandled: Unhandled
+) -> CheckReport:
+    request, baseline, left_out = campaign.request, campaign.baseline, len(plan.left_out)
+    tests = sorted({test for round in range(request.rounds) for test in baseline.ran(round)})
+    skipped = f", {baseline.skipped} skipped" if baseline.skipped else ""
+    selected = f" selected of {len(plan.mutants)}" if len(mutants) != len(plan.mutants) else ""
+    why = "cannot matter" if baseline.faults.left_out_beforehand else "would change nothing"
+    reached = {place.operation for place in baseline.hits}
+    unused = [one.target for one in request.vocabulary.operations if one.target not in reached]
+    flaky, nondeterministic = baseline.unstable, sorted(baseline.nondeterministic)
+    clock = request.vocabulary.clock
+    never_ticks = clock is not None and all(end.simulated is None for end in baseline.ends.values())
+    passing = f"{len(tests)} {'passes' if len(tests) == 1 else 'pass'}"
+    rounds = f"{request.rounds} round{'s' if request.rounds != 1 else ''}"
+    lines = [
+        f"tests     {passing} in {rounds}{skipped}",
+        f"sites     {len({place.site for place in baseline.hits})} reached",
+        f"controls  {controls} passed",
+        f"mutants   {len(mutants)}{selected}, {left_out} left out because they {why}",
+        *(f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in flaky.items()),
+        *(
+            f"nondeterministic  {test} in round {round + 1}: equal runs differ in values"
+            for round, test in nondeterministic
+        ),
+        *_unused(request.vocabulary, unused),
+    ]
+    if clock is not None and never_ticks:
+        lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
+    lines += [f"note      {remark}" for remark in (*baseline.remarks, request.ran_over) if remark]
+    lines += [f"replay    {test}: {why}" for test, why in unhandled.reasons.items()]
+    data = {
+        "replay": dict(unhandled.reasons),
+        "tests": tests,
+        "sites": [place.key for place in baseline.hits],
+        "mutants": len(mutants),
+        "planned": len(plan.mutants),
+        "left_out": left_out,
+        "controls": controls,
+        "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in flaky.items()],
+        "nondeterministic": [{"round": r, "test": t} for r, t in nondeterministic],
+        "unused": unused,
+        "remarks": [to_data(remark) for remark in baseline.remarks],
+    }
+    return CheckReport(lines, data)
+
+
+def _unused(vocabulary: Vocabulary, unused: Collection[str]) -> Iterator[str]:
+    """Name the operations that no test reaches; of a vocabulary's file that has many, the first of them."""
+    of: dict[str, list[str]] = {}
+    for operation in vocabulary.operations:
+        of.setdefault(operation.source.partition(":")[0], []).append(operation.target)
+    for name, there in of.items():
+        found = [target for target in there if target in unused]
+        if found:
+            yield (
+                f"unused    {len(found)} of {len(there)} operations of {name}, which no test reaches from "
+                f"the program or the oracle: {in_short(found, _SHOWN)}"
+            )
