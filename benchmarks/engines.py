@@ -41,11 +41,11 @@ from rich.console import Console
 from rich.table import Table
 
 from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.beginning import selected
 from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.engines.engine import Unhandled, replay, run_forks
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
-from mutabot.campaign.beginning import selected
 from mutabot.config.configuration import load_configuration
 from mutabot.config.options import Sample
 from mutabot.config.vocabulary import load

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought, not_installed
@@ -29,7 +29,9 @@ from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting
 from mutabot.model.graded import Demand
 from mutabot.model.job import InProcess
 from mutabot.model.mutant import Place
-from mutabot.operators.operator import Rule
+
+if TYPE_CHECKING:
+    from mutabot.operators.operator import Rule
 
 
 @frozen

@@ -15,8 +15,9 @@ from results.thresholds import journals
 #: what runs a campaign, and what that needs
 NOT_FOR_LOOKING = (
     "mutabot.model.job", "mutabot.campaign", "mutabot_source", "mutabot.runtime",
-    "mutabot.operators", "mutabot.config", "mutabot.config.vocabulary", "mutabot_init", "mutabot_suggest",
-    "libcst", "numpy", "scipy", "tomllib", "wrapt",
+    "mutabot.operators", "mutabot.config.configuration", "mutabot.config.document",
+    "mutabot.config.vocabulary", "mutabot_init", "mutabot_suggest", "libcst", "numpy", "scipy",
+    "tomllib", "wrapt",
 )  # fmt: skip
 #: what says what a package brings, which may be a section of the results
 DECLARING = {

@@ -12,8 +12,8 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.request import Request
 from mutabot.campaign.beginning import plan_only
+from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load

@@ -5,29 +5,32 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
+from typing import TYPE_CHECKING
 
 from mutabot.campaign import simulation
-from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.campaign import Campaign, on_this_machine
 from mutabot.campaign.engines.engine import Unhandled, try_controls
-from mutabot.campaign.evidence import CampaignEvidence
 from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan import Plan, draw, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.snapshot import OpenedFiles
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of
-from mutabot.config.configuration import Configuration
 from mutabot.errors import NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
-from mutabot.execution.task import Executor, Result
 from mutabot.extensions import brought
 from mutabot.journal.files import at_work, refuse_tracked
-from mutabot.model import LeftOut, Mutant, Vocabulary
 from mutabot.model.codec import to_data
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.evidence import CampaignEvidence
+    from mutabot.config.configuration import Configuration
+    from mutabot.execution.task import Executor, Result
+    from mutabot.model import LeftOut, Mutant, Vocabulary
 
 #: operations that are named of those that no test reaches
 _SHOWN = 5

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.baseline.baseline import Baseline, Sources
 from mutabot.campaign.evidence import CampaignEvidence
@@ -17,7 +17,9 @@ from mutabot.execution.task import Executor, Task
 from mutabot.execution.workers import Workers
 from mutabot.families import CONTROL
 from mutabot.model import Mutant, Outcome
-from mutabot.model.job import Job
+
+if TYPE_CHECKING:
+    from mutabot.model.job import Job
 
 #: a mutant in a round
 MutantRun = tuple[Mutant, int]

@@ -10,13 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Operation, Pattern, Probe, Quantity
-from mutabot.model.events import TestEnd
 from mutabot.model.quantity import distinct_texts, is_number, value_text
 from mutabot.model.units import apart, distance
+
+if TYPE_CHECKING:
+    from mutabot.model.events import TestEnd
 
 #: an operation and the notation of its command
 Command = tuple[str, str | None]

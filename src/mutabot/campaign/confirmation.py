@@ -12,15 +12,18 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.request import REPLAY
-from mutabot.campaign.reuse.keys import OutcomeWriter
-from mutabot.journal.journal import Journal
 from mutabot.journal.records import CONFIRMATION, is_wrong, run_short
-from mutabot.model import Mutant, Outcome
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign
+    from mutabot.campaign.reuse.keys import OutcomeWriter
+    from mutabot.journal.journal import Journal
+    from mutabot.model import Mutant, Outcome
 
 #: seconds of tests below which nothing is left out
 LEAST = 30.0

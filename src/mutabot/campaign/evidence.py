@@ -7,15 +7,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from hashlib import blake2b
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.request import Progress, Request
 from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
 from mutabot.evidence.story import RecordedPaths, diverged, noise_between
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import UNFIT
-from mutabot.model import Diverged, Mutant
-from mutabot.model.events import TestEnd
+
+if TYPE_CHECKING:
+    from mutabot.campaign.request import Progress, Request
+    from mutabot.model import Diverged, Mutant
+    from mutabot.model.events import TestEnd
 
 #: recordings of the original that are held to compare with
 _HELD = 64

@@ -11,16 +11,19 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from hashlib import blake2b
 from itertools import groupby
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.faults.providers import asked_for, provider, rules_of
-from mutabot.campaign.request import Request
-from mutabot.config.options import Sample
 from mutabot.faults import Preparation, Project, known_families
 from mutabot.frozen import frozen
 from mutabot.journal.records import Drawing, Reaching, Stratum
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Place
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.request import Request
+    from mutabot.config.options import Sample
 
 
 @frozen

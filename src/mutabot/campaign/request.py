@@ -8,12 +8,11 @@ from collections.abc import Callable, Collection, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from mutabot.config.configuration import Configuration
 from mutabot.config.options import Sample, Shard
 from mutabot.errors import UsageError, unknown_name_text
-from mutabot.execution.task import Executor
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
 from mutabot.faults import Project
@@ -21,6 +20,9 @@ from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.model.job import Job
+
+if TYPE_CHECKING:
+    from mutabot.execution.task import Executor
 
 AUTO, FORK, REPLAY = "auto", "fork", "replay"
 ENGINES = (FORK, REPLAY)

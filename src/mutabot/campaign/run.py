@@ -13,12 +13,12 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot import __version__, extensions
-from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign import beginning
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.beginning import at_it, begin, open_executor, selected
+from mutabot.campaign.beginning import at_it, begin, selected
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
@@ -27,21 +27,24 @@ from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, drawing, make_plan, reaching, summaries
-from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, State
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.errors import JournalError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
-from mutabot.execution.task import Executor, Result
 from mutabot.journal import records
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.model import Mutant
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
 
 from .reuse.reuse import Reused, Revision, altered_since, note_outdated, only_altered, open_others, reuse
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.request import Progress, Request
+    from mutabot.execution.task import Executor, Result
+    from mutabot.model import Mutant
 
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "pytest-bdd")
@@ -297,7 +300,7 @@ def anew(
     Raises SelectionError if the program no longer has the mutant, and what a baseline raises.
     """
     request = replace(request, rounds=last + 1)
-    with open_executor(request, progress) as opened:
+    with beginning.open_executor(request, progress) as opened:
         prepared = prepare(request.project)
         baseline, _ = take_baseline(request, opened, progress, prepared=prepared, repetitions=1)
         yield Campaign(request, baseline, opened, progress), as_it_is_now(request, baseline, mutant)

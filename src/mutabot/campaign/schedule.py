@@ -10,20 +10,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.faults.demanded import demanded_of, split_ladders
 from mutabot.campaign.plan import shuffled
-from mutabot.campaign.reuse.keys import OutcomeWriter
-from mutabot.campaign.reuse.reuse import Reused
 from mutabot.config.options import in_words
 from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted
-from mutabot.model import Mutant, Outcome, Verdict
 
 from .confirmation import confirm
 from .search import run_ladders
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign, MutantRun
+    from mutabot.campaign.reuse.keys import OutcomeWriter
+    from mutabot.campaign.reuse.reuse import Reused
+    from mutabot.model import Mutant, Outcome, Verdict
 
 Pair = tuple[str, int]
 #: how a campaign ended whose budget was not enough

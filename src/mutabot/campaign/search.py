@@ -16,13 +16,16 @@ from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from random import Random
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.faults.demanded import Ladders
-from mutabot.campaign.reuse.keys import OutcomeWriter
-from mutabot.model import Outcome
 from mutabot.model.graded import MagnitudeResult, bracket_of, seen
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign
+    from mutabot.campaign.faults.demanded import Ladders
+    from mutabot.campaign.reuse.keys import OutcomeWriter
+    from mutabot.model import Outcome
 
 #: indices of a ladder's magnitudes, from the smallest
 Step = int

@@ -8,15 +8,18 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mutabot.campaign.faults.providers import operators_of_packages
-from mutabot.campaign.request import Request
 from mutabot.errors import SelectionError, nearest_name
 from mutabot.faults import known_families
 from mutabot.languages.front_end import program_files
-from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Role, fits, is_like, means_numbers
 from mutabot.operators import registry
+
+if TYPE_CHECKING:
+    from mutabot.campaign.request import Request
+    from mutabot.model import LeftOut, Mutant
 
 
 def select(

@@ -6,9 +6,9 @@ import traceback
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.baseline import Baseline, Sources, observation
-from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparison import Observation, compare, farthest
 from mutabot.errors import MutabotError, in_short
 from mutabot.execution.task import Result, death
@@ -18,6 +18,9 @@ from mutabot.model.event_file import OWN_FAULT
 from mutabot.model.events import TestEnd
 from mutabot.model.outcome import added, in_words
 from mutabot.model.source_units import Executed, together
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign
 
 #: tests of a survivor whose checks are kept
 _MOST_LOOKED = 20

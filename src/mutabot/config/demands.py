@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import AfterValidator, Field
 
@@ -14,8 +14,10 @@ from mutabot.model.mutant import means_numbers
 from mutabot.model.quantity import MEASURED, measures_of
 from mutabot.model.units import OF_ANY, UNITS, units_of
 
-from .mistakes import DocumentPlace
 from .table import Table
+
+if TYPE_CHECKING:
+    from .mistakes import DocumentPlace
 
 
 def _check_kind(kind: Kind | None) -> Kind | None:

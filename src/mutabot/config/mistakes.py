@@ -5,15 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, shortened, unknown_name_text
-from mutabot.model.events import Problem
 
 from .document import Document, KeyPath
+
+if TYPE_CHECKING:
+    from mutabot.model.events import Problem
 
 M = TypeVar("M", bound=BaseModel)
 P = ParamSpec("P")

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import floor, inf, isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import tape as tapes
 from .recording import Block, TrackKind
-from .tape import Tape
+
+if TYPE_CHECKING:
+    from .tape import Tape
 
 Triple = tuple[float, float, float]
 #: seconds that a new simulation in the same test comes after the one before

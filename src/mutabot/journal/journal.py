@@ -22,17 +22,19 @@ import sqlite3
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from mutabot.errors import JournalError
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import from_data, printable, storable, to_data
-from mutabot.model.events import TestEnd
 
 from . import database, records
 from .database import LAST, columns
 from .files import WriterLock, previous_of, refuse_tracked
 from .records import UNFIT, BaselineTest, ControlEnd, Kept
+
+if TYPE_CHECKING:
+    from mutabot.model.events import TestEnd
 
 T = TypeVar("T")
 #: a key of meta that is the journal's own: why the campaign ended

@@ -15,9 +15,10 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import FrameType
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from mutabot.model.mutant import Extent
+if TYPE_CHECKING:
+    from mutabot.model.mutant import Extent
 
 
 class SourcePosition(NamedTuple):

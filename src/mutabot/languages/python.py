@@ -5,11 +5,12 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping, Sequence
 from types import CodeType, FrameType
-from typing import TypeVar
-
-from mutabot.model.mutant import Extent
+from typing import TYPE_CHECKING, TypeVar
 
 from .front_end import SiteName, SourcePosition
+
+if TYPE_CHECKING:
+    from mutabot.model.mutant import Extent
 
 _Node = TypeVar("_Node", bound=ast.AST)
 _TEXT_LIMIT = 60

@@ -6,15 +6,17 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from random import Random
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.families import CONTROL
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
 from mutabot.model.operation import Form
-from mutabot.model.quantity import Value
 
 from .magnitudes import Magnitudes, sized
 from .operator import Context, Example, Operator, Subject, Unchanged
+
+if TYPE_CHECKING:
+    from mutabot.model.quantity import Value
 
 #: how descriptions call what goes its way under a form
 _CALLED = {

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.quantity import Value
 
 from .magnitudes import Magnitudes, sized
 from .operator import Example, Subject, quantity_of
+
+if TYPE_CHECKING:
+    from mutabot.model.quantity import Value
 
 X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", "world")
 LOCATE = Operation("camera:locate", result=(X,), command=False)

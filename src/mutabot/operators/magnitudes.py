@@ -13,12 +13,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from mutabot.frozen import frozen
 from mutabot.model import Kind, Quantity
 from mutabot.model.units import Dimension, dimension_of
 
-from .operator import Subject
+if TYPE_CHECKING:
+    from .operator import Subject
 
 
 @frozen

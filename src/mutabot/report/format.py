@@ -12,12 +12,15 @@ import importlib
 import pkgutil
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
 from mutabot.frozen import frozen
-from mutabot.model import Span
 from mutabot.results.results import Results
+
+if TYPE_CHECKING:
+    from mutabot.model import Span
 
 
 @frozen

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import in_short
 from mutabot.frozen import frozen
@@ -13,12 +13,14 @@ from mutabot.model import LeftOut, Mutant, Span, Verdict
 from mutabot.model.outcome import first_line
 from mutabot.results.divergence import numbers_text
 from mutabot.results.results import MutantResult, Results, unlooked
-from mutabot.results.score import Group
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
-from mutabot.results.suggested import Suggestion, Suggestions
 from mutabot.results.thresholds import line_of, thresholds_of
 
 from .texts import OUTSIDE, effect_text, escaped, rounds_text
+
+if TYPE_CHECKING:
+    from mutabot.results.score import Group
+    from mutabot.results.suggested import Suggestion, Suggestions
 
 Place = Callable[[Span], str]
 #: numbers of mutants that a line gives

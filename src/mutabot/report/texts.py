@@ -10,13 +10,15 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
-from typing import Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.outcome import first_line
 from mutabot.results.divergence import numbers_text, worst_of
-from mutabot.results.results import MutantResult, Results
+
+if TYPE_CHECKING:
+    from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from mutabot.errors import ExitCode, in_short
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.journal.records import INCOMPLETE, ShardOf
 from mutabot.model import Verdict
-from mutabot.model.graded import Demand
 from mutabot.results.ladders import ladders_of
-from mutabot.results.results import Results
 from mutabot.results.thresholds import unmet
+
+if TYPE_CHECKING:
+    from mutabot.model.graded import Demand
+    from mutabot.results.results import Results
 
 
 @frozen

@@ -6,11 +6,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from statistics import fmean
+from typing import TYPE_CHECKING
 
 from mutabot.frozen import frozen
-from mutabot.journal.records import Drawing
 from mutabot.model import By, Mutant, Outcome, Verdict
 from mutabot.results.statistics import Interval, crossed, sampled, wilson
+
+if TYPE_CHECKING:
+    from mutabot.journal.records import Drawing
 
 
 @frozen

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.evidence.recording import Recording, from_bytes
 from mutabot.frozen import frozen
@@ -19,8 +19,10 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.recordings import ORIGINAL, Recordings
 from mutabot.model.codec import shallow
 from mutabot.results.results import Encoder, MutantResult, Results, find_mutant, results_at
-from mutabot.results.score import Group
 from mutabot.results.thresholds import Thresholds, thresholds_of
+
+if TYPE_CHECKING:
+    from mutabot.results.score import Group
 
 #: recordings that are held
 _HELD = 32

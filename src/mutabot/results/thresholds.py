@@ -9,6 +9,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
@@ -16,7 +17,9 @@ from mutabot.model import Outcome, Verdict
 from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
 from mutabot.results.divergence import numbers_text
 from mutabot.results.ladders import Above, Ladder, LadderRound, ladders_of, looseness
-from mutabot.results.results import Results
+
+if TYPE_CHECKING:
+    from mutabot.results.results import Results
 
 
 def amount(magnitude: float, unit: str | None) -> str:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mutabot.errors import PathError
-from mutabot.model import Call, Operation, Vocabulary
 from mutabot.model.events import Event, Problem, Remark
-from mutabot.model.quantity import Value
 from mutabot.runtime.targets.callables import Callables, not_imported
 from mutabot.runtime.targets.target import Finding, Messages, NotFoundError, resolve
+
+if TYPE_CHECKING:
+    from mutabot.errors import PathError
+    from mutabot.model import Call, Operation, Vocabulary
+    from mutabot.model.quantity import Value
 
 #: the targets of a process
 Kinds = Sequence[Callables | Messages]

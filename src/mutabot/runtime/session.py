@@ -10,12 +10,9 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from mutabot.model import Choice, Moment, Mutant, Operation, Probe
 from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Budget, Job
 from mutabot.model.operation import owner_of
-from mutabot.model.quantity import Value
-from mutabot.runtime.event_file import EventWriter
 from mutabot.runtime.evidence import Evidence, Meter
 from mutabot.runtime.inspection import Inspection
 from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
@@ -27,14 +24,17 @@ from mutabot.runtime.observation.probes import Along, Reading, TestRecording, re
 from mutabot.runtime.process_fault import PlacedFault
 from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.instrument import SessionText
-from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.program_text.standing import Handing, Standing, StandIns, last_name
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Messages
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
+    from mutabot.model import Choice, Moment, Mutant, Operation, Probe
+    from mutabot.model.quantity import Value
+    from mutabot.runtime.event_file import EventWriter
     from mutabot.runtime.isolation.fork_parent import ForkParent
+    from mutabot.runtime.program_text.returns import Returns
 
 
 class Session:

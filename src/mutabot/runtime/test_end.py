@@ -18,11 +18,12 @@ from mutabot.model.events import TestEnd
 from mutabot.model.path import class_name
 from mutabot.runtime import FOLDER
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
-from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.targets.target import is_named
 
 if TYPE_CHECKING:
     import doctest
+
+    from mutabot.runtime.interception.trace import Locator
 
 #: where an object lies in memory differs from run to run and says nothing
 _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")

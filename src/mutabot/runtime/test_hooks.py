@@ -31,10 +31,11 @@ from mutabot.runtime.processes.environment import listen
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.seeds import node_id
-from mutabot.runtime.session import Session
 from mutabot.runtime.test_end import FAILED, PASSED, classify, of_evidence, outcome_so_far
 
 if TYPE_CHECKING:
+    from mutabot.runtime.session import Session
+
     pass
 
 

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.beginning import check
-from mutabot.campaign.beginning import at_it, begin
+from mutabot.campaign.beginning import at_it, begin, check
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ConfigurationError
 from mutabot.model import Outcome, Verdict

@@ -11,11 +11,10 @@ import json
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.comparison import Observation, TraceCall, as_steady
 from mutabot.errors import MutabotError
-from mutabot.execution.task import Result
 from mutabot.families import CALLS, CONTROL, MESSAGES
 from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
@@ -27,6 +26,9 @@ from mutabot.model.events import Remark, SiteSeen, TestEnd
 from mutabot.model.job import Budget, Idle, InProcess, RefusedAt
 from mutabot.model.mutant import Choice, Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
 from mutabot.operators.command import Identity
+
+if TYPE_CHECKING:
+    from mutabot.execution.task import Result
 
 #: what a control is at a place of a fault that is put in place by its provider's own code
 _CONTROLS = "mutabot.runtime.process_fault"

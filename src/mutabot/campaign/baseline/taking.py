@@ -10,7 +10,7 @@ import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import probe_intervals_of
@@ -24,11 +24,13 @@ from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.events import Remark, TestEnd
-from mutabot.model.mutant import Place
 from mutabot.model.outcome import first_line
 from mutabot.operators import load_all
 
 from .baseline import Baseline, Hit, RecordedAnswers, Sources, observation, refused_of
+
+if TYPE_CHECKING:
+    from mutabot.model.mutant import Place
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance
 FAILS = "fails on the unmutated program"

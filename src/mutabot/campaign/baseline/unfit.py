@@ -6,16 +6,18 @@ Without readings of probes comparisons would say nothing.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.comparison import parts_of, readings_of
-from mutabot.campaign.request import Progress
 from mutabot.config.mistakes import problem_error
 from mutabot.extensions import brought
-from mutabot.model import Operation, Pattern, Probe, Quantity, Vocabulary
 from mutabot.model.events import Problem, Remark, TestEnd
 from mutabot.model.quantity import is_number, value_text
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.request import Progress
+    from mutabot.model import Operation, Pattern, Probe, Quantity, Vocabulary
 
 _NO_MIDDLEWARE = (
     "it is a name on a middleware, but no installed package brings one, so that nothing would be seen of it; "

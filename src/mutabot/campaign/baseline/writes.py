@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from mutabot.languages.python import extent_of
-from mutabot.model.mutant import Extent
+
+if TYPE_CHECKING:
+    from mutabot.model.mutant import Extent
 
 #: methods of arrays and containers that change them
 _CHANGING = frozenset(

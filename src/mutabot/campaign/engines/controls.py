@@ -13,9 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import REPLAY
 from mutabot.campaign.verdict import judge, run_of
@@ -25,6 +24,10 @@ from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
 from mutabot.operators.command import Fatal, Identity
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.campaign import Campaign, MutantRun
 
 IDENTITY, FATAL = Identity.name, Fatal.name
 #: what a control is run for that is forked before any test

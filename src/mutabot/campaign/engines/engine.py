@@ -20,11 +20,11 @@ import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
+from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.request import FORK, REPLAY
-from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.campaign.verdict import Death, Run, judged, not_judged, not_run, run_of, without_tests
 from mutabot.errors import MutabotError, in_short
 from mutabot.execution.task import Result, Task, death, how_ended
@@ -32,9 +32,12 @@ from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
 from mutabot.model.job import Forking
-from mutabot.model.mutant import Place
 
 from .controls import Control, controls_of, run_controls, settled
+
+if TYPE_CHECKING:
+    from mutabot.campaign.reuse.keys import OutcomeWriter
+    from mutabot.model.mutant import Place
 
 #: seconds for a test of the suite without any mutant
 _DEADLINE = 600.0

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from mutabot.faults import Planted, Project
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.graded import Demand, is_same, wanted_magnitudes
+
+if TYPE_CHECKING:
+    from mutabot.faults import Planted, Project
 
 #: graded faults, each at one site, of one quantity, in one direction: what the ids of its mutants have in
 #: common, and these by rising magnitude

@@ -23,19 +23,21 @@ from functools import cached_property
 from importlib.metadata import distributions
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mutabot
-from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.request import Request
 from mutabot.frozen import frozen
-from mutabot.journal.journal import Journal
-from mutabot.model import Mutant, Outcome, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
 from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, is_test_file, together
 
 from .snapshot import _HASH, State, _digest_of, counts_by_name, digest_of, read
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.request import Request
+    from mutabot.journal.journal import Journal
+    from mutabot.model import Mutant, Outcome, Vocabulary
 
 #: what something is made of: names, and a digest or a plain value for each
 Parts = Mapping[str, str]

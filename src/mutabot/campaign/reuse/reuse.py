@@ -12,10 +12,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.plan import Plan
-from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, SourceTree, Was, tool_table
 from mutabot.errors import JournalError, UsageError, in_short
 from mutabot.frozen import frozen
@@ -26,6 +24,11 @@ from mutabot.model import Mutant, Verdict
 from mutabot.repository import GitError, git, unignored
 
 from .snapshot import WRITTEN, State, counts_by_name, digest_of, is_note, own_files, read
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign
+    from mutabot.campaign.plan import Plan
+    from mutabot.campaign.request import Progress, Request
 
 Pair = tuple[str, int]
 #: names that are given before it is said how many more there are

@@ -17,10 +17,12 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mutabot.campaign.request import Request
 from mutabot.journal.files import REPORT_MARK
+
+if TYPE_CHECKING:
+    from mutabot.campaign.request import Request
 
 #: stands for the content of data that the unmutated tests write: results, not causes
 WRITTEN = "written by the tests themselves"

@@ -15,13 +15,11 @@ from contextlib import ExitStack
 from dataclasses import replace
 from hashlib import blake2b
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.baseline.baseline import Baseline, cost
 from mutabot.campaign.plan import Plan, renumbered
-from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies, changes
-from mutabot.config.options import Shard
 from mutabot.errors import MergeError
 from mutabot.frozen import frozen
 from mutabot.journal import records
@@ -30,6 +28,10 @@ from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.recordings import Recordings
 from mutabot.model import Mutant
 from mutabot.model.codec import to_data
+
+if TYPE_CHECKING:
+    from mutabot.campaign.request import Request
+    from mutabot.config.options import Shard
 
 #: how much more than its part a shard takes before a piece goes elsewhere
 _SLACK = 1.05

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mutabot.config.mistakes import DocumentPlace
 from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Probe, Quantity, Wait
 from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
 from mutabot.model.signature import parse_signature
@@ -15,6 +14,9 @@ from . import schema
 from .patterns import in_cases, in_each_mode, name_of_cases, read_patterns, read_when
 from .quantities import bare_path, in_message, read_quantities
 from .schema import OperationTable, Sides
+
+if TYPE_CHECKING:
+    from mutabot.config.mistakes import DocumentPlace
 
 #: forms that make the robot do something, unless the vocabulary says otherwise
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})

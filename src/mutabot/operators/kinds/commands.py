@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.notation import Notation
-from mutabot.model.quantity import Value
 from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, changed, unchanged, whole, writing
 from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
+
+if TYPE_CHECKING:
+    from mutabot.model.quantity import Value
 
 _HOME = Operation("robot:Arm.home")
 _OPEN_TO = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))

@@ -10,17 +10,19 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from random import Random
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from mutabot.families import GRADED
 from mutabot.model import Call, Kind, Mode, Operation, Proceed, Quantity, Reply
-from mutabot.model.quantity import Value
 from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
 from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, whole, writing
 from mutabot.operators.magnitudes import Magnitudes, ladder_in, own_ladder, per_second
 from mutabot.operators.operator import Context, Need, Subject, quantity_of
 from mutabot.operators.value import ValueOperator, is_number, label, turned
+
+if TYPE_CHECKING:
+    from mutabot.model.quantity import Value
 
 #: components of a slice without an end that are tried: those of an arm with seven joints
 _JOINTS = 7

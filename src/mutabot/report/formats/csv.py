@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
+from typing import TYPE_CHECKING
 
-from mutabot.report.format import Material
 from mutabot.results.stored import COLUMNS, rows
+
+if TYPE_CHECKING:
+    from mutabot.report.format import Material
 
 
 def make(material: Material) -> str:

@@ -7,10 +7,13 @@ is told in a last notice.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from mutabot.report.format import Material
 from mutabot.report.texts import survivor_text
-from mutabot.results.results import MutantResult
+
+if TYPE_CHECKING:
+    from mutabot.report.format import Material
+    from mutabot.results.results import MutantResult
 
 #: annotations of each level; the tenth notice says what is not shown
 _LIMITS = {"warning": 10, "notice": 9}

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree as Xml
 
 from mutabot.model import Verdict
-from mutabot.report.format import Material
 from mutabot.report.texts import one_line, reason_of, rounds_text, short_reason, status_of, why_alone
-from mutabot.results.results import MutantResult
+
+if TYPE_CHECKING:
+    from mutabot.report.format import Material
+    from mutabot.results.results import MutantResult
 
 #: state to the element that says so; states that are not here passed
 _ELEMENT: Mapping[Verdict | None, str] = {

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from mutabot.model import Span
-from mutabot.report.format import Material
 from mutabot.report.sections import section_lines, sections, size_text
 from mutabot.report.texts import escaped
+
+if TYPE_CHECKING:
+    from mutabot.model import Span
+    from mutabot.report.format import Material
 
 #: rows of a table; GitHub takes no summary of more than a megabyte
 _ROWS = 100

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from mutabot.model import Mutant, Span
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
 from mutabot.report.texts import survivor_text
-from mutabot.results.results import MutantResult
+
+if TYPE_CHECKING:
+    from mutabot.model import Mutant, Span
+    from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 #: paths are relative to this; whoever reads the file knows where it is

@@ -9,19 +9,21 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, RenderableType
 from rich.text import Text
 
-from mutabot.model import LeftOut, Mutant
 from mutabot.report.document import data_of
 from mutabot.report.sections import Section, plural, sections, size_text, skipped
-from mutabot.results.ladders import Ladder
-from mutabot.results.results import Results
 from mutabot.results.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
 
 from .console import below, heading, legend, letters, make_table, plain, print_section, short_place
+
+if TYPE_CHECKING:
+    from mutabot.model import LeftOut, Mutant
+    from mutabot.results.ladders import Ladder
+    from mutabot.results.results import Results
 
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12

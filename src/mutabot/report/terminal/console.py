@@ -10,7 +10,7 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from typing import IO, Self
+from typing import IO, TYPE_CHECKING, Self
 
 from rich import box
 from rich.console import Console, RenderableType
@@ -21,8 +21,10 @@ from rich.text import Text
 
 from mutabot.frozen import frozen
 from mutabot.model import By, Outcome, Span, Verdict
-from mutabot.report.sections import Section
 from mutabot.report.texts import ESCAPES
+
+if TYPE_CHECKING:
+    from mutabot.report.sections import Section
 
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 

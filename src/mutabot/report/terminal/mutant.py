@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.journal.records import Replayed
-from mutabot.model import Diverged, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import end_in_words
 from mutabot.report.sections import Section, between, check_on_page, plural
 from mutabot.report.texts import effect_text, telling
 from mutabot.results.divergence import numbers_text
-from mutabot.results.results import MutantResult
-from mutabot.results.suggested import Suggestions
 
 from .console import below, heading, letters, make_table, mark_of, plain, print_section
+
+if TYPE_CHECKING:
+    from mutabot.journal.records import Replayed
+    from mutabot.model import Diverged, Mutant, Outcome, Quantity, Span
+    from mutabot.results.results import MutantResult
+    from mutabot.results.suggested import Suggestions
 
 #: lines of a message on the one screen; the journal and JSON have more
 _LINES = 8

@@ -11,11 +11,13 @@ import sys
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import PathError
-from mutabot.model import Quantity
 from mutabot.model.path import Path, Step
+
+if TYPE_CHECKING:
+    from mutabot.model import Quantity
 
 #: copies that are looked at after each call
 _LAST = 8

@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import CodeType, FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.front_end import SourcePosition, front_ends
@@ -20,7 +20,9 @@ from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
 from mutabot.runtime.interception.adapter import SiteCall, call_context
-from mutabot.runtime.targets.target import Place
+
+if TYPE_CHECKING:
+    from mutabot.runtime.targets.target import Place
 
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}

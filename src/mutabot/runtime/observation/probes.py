@@ -23,17 +23,19 @@ from functools import cached_property
 from itertools import islice
 from time import perf_counter  # tests may replace those of the module
 from types import FunctionType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import nearest_name
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.evidence.tape import FilmWriter, Tape
-from mutabot.model import Probe
-from mutabot.model.job import Pictures
 from mutabot.model.path import class_name
-from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.targets.target import resolve
+
+if TYPE_CHECKING:
+    from mutabot.model import Probe
+    from mutabot.model.job import Pictures
+    from mutabot.runtime.observation.clock import Instances
 
 #: parts reported per probe; a probe is meant to be a handful of numbers
 LIMIT = 200

@@ -5,14 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from mutabot.extensions import brought
 from mutabot.model import events
 from mutabot.model.event_file import FOLDER
 from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
-from mutabot.model.job import Job
 from mutabot.runtime.processes.environment import Now, ProcessWatch, carry, write_wake
-from mutabot.runtime.session import Session
+
+if TYPE_CHECKING:
+    from mutabot.model.job import Job
+    from mutabot.runtime.session import Session
 
 #: what processes of interest load
 _JOIN = "mutabot.runtime.processes.member"

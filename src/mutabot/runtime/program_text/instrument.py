@@ -22,9 +22,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
-from mutabot.model import Alternative, Instrumentation, ProgramText, TextPlace
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
-from mutabot.model.job import Job
 from mutabot.model.mutant import RUNTIME, Extent, kept_name
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
@@ -33,7 +31,8 @@ from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:
-    from mutabot.model import Call
+    from mutabot.model import Alternative, Call, Instrumentation, ProgramText, TextPlace
+    from mutabot.model.job import Job
 
 
 _Key = tuple[str, Extent]

@@ -18,13 +18,15 @@ import sys
 from collections.abc import Callable, Iterator
 from functools import cache
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.languages.python import placed
 from mutabot.model import Role
-from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.observation.probes import plain, text_of_error
 from mutabot.runtime.program_text import loading
+
+if TYPE_CHECKING:
+    from mutabot.runtime.interception.trace import Locator
 
 RETURNED, RAISED = "__mutabot_returned__", "__mutabot_raised__"
 #: values per test that are noted

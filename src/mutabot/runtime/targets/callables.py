@@ -13,14 +13,16 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import wrapt
 
-from mutabot.model import Operation
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, signature_of, takes_anything
 from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Tell, resolve
+
+if TYPE_CHECKING:
+    from mutabot.model import Operation
 
 _ONLY_READ = "only its reading is seen; describe the method that its setter calls"
 
