@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable
 
 from mutabot_cell import Cell, Position
@@ -29,8 +30,11 @@ LOW = 0.005
 LARGEST_TILT = 3.0
 """Degrees. A joint move between two poses that both look down leans over by 1.3° on its way."""
 CARRYING_HEIGHT, PUSHING_SPEED = 0.1, 0.15
-"""Nearer to a surface than this a box may only be pushed by closing fingers: 0.05 each, and a little more
-at the moment they touch it."""
+"""Nearer to a surface than this a box may only be pushed by closing fingers: 0.05 each. Faster is only the
+jerk with which they meet it."""
+WINDOW = 0.02
+"""The speed of a box is its mean over so many seconds: the jerk lasts a tick or two, and moves it by less
+than a millimetre."""
 AISLE = 0.0
 """Behind the robot, on the side where no table stands (x and y below this), people pass."""
 PAST = 0.4
@@ -57,7 +61,7 @@ def watch_gripper(cell: Cell) -> None:
 def watch_box(cell: Cell, name: str) -> None:
     """For boxes that are picked and set down: gently, and in time."""
     place = once_per_tick(cell, lambda: cell.truth.box_position(name))
-    motion = Motion(cell, place)
+    motion = Motion(cell, place, WINDOW)
 
     def height() -> float:
         return place().z - _top(place().x)
@@ -94,12 +98,17 @@ def _top(x: float) -> float:
 
 
 class Motion:
-    """A speed over what lies below, maybe the moving belt; 0 if no time has passed since the last one."""
+    """A mean speed over what lies below, maybe the moving belt; 0 before any time has passed.
 
-    def __init__(self, cell: Cell, position: Callable[[], Position]) -> None:
+    `window`: seconds, or one tick if it is shorter.
+    """
+
+    def __init__(self, cell: Cell, position: Callable[[], Position], window: float = 0.0) -> None:
         self._cell = cell
         self._position = position
+        self._window = window
         self._time, self._place, self._travel = cell.time, position(), cell.truth.belt_position()
+        self._steps: deque[tuple[float, tuple[float, float, float]]] = deque()
 
     def speed(self) -> float:
         """In all directions."""
@@ -113,12 +122,13 @@ class Motion:
         before, self._place = self._place, self._position()
         ran, self._travel = self._travel, self._cell.truth.belt_position()
         passed, self._time = self._cell.time - self._time, self._cell.time
-        if passed <= 0:
-            return (0.0, 0.0, 0.0)
         now = self._place
         below = self._travel - ran if now.x > BELT_EDGE else 0.0
-        return (
-            (now.x - before.x) / passed,
-            (now.y - before.y - below) / passed,
-            (now.z - before.z) / passed,
-        )
+        if passed > 0:
+            way = (now.x - before.x, now.y - before.y - below, now.z - before.z)
+            self._steps.append((passed, way))
+        took = sum(seconds for seconds, _ in self._steps)
+        while len(self._steps) > 1 and took - self._steps[0][0] >= self._window:
+            took -= self._steps.popleft()[0]
+        x, y, z = (sum(way[axis] for _, way in self._steps) / took if took else 0.0 for axis in range(3))
+        return x, y, z
