@@ -33,6 +33,8 @@ PLUNGER = 0.012
 """Its stroke is 0.015."""
 LOW = 0.003
 """Deeper a box does not fall when it is let go."""
+RUBBED = 0.1
+"""The belt runs no further under a box that its stop holds: it takes 0.02 to brake."""
 
 
 def watch_boxes(cell: Cell, names: Sequence[str]) -> None:
@@ -54,8 +56,11 @@ def watch_stack(cell: Cell, names: Sequence[str]) -> None:
     cell.always(lambda: bool((np.abs(boxes.places() - before) < TOUCHED).all()), "the rest is not touched")
 
 
-def watch_belt(cell: Cell) -> None:
-    """For every test case: the belt stands while the cup is at its stop."""
+def watch_belt(cell: Cell, names: Sequence[str]) -> None:
+    """For every test case: the belt stands while the cup is at its stop, and soon after a box comes there."""
+    if names:
+        boxes = Boxes(cell, names)
+        cell.always(lambda: boxes.rubbed() < RUBBED, "the belt does not rub under a box at its stop")
     cell.always(
         lambda: not is_at_stop(cell) or abs(cell.truth.belt_speed()) < 0.001,
         "the belt stands while the cup is at its stop",
@@ -83,6 +88,7 @@ class Boxes:
         self._bodies = [model.body(name).id for name in names]
         self._heights: Array = np.array([2 * model.geom(name).size[2] for name in names])
         self._time, self._before = cell.time, self.places()
+        self._travel, self._rubbed = cell.truth.belt_position(), 0.0
 
     def places(self) -> Array:
         """Of the middles of their bottom faces, shape (boxes, 3); they stand upright."""
@@ -111,6 +117,16 @@ class Boxes:
         speeds = np.hypot(*(places - before)[:, :2].T) / (passed or math.inf)
         found: Flags = (speeds < SIDEWAYS) | (self._clearances(places) > NEAR) | _on_belt(places)
         return found
+
+    def rubbed(self) -> float:
+        """How far the belt has run since one of them stopped moving along with it."""
+        places, travel = self.places(), self._cell.truth.belt_position()
+        way = travel - self._travel
+        stay = _on_belt(places) & (np.abs(places - self._before)[:, 1] < 0.1 * abs(way))
+        self._before, self._travel = places, travel
+        if way:
+            self._rubbed = self._rubbed + abs(way) if stay.any() else 0.0
+        return self._rubbed
 
     def _hang(self) -> Flags:
         tool, places = self._cell.truth.tool_position(), self.places()
