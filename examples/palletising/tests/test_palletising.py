@@ -102,6 +102,17 @@ def test_two_boxes_take_two_cycles_in_which_the_belt_runs_while_the_arm_carries(
     check_at_rest(cell)
 
 
+def test_the_belt_stops_when_the_next_box_comes_while_the_arm_still_carries(cell_with: CellWith) -> None:
+    close_behind = replace(BOX, name="box 2", position=(0.5, -0.1, BELT_TOP))
+    cell = cell_with([AT_STOP, close_behind])
+
+    assert palletising.run(cell) == Report(Outcome.NO_BOX, 2)
+
+    check_placed(cell, "box 1", 0)
+    check_placed(cell, "box 2", 1)
+    check_at_rest(cell)
+
+
 def test_a_box_that_lies_at_the_stop_already_is_taken_before_the_belt_runs(cell_with: CellWith) -> None:
     cell = cell_with([AT_STOP])
     cell.always(lambda: not lies_at_stop(cell) or cell.truth.belt_position() == 0.0, "the belt waits")
