@@ -213,6 +213,7 @@ def test_where_each_run_writes_into_its_report_the_baseline_says_so(tmp_path: Pa
         run(folder)
 
 
+@pytest.mark.whole
 def test_a_mutant_that_deletes_the_folder_of_its_process_is_an_error(
     tmp_path: Path, harmless: dict[str, Outcome]
 ) -> None:

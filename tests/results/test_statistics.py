@@ -68,13 +68,18 @@ def coverage(draw: Draw, effect: float, mutants: int, rounds: int, missing: floa
 @pytest.mark.parametrize(
     ("draw", "effect", "mutants", "rounds", "missing"),
     [
-        (bimodal, 0.0, 26, 5, 0.0),
-        (bimodal, 0.5, 26, 5, 0.0),
         (bimodal, 0.5, 26, 5, 0.2),
-        (bimodal, 0.5, 50, 10, 0.0),
-        (uniform, 0.5, 26, 5, 0.0),
-        (alike, 0.5, 50, 5, 0.0),
-        (deterministic, 0.0, 50, 5, 0.0),
+        *(
+            pytest.param(*one, marks=pytest.mark.whole)
+            for one in (
+                (bimodal, 0.0, 26, 5, 0.0),
+                (bimodal, 0.5, 26, 5, 0.0),
+                (bimodal, 0.5, 50, 10, 0.0),
+                (uniform, 0.5, 26, 5, 0.0),
+                (alike, 0.5, 50, 5, 0.0),
+                (deterministic, 0.0, 50, 5, 0.0),
+            )
+        ),
     ],
 )
 def test_the_interval_of_a_score_covers_what_it_says(
@@ -233,14 +238,19 @@ def sample_coverage(
 @pytest.mark.parametrize(
     ("size", "share", "killed", "rounds", "noise", "invalid"),
     [
-        (40, 0.25, 0.8, 1, 0.0, 0.0),
-        (100, 0.1, 0.5, 1, 0.0, 0.0),
         (100, 0.5, 0.2, 5, 0.05, 0.0),
-        (100, 0.25, 0.95, 1, 0.0, 0.0),
-        (100, 0.25, 0.95, 5, 0.05, 0.0),
-        (400, 0.1, 0.95, 5, 0.05, 0.0),
-        (400, 0.25, 0.5, 5, 0.0, 0.3),
-        (400, 0.5, 0.8, 1, 0.0, 0.5),
+        *(
+            pytest.param(*one, marks=pytest.mark.whole)
+            for one in (
+                (40, 0.25, 0.8, 1, 0.0, 0.0),
+                (100, 0.1, 0.5, 1, 0.0, 0.0),
+                (100, 0.25, 0.95, 1, 0.0, 0.0),
+                (100, 0.25, 0.95, 5, 0.05, 0.0),
+                (400, 0.1, 0.95, 5, 0.05, 0.0),
+                (400, 0.25, 0.5, 5, 0.0, 0.3),
+                (400, 0.5, 0.8, 1, 0.0, 0.5),
+            )
+        ),
     ],
 )
 def test_the_interval_of_a_sample_covers_what_it_says(

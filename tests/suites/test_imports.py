@@ -288,6 +288,7 @@ UNSAFE = {
 
 
 first, *others = SUITES
+longer, shorter = UNSAFE
 
 
 def project(folder: Path, files: dict[str, str]) -> Path:
@@ -337,13 +338,9 @@ def run(folder: Path, engine: str, only: tuple[str, ...] = ()) -> tuple[dict[str
     return {one.mutant: one for one in outcomes(run_campaign(request, quiet))}, quiet.lines
 
 
+@pytest.mark.whole  # the first suite says of one engine what the judge says
 @pytest.mark.parametrize(
-    "files",
-    [
-        pytest.param(LEAVES, marks=pytest.mark.whole),
-        SUITES["it cannot be imported"],
-        pytest.param(SUITES["conftest.py cannot import it"], marks=pytest.mark.whole),
-    ],
+    "files", [LEAVES, SUITES["it cannot be imported"], SUITES["conftest.py cannot import it"]]
 )
 def test_both_engines_say_the_same_of_programs_that_cannot_be_imported(
     tmp_path: Path, files: dict[str, str]
@@ -362,7 +359,7 @@ def _facts(outcome: Outcome) -> dict[str, object]:
     return {name: getattr(outcome, name) for name in FACTS}
 
 
-@pytest.mark.parametrize("suite", UNSAFE)
+@pytest.mark.parametrize("suite", [pytest.param(longer, marks=pytest.mark.whole), shorter])
 def test_what_cannot_be_forked_while_it_is_imported_runs_in_a_process_of_its_own(
     tmp_path: Path, suite: str
 ) -> None:

@@ -526,6 +526,7 @@ def test_failing_tests_are_told_and_what_they_called_counts(project: Path) -> No
     assert "robot:Arm.move_by" in operations(project)
 
 
+@pytest.mark.whole
 def test_tests_that_never_end_are_stopped_and_what_they_called_counts(project: Path) -> None:
     with (project / "tests" / "test_mission.py").open("a") as file:
         file.write("def test_late():\n    while True: pass\n")

@@ -173,7 +173,10 @@ def test_the_theme_is_chosen_and_kept(visit: Visit) -> None:
     assert visit.page.evaluate(colour) == dark
 
 
-@pytest.mark.parametrize(("theme", "rules"), [("light", {}), ("dark", {"runOnly": ["color-contrast"]})])
+@pytest.mark.parametrize(
+    ("theme", "rules"),
+    [("light", {}), pytest.param("dark", {"runOnly": ["color-contrast"]}, marks=pytest.mark.whole)],
+)
 def test_axe_finds_nothing_serious_on_any_page(
     browser: Any, plain: Path, theme: str, rules: dict[str, Any]
 ) -> None:

@@ -75,7 +75,11 @@ def test_the_clock_leaves_out_what_passed() -> None:
     reason="no user namespaces here",
 )
 @pytest.mark.parametrize(
-    ("project", "engine"), [("deadline_over_the_call", "fork"), ("process_id_checked", "replay")]
+    ("project", "engine"),
+    [
+        pytest.param("deadline_over_the_call", "fork", marks=pytest.mark.whole),
+        ("process_id_checked", "replay"),
+    ],
 )
 def test_an_ordinary_user_forks_what_does_not_ask_for_its_id(
     project: str, engine: str, tmp_path: Path
