@@ -48,6 +48,7 @@ def test_the_program_passes_its_tests(example: Path) -> None:
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.whole
 @needs_ros
 def test_a_robot_that_drives_the_wrong_way_is_noticed(example: Path) -> None:
     program = example / "docking.py"

@@ -74,6 +74,7 @@ def test_a_move_in_the_wrong_direction_is_noticed(example: Path) -> None:
     assert "1 failed" in done.stdout
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 def test_mutants_in_the_mission_node_end_as_they_must(example: Path) -> None:
     found = run(example, rounds=1, baseline=1, only=tuple(EXPECTED), engine="replay")

@@ -133,6 +133,7 @@ def test_a_mutant_of_it_is_replayed_over_the_simulation(tmp_path: Path) -> None:
             "0.5",
             "1 test fails on the unmutated program in round 1: tests/test_mission.py::test_it_tells",
             id="another outcome",
+            marks=pytest.mark.whole,
         ),
         pytest.param(
             "assert len(heard(mission.run)) == 1",
@@ -151,7 +152,7 @@ def test_else_it_runs_over_real_ros_and_says_why(tmp_path: Path, check: str, val
     assert verdicts(results) != []
 
 
-@pytest.mark.parametrize("where", ["conftest", "test"])
+@pytest.mark.parametrize("where", ["conftest", pytest.param("test", marks=pytest.mark.whole)])
 def test_tests_that_import_launch_run_over_real_ros_with_the_reason(tmp_path: Path, where: str) -> None:
     installed = tmp_path / "site-packages"
     installed.mkdir()
@@ -228,6 +229,7 @@ RACE = """
 """
 
 
+@pytest.mark.whole
 def test_an_order_in_which_the_original_fails_is_told_with_what_repeats_it(tmp_path: Path) -> None:
     is_real = 'not __import__("mutabot_ros.simulation").simulation.is_running()'
     tests = RACE.format(is_real=is_real, patience=f"(10.0 if {is_real} else 0.1)")

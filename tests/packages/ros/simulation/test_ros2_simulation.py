@@ -153,8 +153,16 @@ def test_nodes_in_processes_of_their_own_are_killed_and_begin_anew(tmp_path: Pat
 
 
 @pytest.mark.usefixtures("plugins")
-@pytest.mark.parametrize("in_fixture", [False, True])
-@pytest.mark.parametrize("caught", ["RuntimeError", "()"])
+@pytest.mark.parametrize(
+    ("caught", "in_fixture"),
+    [
+        ("RuntimeError", True),
+        *(
+            pytest.param(*one, marks=pytest.mark.whole)
+            for one in (("RuntimeError", False), ("()", False), ("()", True))
+        ),
+    ],
+)
 def test_a_mutant_that_meets_what_is_not_simulated_is_an_error_and_no_kill(
     tmp_path: Path, caught: str, in_fixture: bool
 ) -> None:
