@@ -25,6 +25,9 @@ LOOSE, OPEN = 0.052, 0.08
 NEAR, STANDING = 0.1, 0.05
 """Nearer to a surface than this, the tool stands still over it while the fingers open or close: below this
 speed, on the belt as seen from it. (A finger that meets the box makes it twitch at 0.01.)"""
+SWING = 0.1
+"""The speed of the tool is its mean over so many seconds: the belt's wanders faster than the arm can follow, to
+and fro by a few millimetres, which the fingers centre."""
 LOW = 0.005
 """A box may fall this deep when it is let go: the program means 0.0015; the noise of its camera is 0.0005."""
 LARGEST_TILT = 3.0
@@ -44,7 +47,7 @@ PAST = 0.4
 def watch_gripper(cell: Cell) -> None:
     """For every test case: the fingers touch nothing, the arm waits for them and keeps to its side."""
     place = once_per_tick(cell, cell.truth.tool_position)
-    motion = Motion(cell, place)
+    motion = Motion(cell, place, SWING)
 
     def clearance() -> float:
         tool = place()
@@ -98,12 +101,12 @@ def _top(x: float) -> float:
 
 
 class Motion:
-    """A mean speed over what lies below, maybe the moving belt; 0 before any time has passed.
+    """A mean speed over what lies below, maybe the moving belt, in the last `window` seconds.
 
-    `window`: seconds, or one tick if it is shorter.
+    It is 0 before any time has passed.
     """
 
-    def __init__(self, cell: Cell, position: Callable[[], Position], window: float = 0.0) -> None:
+    def __init__(self, cell: Cell, position: Callable[[], Position], window: float) -> None:
         self._cell = cell
         self._position = position
         self._window = window
