@@ -26,8 +26,8 @@ NEAR, STANDING = 0.1, 0.05
 """Nearer to a surface than this, the tool stands still over it while the fingers open or close: below this
 speed, on the belt as seen from it. (A finger that meets the box makes it twitch at 0.01.)"""
 SWING = 0.1
-"""The speed of the tool is its mean over so many seconds: the belt's wanders faster than the arm can follow, to
-and fro by a few millimetres, which the fingers centre."""
+"""The speed of the tool is its mean over so many seconds: the belt's wanders faster than the arm can follow,
+to and fro by a few millimetres, which the fingers centre."""
 LOW = 0.005
 """A box may fall this deep when it is let go: the program means 0.0015; the noise of its camera is 0.0005."""
 LARGEST_TILT = 3.0
