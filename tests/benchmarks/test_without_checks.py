@@ -23,6 +23,7 @@ def ends(request: Request) -> dict[str, Outcome]:
     return {one.mutant: one for one in outcomes(run_campaign(request, Quiet()))}
 
 
+@pytest.mark.whole
 def test_without_checks_only_exceptions_kill(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mission = "def near(x):\n    assert x >= 0\n    return 1 / (x - 0.5) < 0\n"
     tests = """

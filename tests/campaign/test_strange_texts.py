@@ -86,6 +86,7 @@ def ends(found: dict[str, Outcome], text: str, name: str) -> dict[str, object]:
     }
 
 
+@pytest.mark.whole
 def test_with_texts_that_are_no_utf_8_each_mutant_ends_as_without(tmp_path: Path) -> None:
     plain, _ = run(project(tmp_path / "plain", "well", "test_well.py"))
     # in a folder whose name is none either

@@ -123,6 +123,7 @@ def test_magnitude_and_verdict_agree_in_both_engines(tmp_path: Path) -> None:
     assert ends[0]
 
 
+@pytest.mark.whole
 def test_a_demanded_magnitude_joins_its_ladders_and_is_run_in_every_round(tmp_path: Path) -> None:
     configuration = """
     program = ["mission.py"]

@@ -132,6 +132,7 @@ def by_parameter(found: dict[str, Any]) -> dict[str, dict[str, Any]]:
     return {one["id"].partition(":")[2].partition(":")[0]: one for one in found["mutants"]}
 
 
+@pytest.mark.whole
 def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: Path) -> None:
     done = mutabot(site, project, "run", "--json", "-o", "repeats=false")
     assert done.returncode == ERRORS, done.stderr

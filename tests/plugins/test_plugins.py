@@ -239,6 +239,7 @@ def test_an_operator_that_fails_while_at_work_is_an_error_and_never_a_kill(
     assert end["message"] == "operator late: ValueError: broken while at work"
 
 
+@pytest.mark.whole
 def test_a_family_of_a_plug_ins_own_is_planted_where_it_is_asked_for(project: Path, tmp_path: Path) -> None:
     site = broken_plug_in(tmp_path / "site", "late", OF_ITS_OWN)
     usual = mutabot(site, project, "list", "--json")

@@ -288,7 +288,6 @@ UNSAFE = {
 
 
 first, *others = SUITES
-longer, shorter = UNSAFE
 
 
 def project(folder: Path, files: dict[str, str]) -> Path:
@@ -359,7 +358,8 @@ def _facts(outcome: Outcome) -> dict[str, object]:
     return {name: getattr(outcome, name) for name in FACTS}
 
 
-@pytest.mark.parametrize("suite", [pytest.param(longer, marks=pytest.mark.whole), shorter])
+@pytest.mark.whole
+@pytest.mark.parametrize("suite", UNSAFE)
 def test_what_cannot_be_forked_while_it_is_imported_runs_in_a_process_of_its_own(
     tmp_path: Path, suite: str
 ) -> None:

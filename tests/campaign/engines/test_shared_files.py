@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.model import Verdict
 from tests.campaign.project import CONFIGURATION, run, write_project
 
@@ -25,6 +27,7 @@ TESTS = """
 """
 
 
+@pytest.mark.whole
 def test_runs_whose_files_are_not_private_never_meet(tmp_path: Path) -> None:
     folder = write_project(tmp_path, MISSION, TESTS, configuration=f"{CONFIGURATION}private_files = false\n")
     found = run(folder, jobs=4)

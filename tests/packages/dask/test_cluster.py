@@ -66,7 +66,8 @@ def when(condition: Callable[[], bool], then: Callable[[], Any]) -> threading.Th
     return thread
 
 
-@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.whole
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_outcomes_are_those_of_a_campaign_without_a_cluster(
     engine: str, there: ClusterSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -242,6 +242,7 @@ def test_an_alternative_that_changes_no_value_has_not_acted(
         assert len(told) <= acted
 
 
+@pytest.mark.whole
 def test_an_original_with_effects_is_not_computed_twice(tmp_path: Path) -> None:
     source = "log = []\ndef g(x):\n    log.append(x)\n    return x\ndef f():\n    return g(1) + g(0)\n"
     text = text_of(tmp_path, source, "AOR", "ABS", "UOI")

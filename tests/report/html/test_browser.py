@@ -173,9 +173,10 @@ def test_the_theme_is_chosen_and_kept(visit: Visit) -> None:
     assert visit.page.evaluate(colour) == dark
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("theme", "rules"),
-    [("light", {}), pytest.param("dark", {"runOnly": ["color-contrast"]}, marks=pytest.mark.whole)],
+    [("light", {}), ("dark", {"runOnly": ["color-contrast"]})],
 )
 def test_axe_finds_nothing_serious_on_any_page(
     browser: Any, plain: Path, theme: str, rules: dict[str, Any]

@@ -70,16 +70,13 @@ def test_the_clock_leaves_out_what_passed() -> None:
     assert said_by(CLOCK) == ["True", "True True", "True"]
 
 
+@pytest.mark.whole
 @pytest.mark.skipif(
     subprocess.run([*ORDINARY, "true"], check=False, capture_output=True).returncode != 0,
     reason="no user namespaces here",
 )
 @pytest.mark.parametrize(
-    ("project", "engine"),
-    [
-        pytest.param("deadline_over_the_call", "fork", marks=pytest.mark.whole),
-        ("process_id_checked", "replay"),
-    ],
+    ("project", "engine"), [("deadline_over_the_call", "fork"), ("process_id_checked", "replay")]
 )
 def test_an_ordinary_user_forks_what_does_not_ask_for_its_id(
     project: str, engine: str, tmp_path: Path
