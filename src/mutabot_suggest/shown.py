@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.text import Text
 
 from mutabot.report.document import data_of
-from mutabot.report.sections import Section, lines_of, plural
+from mutabot.report.sections import Section, plural, suggestion_lines
 from mutabot.report.terminal.console import print_section
 from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
 
@@ -23,7 +23,7 @@ def print_suggestions(console: Console, found: Suggestions) -> None:
     text = f"{plural(len(found.suggestions), 'check')} for {len(killed)} of {survivors}"
     console.print(Text(text, style="bold"))
     for number, one in enumerate(found.suggestions, start=1):
-        print_section(console, Section(f"{number}  {one.test}", lines=[*lines_of(one, found)]))
+        print_section(console, Section(f"{number}  {one.test}", lines=[*suggestion_lines(one, found)]))
     left = [_left(one, found) for one in found.unsolved if not one.never]
     never = [_left(one, found) for one in found.unsolved if one.never]
     dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]

@@ -34,11 +34,10 @@ def cell_with(new_cell: Callable[..., Cell], mutabot_seed: int) -> Callable[...,
             robot=gen3().with_tool(suction_cup(0.030)),
             scene=scene(*coming, *stack, *others, pallet=pallet),
         )
-        fine = [box.name for box in coming if box.name not in troubled]
-        watch_belt(cell, fine)
+        watch_belt(cell)
         watch_cup(cell)
         watch_stack(cell, [box.name for box in (*stack, *others)])
-        watch_boxes(cell, fine)
+        watch_boxes(cell, [box.name for box in coming if box.name not in troubled])
         return cell
 
     return make

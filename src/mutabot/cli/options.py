@@ -13,7 +13,7 @@ import typer
 from typer import Option
 
 from mutabot import __version__
-from mutabot.config import options as given
+from mutabot.config.options import JOBS, ROUNDS, SEED, VERIFIED
 from mutabot.errors import UsageError
 from mutabot.extensions import ExtensionPart, brought
 
@@ -59,13 +59,11 @@ Settings = Annotated[list[str] | None, Option("-o", metavar="KEY=VALUE", help=_S
 Families = Annotated[list[str] | None, Option("--family", metavar="NAME", help=_FAMILY)]
 Sample = Annotated[str | None, Option("--sample", metavar="SIZE", help=_SAMPLE)]
 Rounds = Annotated[
-    int | None, Option("--rounds", metavar="N", min=1, max=given.ROUNDS, help="Rounds, each with new seeds.")
+    int | None, Option("--rounds", metavar="N", min=1, max=ROUNDS, help="Rounds, each with new seeds.")
 ]
-Seed = Annotated[
-    int | None, Option("--seed", metavar="N", min=0, max=given.SEED, help="The campaign's seed.")
-]
+Seed = Annotated[int | None, Option("--seed", metavar="N", min=0, max=SEED, help="The campaign's seed.")]
 Jobs = Annotated[
-    int | None, Option("-j", "--jobs", metavar="N", min=1, max=given.JOBS, help="Number of parallel runs.")
+    int | None, Option("-j", "--jobs", metavar="N", min=1, max=JOBS, help="Number of parallel runs.")
 ]
 Engine = Annotated[str, Option("--engine", metavar="ENGINE", help=_ENGINE)]
 OneMutant = Annotated[str, typer.Argument(metavar="MUTANT", help="Number, id, or a unique part of the id.")]
@@ -76,10 +74,8 @@ Fresh = Annotated[bool, Option("--fresh", help="Re-run everything, including res
 Since = Annotated[str | None, Option("--since", metavar="REF", help=_SINCE)]
 OtherJournal = Annotated[Path | None, Option("--journal", metavar="PATH", help=_JOURNAL)]
 Budget = Annotated[str | None, Option("--budget", metavar="TIME", help=_BUDGET)]
-Verify = Annotated[int | None, Option("--verify", metavar="N", min=0, max=given.VERIFIED, help=_VERIFY)]
-Round = Annotated[
-    int | None, Option("--round", metavar="N", min=1, max=given.ROUNDS, help="Only this round.")
-]
+Verify = Annotated[int | None, Option("--verify", metavar="N", min=0, max=VERIFIED, help=_VERIFY)]
+Round = Annotated[int | None, Option("--round", metavar="N", min=1, max=ROUNDS, help="Only this round.")]
 MinScore = Annotated[
     float | None,
     Option("--min-score", metavar="PERCENT", min=0, max=100, callback=_number, help=_MIN_SCORE),

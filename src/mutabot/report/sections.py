@@ -263,7 +263,7 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
         yield Section(text, is_alarm=any(one.changed for _, one in kinds))
 
 
-def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
+def suggestion_lines(one: Suggestion, found: Suggestions) -> Iterator[str]:
     """Yield the assertion, what it kills, its tolerance, and its false alarms."""
     yield one.statement
     yield f"kills {_kills(one, found)}"
@@ -292,13 +292,13 @@ def _kills(one: Suggestion, found: Suggestions) -> str:
     return "; ".join(parts)
 
 
-def check_on_page(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
+def suggested_check(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
     """Return the check that was suggested for a mutant, with its notes; None if there is none."""
     suggestions = found.suggestions if found is not None else ()
     one = next((one for one in suggestions if result.mutant.id in one.kills), None)
     if one is None or found is None:
         return None
-    statement, *notes = lines_of(one, found)
+    statement, *notes = suggestion_lines(one, found)
     return {"code": statement, "test": one.test, "notes": notes}
 
 

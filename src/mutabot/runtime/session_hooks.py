@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Generator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +33,7 @@ from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.test_end import classify, with_evidence
+from mutabot.runtime.test_end import classify, of_evidence
 from mutabot.runtime.test_hooks import ForkedRun, TestHooks
 
 if TYPE_CHECKING:
@@ -191,7 +192,7 @@ class SessionHooks:
         for test in tests[:1] if self.job.stop_at_kill else tests:
             file = os.path.join(self.job.root, test.partition("::")[0])
             end = classify(error, test, file, self.locator, self.job.vocabulary, evidence)
-            end = with_evidence(end, evidence)
+            end = replace(end, **of_evidence(end, evidence))
             if self.tests.fork is not None:
                 self.tests.fork.end_test(end)
             else:

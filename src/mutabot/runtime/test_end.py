@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import sys
-from dataclasses import replace
 from traceback import walk_tb
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeGuard
@@ -69,11 +68,6 @@ def classify(
         # a mutant of the program text made a text that is no program or no command
         invalid=evidence.is_of_text and (is_syntax or (evidence.is_unknown and is_refused)),
     )
-
-
-def with_evidence(end: TestEnd, evidence: Evidence) -> TestEnd:
-    """The end of a test with what its mutant did."""
-    return replace(end, **of_evidence(end, evidence))
 
 
 def of_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) -> dict[str, Any]:

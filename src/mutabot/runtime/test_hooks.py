@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from mutabot.model import By, Mutant
-from mutabot.model.events import Event, ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
+from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
 from mutabot.model.process_time import TimeUsed
 from mutabot.runtime import seeds
@@ -185,10 +185,11 @@ class TestHooks:
         self._address = self._logged = None
         self.looks.clear()
         session = self.session
-        self._tell(TestStart(test))
+        if self.fork is None:  # else the controller would take it for the parent's test
+            session.pipe.send(TestStart(test))
         limit = watched_by_faulthandler(item)
         if limit is not None:
-            self._tell(limit)
+            session.pipe.send(limit)
         seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
         if session.passing.fork_parent is not None:
             session.passing.fork_parent.begin_test(test)
@@ -196,11 +197,6 @@ class TestHooks:
         if self.members is not None:
             self.members.start_test(test)
         session.start_test(test, partial(objects_of_fixtures, item))
-
-    def _tell(self, event: Event) -> None:
-        """Tell what the controller needs to watch this process; a fork is watched by its parent."""
-        if self.fork is None:
-            self.session.pipe.send(event)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Note a fixed address that the test waits at: two processes cannot have it at the same time."""
@@ -221,7 +217,7 @@ class TestHooks:
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
         """Pytest-timeout is about to watch a test: its thread leaves the process without a word."""
         if settings.method == "thread":
-            self._tell(watched(node_id(item), settings.timeout, "pytest-timeout"))
+            self.session.pipe.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_call(self, item: pytest.Item) -> None:

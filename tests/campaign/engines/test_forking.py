@@ -11,7 +11,9 @@ import pytest
 
 from mutabot.campaign.beginning import check
 from mutabot.campaign.run import run_campaign
+from mutabot.execution.task import Result
 from mutabot.model import Outcome, Verdict
+from mutabot.model.events import Event, TestStart
 from tests.campaign.project import CONFIGURATION, ROBOT, Quiet, outcomes, request_for, write_project
 from tests.campaign.scripted import CHECKED, Died, Script
 
@@ -379,3 +381,34 @@ def test_nothing_is_left_running_or_open_or_on_disk(tmp_path: Path) -> None:
     assert set(Path("/proc/self/fd").iterdir()) == descriptors
     assert children() == before
     assert not [path for path in (tmp_path / ".mutabot").iterdir() if path.name.startswith("work-")]
+
+
+def test_the_test_that_a_fork_begins_is_not_taken_for_its_parent_s(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    take = Result.take
+
+    def noted(self: Result, event: Event) -> None:
+        if isinstance(event, TestStart) and self.task.is_fork_parent:
+            told.append(event.test.rpartition("::")[2])
+        take(self, event)
+
+    monkeypatch.setattr(Result, "take", noted)
+    write_project(
+        tmp_path,
+        "def run(arm):\n    arm.move_by(0.25)\n",
+        """
+        import mission
+        from robot import Arm
+
+        def test_first():
+            mission.run(Arm())
+
+        def test_second():
+            mission.run(Arm())
+        """,
+    )
+    found = outcomes(run_campaign(request_for(tmp_path, engine="fork", only=("reverse",)), Quiet()))
+    assert {(one.verdict, one.engine, one.tests) for one in found} == {(Verdict.SURVIVED, "fork", 2)}
+    assert told == ["test_first", "test_second"]

@@ -24,7 +24,7 @@ from mutabot.journal.files import REPORT_MARK
 from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
-from mutabot.report.sections import check_on_page
+from mutabot.report.sections import suggested_check
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.texts import effect_text, mapped, status_of
 from mutabot.results.divergence import worst_of
@@ -176,7 +176,7 @@ def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     used += (folder / "sources.js").write_bytes(script("sources", sources))
     for result in campaign.mutants:
         number = result.mutant.number
-        check = check_on_page(result, contents.suggestions)
+        check = suggested_check(result, contents.suggestions)
         page = {**mutant_page(result), "suggestion": check}
         file = folder / "mutants" / f"{number}.js"
         used += file.write_bytes(script(f"mutant {number}", page))

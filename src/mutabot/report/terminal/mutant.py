@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.model.outcome import end_in_words
-from mutabot.report.sections import Section, between, check_on_page, plural
+from mutabot.report.sections import Section, between, plural, suggested_check
 from mutabot.report.texts import effect_text, telling
 from mutabot.results.divergence import numbers_text
 
@@ -179,7 +179,7 @@ def suggested_sections(result: MutantResult, found: Suggestions | None) -> Itera
     """Yield the section of a survivor; nothing for other mutants."""
     if not result.is_survivor or result.mutant.ladder:
         return
-    check = check_on_page(result, found)
+    check = suggested_check(result, found)
     reasons = {one.mutant: one.reason for one in found.unsolved} if found is not None else {}
     if check is not None:
         lines = [f"in {check['test']}:", check["code"], *check["notes"]]
