@@ -10,7 +10,8 @@ import pytest
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.mutant import check_on_page, print_mutant
+from mutabot.report.sections import suggested_check
+from mutabot.report.terminal.mutant import print_mutant
 from mutabot.results.results import MutantResult, find_mutant, read_results
 from mutabot.results.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
 from results import samples
@@ -71,8 +72,8 @@ def test_a_file_of_another_kind_is_left_alone(tmp_path: Path, text: str) -> None
 
 
 def test_pages_get_the_check_of_each_survivor(tmp_path: Path) -> None:
-    assert check_on_page(result_of(tmp_path, samples.NEGATE), None) is None
-    found = check_on_page(result_of(tmp_path, samples.NEGATE), FOUND)
+    assert suggested_check(result_of(tmp_path, samples.NEGATE), None) is None
+    found = suggested_check(result_of(tmp_path, samples.NEGATE), FOUND)
     assert found is not None
     assert (found["code"], found["test"]) == (CHECK.statement, CHECK.test)
-    assert check_on_page(result_of(tmp_path, samples.SKIP), FOUND) is None
+    assert suggested_check(result_of(tmp_path, samples.SKIP), FOUND) is None
