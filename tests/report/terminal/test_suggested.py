@@ -9,8 +9,8 @@ import pytest
 
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
-from mutabot.report.terminal.console import make_console
 from mutabot.report.sections import suggested_check
+from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.results.results import MutantResult, find_mutant, read_results
 from mutabot.results.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
