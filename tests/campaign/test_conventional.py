@@ -346,6 +346,7 @@ SMALL = """
 """
 
 
+@pytest.mark.whole
 @ENGINES
 def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path, engine: str) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)

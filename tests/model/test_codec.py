@@ -86,7 +86,6 @@ def test_every_dataclass_survives_the_way_over_json(kind: type[Any]) -> None:
     @given(value=instances_of(kind))
     def survives(value: Any) -> None:
         assert from_data(kind, over_json(to_data(value))) == value
-        assert from_data(kind, json.loads(to_json(value, default=str))) == value
 
     survives()
 
@@ -97,6 +96,7 @@ def test_every_report_line_survives_the_way_over_json_with_its_type(kind: type[A
     @given(line=instances_of(kind))
     def survives(line: Any) -> None:
         assert event_from_data(over_json(event_to_data(line))) == line
+        assert from_data(kind, json.loads(to_json(line, default=str))) == line
 
     survives()
 

@@ -188,7 +188,7 @@ def verdicts(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
     ("tests", "operators"),
     [
         (PROJECT["tests/test_mission.py"], ("reverse", "drop", "duplicate")),
-        (IN_A_PROCESS, ("reverse", "drop")),
+        pytest.param(IN_A_PROCESS, ("reverse", "drop"), marks=pytest.mark.whole),
     ],
     ids=["in the tests' process", "in a process of its own"],
 )

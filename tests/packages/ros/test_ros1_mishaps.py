@@ -131,6 +131,7 @@ def end_of(folder: Path, monkeypatch: pytest.MonkeyPatch, limit: int) -> Outcome
     return found
 
 
+@pytest.mark.whole
 def test_a_node_that_is_killed_from_outside_kills_no_mutant(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -195,6 +195,7 @@ def test_nothing_is_verified_if_nobody_wants_it(tmp_path: Path) -> None:
     assert results.verification is None
 
 
+@pytest.mark.whole
 def test_an_explicit_engine_means_real_ros(tmp_path: Path) -> None:
     results = campaign(tmp_path, engine="replay")
     assert not results.meta["ran_over"]

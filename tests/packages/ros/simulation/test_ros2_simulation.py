@@ -138,6 +138,7 @@ def test_mutants_end_over_the_simulation_as_over_real_ros(tmp_path: Path, engine
     assert {outcome.engine for outcome in found.values()} == {engine}
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 def test_nodes_in_processes_of_their_own_are_killed_and_begin_anew(tmp_path: Path) -> None:
     folder = example_over_the_simulation(tmp_path)
