@@ -8,10 +8,10 @@ import tokenize
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from hashlib import sha256
 from itertools import chain
 from pathlib import Path
 
+from mutabot.digest import digest
 from mutabot.languages.front_end import front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
@@ -45,7 +45,7 @@ def find_texts(
         source = (root / file).read_bytes()
         places, index = find_places(source, file, rules, first=number + 1)
         number += len(places)
-        texts.append(ProgramText(file, sha256(source).hexdigest(), tuple(places), index.declared))
+        texts.append(ProgramText(file, digest(source), tuple(places), index.declared))
     return tuple(texts)
 
 

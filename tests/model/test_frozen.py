@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import pytest
@@ -96,3 +96,31 @@ def test_it_is_a_dataclass_with_slots_and_keeps_methods_of_its_own() -> None:
 def test_what_cannot_be_hashed_makes_it_so() -> None:
     with pytest.raises(TypeError, match="unhashable"):
         hash(Thing("a", sizes=[1.0]))  # type: ignore[arg-type]
+
+
+@frozen
+class More(Thing):
+    sizes: tuple[float, ...] = (1.0,)
+    count: int = 0
+
+
+def test_a_class_below_it_has_its_fields_first() -> None:
+    assert [one.name for one in fields(More)] == ["name", "sizes", "secret", "note", "count"]
+    assert repr(More("a", secret="hidden", count=2)) == "More(name='a', sizes=(1.0,), note='', count=2)"
+    assert More("a") != Thing("a", (1.0,))
+
+
+def test_a_class_without_an_object_is_a_dataclass_for_others() -> None:
+    @frozen
+    class Late:
+        name: str
+        note: str = field(default="", compare=False)
+
+    class Below(Late):
+        pass
+
+    assert is_dataclass(Below)
+    assert [one.compare for one in fields(Late)] == [True, False]
+    match Late("a", "b"):
+        case Late(name, note):
+            assert (name, note) == ("a", "b")

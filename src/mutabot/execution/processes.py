@@ -66,7 +66,7 @@ class Home:
         return home
 
     @property
-    def job_file(self) -> Path:
+    def job_file(self) -> str:
         """Where the job is."""
         return job_file(self.folder)
 
@@ -100,7 +100,7 @@ class Home:
     @property
     def is_whole(self) -> bool:
         """Whether it is still there: nobody but the controller may remove it."""
-        return self.job_file.is_file() if os.access(self.folder, os.X_OK) else False
+        return Path(self.job_file).is_file() if os.access(self.folder, os.X_OK) else False
 
     def remove(self) -> None:
         """Remove it with all that is in it."""
@@ -432,9 +432,9 @@ def command(arguments: Iterable[str], home: Path) -> list[str]:
     return [sys.executable, "-m", "pytest", "-p", "mutabot", *arguments, *own]
 
 
-def environment(job_file: Path, pipe: int) -> dict[str, str]:
+def environment(job_file: str, pipe: int) -> dict[str, str]:
     """The environment of a worker."""
-    return {**usual_environment(), JOB_VARIABLE: str(job_file), PIPE_VARIABLE: str(pipe)}
+    return {**usual_environment(), JOB_VARIABLE: job_file, PIPE_VARIABLE: str(pipe)}
 
 
 #: what processes of the tests import of us

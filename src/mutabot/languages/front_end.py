@@ -10,14 +10,16 @@ in another language; its front end knows the interpreter's frames. Only Python h
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib import import_module
-from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mutabot.model.mutant import Extent
 
 
@@ -71,7 +73,8 @@ class FrontEnd(Protocol):
 @cache
 def front_ends() -> tuple[FrontEnd, ...]:
     """All of them; Python is the last, since the frames of an interpreter are Python's as well."""
-    names = {file.stem for file in Path(__file__).parent.glob("*.py")} - {"__init__", "front_end", "python"}
+    files = os.listdir(os.path.dirname(__file__))
+    names = {file[:-3] for file in files if file.endswith(".py")} - {"__init__", "front_end", "python"}
     return tuple(import_module(f"{__package__}.{name}").FRONT_END for name in (*sorted(names), "python"))
 
 

@@ -8,13 +8,13 @@ so this guards against accidents and not against code that wants to deceive.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import signal
 from collections.abc import Callable
 from typing import Any
 
+from mutabot.digest import blake2b
 from mutabot.model.codec import is_too_deep, sparse, to_json
 from mutabot.model.events import Event, Untrusted, event_from_data
 
@@ -51,7 +51,7 @@ def unsealed(line: bytes, name: str, key: str) -> tuple[int, Event]:
 
 def seal(text: bytes, number: int, name: str, key: str) -> bytes:
     """What stands before an event, given as JSON."""
-    sealing = hashlib.blake2b(f"{name} {number} ".encode(), key=key.encode(), digest_size=_DIGITS // 2)
+    sealing = blake2b(f"{name} {number} ".encode(), key=key.encode(), digest_size=_DIGITS // 2)
     sealing.update(text)
     return sealing.hexdigest().encode()
 

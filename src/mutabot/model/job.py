@@ -9,8 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import field
-from pathlib import Path
+from dataclasses import field, replace
 from typing import Any
 
 from mutabot.frozen import frozen
@@ -171,6 +170,17 @@ class Job:
     faults: Mapping[str, InProcess] = field(default_factory=dict)
     key: str = ""
 
+    @property
+    def is_of_text(self) -> bool:
+        """Whether it has to do with the program text alone: no call, no clock, nothing put in place."""
+        return not (self.vocabulary.operations or self.vocabulary.clock or self.faults)
+
+    def below(self, mutant: Mutant, choices: tuple[Choice, ...]) -> Job:
+        """The job of the processes below a fork that is this mutant, which all read it: what they need."""
+        text = self.instrumentation.only(choices) if self.instrumentation is not None else None
+        slim = replace(self, mutant=mutant, forking=None, instrumentation=text, reaching={}, tests=None)
+        return replace(slim, budgets={}, extensions={}) if self.is_of_text else slim
+
     def left_out(self, mutant: str) -> frozenset[str]:
         """The tests that are not run as this mutant once one has reached it."""
         numbers = self.reaching.get(mutant)
@@ -179,19 +189,21 @@ class Job:
         return frozenset(self.tests[min(numbers) :]).difference(self.tests[number] for number in numbers)
 
 
-def job_file(home: str | os.PathLike[str]) -> Path:
-    """Where the job of the worker with this folder is."""
-    return Path(home, "job.json")
+def job_file(home: str | os.PathLike[str]) -> str:
+    """Where the job of the worker with this folder is. A text: pathlib takes long to load."""
+    return os.path.join(home, "job.json")
 
 
 def write_job(home: str | os.PathLike[str], job: Job) -> None:
     """Write a worker's job into its folder."""
-    job_file(home).write_text(json.dumps(to_data(job)), encoding="utf-8")
+    with open(job_file(home), "w", encoding="utf-8") as file:
+        json.dump(to_data(job), file)
 
 
 def read_job(home: str | os.PathLike[str]) -> Job:
     """The job of the worker with this folder."""
-    return from_data(Job, json.loads(job_file(home).read_text(encoding="utf-8")))
+    with open(job_file(home), encoding="utf-8") as file:
+        return from_data(Job, json.load(file))
 
 
 @frozen

@@ -11,7 +11,6 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from random import Random
 from typing import Any
 
 from mutabot.errors import shortened
@@ -115,6 +114,8 @@ class Moment:
         """
         if self.when is not When.ONCE:
             return self
+        from random import Random  # noqa: PLC0415  # most processes below the tests draw nothing
+
         calls = self.calls.get(f"{round} {test}", 0)
         return replace(self, first=float(Random(seed).randint(1, calls)) if calls else 0.0)
 
@@ -257,7 +258,7 @@ class Mutant:
         return Notation.compile(self.pattern).short if self.pattern is not None else ""
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@frozen
 class Place:
     """Where and what a mutant can act on.
 
@@ -437,7 +438,7 @@ class ProgramText:
     declared: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@frozen
 class Choice:
     """One alternative at one place.
 

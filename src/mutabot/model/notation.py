@@ -8,9 +8,7 @@ explicit plus sign and zero padding, as far as the new value can be written that
 from __future__ import annotations
 
 import re
-import string
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -43,7 +41,7 @@ class Field:
         return {"d": _INTEGER, "g": _NUMBER, "s": _WORD}[self.kind]
 
 
-@dataclass(frozen=True)
+@frozen
 class Notation:
     """A compiled notation.
 
@@ -98,9 +96,11 @@ class Notation:
 
 @lru_cache(maxsize=1024)
 def _compile(text: str) -> Notation:
+    from string import Formatter  # noqa: PLC0415  # most processes below the tests have no commands
+
     parts: list[str | Field] = []
     names: set[str] = set()
-    for literal, name, spec, conversion in string.Formatter().parse(text):
+    for literal, name, spec, conversion in Formatter().parse(text):
         if literal:
             parts.append(literal)
         if name is None:

@@ -7,11 +7,12 @@ units say. A unit says its syntax tree, without positions, comments and layout.
 from __future__ import annotations
 
 import ast
-import hashlib
+import os
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from pathlib import PurePosixPath
+
+from mutabot.digest import digest
 
 #: in the place of a line: the module level, or the text of the whole file
 MODULE, WHOLE = -1, 0
@@ -51,7 +52,7 @@ Extent = tuple[int, ...]
 
 def is_test_file(name: str) -> bool:
     """Whether pytest looks for tests in a file of this name."""
-    last = PurePosixPath(name).name
+    last = os.path.basename(name)
     return last.endswith(".py") and (last.startswith("test_") or last.endswith("_test.py"))
 
 
@@ -104,7 +105,7 @@ class File:
     @cached_property
     def digest(self) -> str:
         """The text, as a digest."""
-        return hashlib.blake2b(self._text, digest_size=12).hexdigest()
+        return digest(self._text)
 
     @cached_property
     def nodes(self) -> dict[str, ast.AST] | None:
@@ -169,7 +170,7 @@ class File:
     def _said_by(self, node: ast.AST) -> str:
         names = {getattr(one, "attr", getattr(one, "id", "")) for one in ast.walk(node)}
         text = self.digest if not _TEXT.isdisjoint(names) else ""
-        return hashlib.blake2b((ast.dump(node) + text).encode(), digest_size=12).hexdigest()
+        return digest((ast.dump(node) + text).encode())
 
 
 def _is_quiet(node: ast.AST) -> bool:

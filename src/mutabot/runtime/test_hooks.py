@@ -98,12 +98,9 @@ class ForkedRun:
 
     def _own_processes(self) -> Members:
         session, job = self._session, self._session.job
-        text = job.instrumentation
-        if text is not None:
-            text = text.only(tuple(self.choices))
-        job = replace(job, mutant=self.mutant, forking=None, instrumentation=text)
-        write_job(self._folder, replace(job, reaching={}))
-        session.job = replace(job, forking=session.job.forking)
+        below = job.below(self.mutant, tuple(self.choices))
+        write_job(self._folder, below)
+        session.job = replace(job, mutant=self.mutant, instrumentation=below.instrumentation)
         members = Members(self._folder, session, has_acted=self._has_acted)
         members.start_test(session.test)
         watch_forks(members.folder, session)

@@ -11,7 +11,6 @@ them has noticed it: then all tests do.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import platform
 import re
@@ -26,6 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import mutabot
+from mutabot.digest import digest
 from mutabot.frozen import frozen
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
@@ -126,7 +126,7 @@ class Was:
 
 def _digest(data: Any) -> str:
     text = json.dumps(data, sort_keys=True, default=str)
-    return hashlib.blake2b(text.encode(), digest_size=12).hexdigest()
+    return digest(text.encode())
 
 
 class Dependencies:

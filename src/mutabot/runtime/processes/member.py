@@ -335,7 +335,7 @@ def _session(job: Job, pipe: Member) -> Session | TextOnly:
     if text is not None and not (text.active or text.record):
         text = None  # those below a fork parent are the original, and fork for nobody
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
-    if not (job.vocabulary.operations or job.vocabulary.clock or job.faults):
+    if job.is_of_text:
         return TextOnly(job, pipe)
     from mutabot import extensions  # noqa: PLC0415  # see above
     from mutabot.runtime.interception.trace import Locator  # noqa: PLC0415

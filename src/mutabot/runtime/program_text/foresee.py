@@ -14,9 +14,9 @@ import math
 import types
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from mutabot.frozen import frozen
 from mutabot.model.mutant import RUNTIME
 
 #: integers of more bits are left to a real evaluation
@@ -144,7 +144,7 @@ class _Leaves(ast.NodeTransformer):
         return ast.copy_location(ast.Name(name, ast.Load()), node)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Forms:
     """A place as an expression, and what it could read instead."""
 

@@ -13,14 +13,15 @@ from __future__ import annotations
 import ast
 import builtins
 import copy
-import hashlib
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from bisect import bisect_left
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from mutabot.digest import digest
 from mutabot.languages.python import extent_of, head_size, placed
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.mutant import RUNTIME, Extent, kept_name
@@ -42,6 +43,8 @@ _Node = TypeVar("_Node", bound=ast.AST)
 #: expressions without effects; attributes and items may be readings of a robot
 _PURE = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Tuple)
 _KEPT = kept_name(0).partition("0")[0]
+#: up to so many places in a file, it is worth while to look where they are before anything is changed
+_FEW = 20
 
 
 class MismatchError(ValueError):
@@ -58,6 +61,7 @@ def instrumented(
     Raises MismatchError if a place cannot be found.
     """
     instrumenter = _Instrumenter(places, record, originals)
+    instrumenter.look_near(tree)
     instrumenter.visit(tree)
     instrumenter.check()
     declare_global(tree, RUNTIME)
@@ -70,6 +74,18 @@ class _Instrumenter(ast.NodeTransformer):
         self._found: set[_Key] = set()
         self._record = record
         self._originals = originals
+        self._lines: list[int] | None = None
+
+    def look_near(self, tree: ast.Module) -> None:
+        """From now on look only at statements around the places, if there are few, and all stand there.
+
+        Nodes in f-strings may say wrong lines.
+        """
+        if len(self._places) <= _FEW:
+            lines = sorted({extent[0] for _, extent in self._places})
+            nodes = (node for node in _near(tree, lines) if isinstance(node, ast.expr | ast.stmt))
+            if self._places.keys() <= {(type(node).__name__, extent_of(node)) for node in nodes}:
+                self._lines = lines
 
     def check(self) -> None:
         """Every place was met."""
@@ -78,6 +94,8 @@ class _Instrumenter(ast.NodeTransformer):
             raise MismatchError(f"there is no {key[0]} at {span.file}:{span.line}:{span.column + 1}")
 
     def visit(self, node: ast.AST) -> ast.AST | list[ast.stmt]:
+        if self._lines is not None and not _is_around(node, self._lines):
+            return node
         place = self._place_of(node)
         if place is None:
             return self.generic_visit(node)
@@ -138,6 +156,23 @@ class _Instrumenter(ast.NodeTransformer):
                 ast.If(_is_chosen(place), [placed(ast.Expr(_asked(0, "tell")), node), *chain], [node]), node
             )
         ]
+
+
+def _near(node: ast.AST, lines: list[int]) -> Iterator[ast.AST]:
+    """What stands below a node, but for statements that none of these lines belongs to."""
+    for one in ast.iter_child_nodes(node):
+        if _is_around(one, lines):
+            yield one
+            yield from _near(one, lines)
+
+
+def _is_around(node: ast.AST, lines: list[int]) -> bool:
+    """Whether one of these lines, which are sorted, belongs to a node; expressions are taken to be."""
+    if not isinstance(node, ast.stmt):
+        return True
+    first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
+    index = bisect_left(lines, first)
+    return index < len(lines) and lines[index] <= (node.end_lineno or first)
 
 
 def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
@@ -225,11 +260,20 @@ def is_ours(function: ast.expr) -> bool:
 
 def declare_global(tree: ast.Module, name: str) -> None:
     """Class bodies and modules look names up in their own namespace first; spare them that."""
-    for node in list(ast.walk(tree)):
+    for node in [tree, *_statements(tree)]:
         if isinstance(node, ast.Module | ast.ClassDef) and node.body:
             position = head_size(node.body)
             near = node.body[min(position, len(node.body) - 1)]
             node.body.insert(position, placed(ast.Global([name]), near))
+
+
+def _statements(node: ast.AST) -> Iterator[ast.stmt]:
+    """All statements below one, without a look into expressions."""
+    for name in ("body", "handlers", "cases", "orelse", "finalbody"):
+        for one in getattr(node, name, ()):
+            if isinstance(one, ast.stmt):
+                yield one
+            yield from _statements(one)
 
 
 class _ChangedError(MismatchError):
@@ -310,7 +354,7 @@ class SessionText:
         """Put the alternatives of a file into its tree. Raises MismatchError if they do not belong there."""
         text = self._text_of(path)
         assert text is not None
-        if hashlib.sha256(source).hexdigest() != text.digest:
+        if digest(source) != text.digest:
             raise _ChangedError("it has changed since its mutants were made")
         record = self.sightings is not None
         instrumented(tree, text.places, record=record, originals=self._originals)
