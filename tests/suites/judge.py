@@ -67,6 +67,8 @@ def _judge_notes(kind):
 _judge_notes({name})
 """
 _SUMMARY = re.compile(r"^(?:FAILED|ERROR|SUBFAILED(?:\([^)]*\))?(?:\[[^\]]*\])?) (.+?)(?: - .*)?$")
+#: what pytest writes above each failure
+_HEADING = re.compile(r"^_{3,} .+ _{3,}$", re.MULTILINE)
 #: draws of noise that must all end alike; more where an engine says something else
 DRAWS = 3
 MORE_DRAWS = 12
@@ -159,13 +161,18 @@ class Judge:
         return all((self.folder / f"{file}.py").is_file() for file in files)
 
     def _names_a_refusal(self, output: str, mutant: Mapping[str, Any]) -> bool:
-        """Whether a traceback ends in a refusal and goes through the mutated call, if it is one."""
+        """Whether each test that fails ends in a refusal, whose traceback goes through the mutated call."""
         names = [name.rpartition(":")[2].rpartition(".")[2] for name in Facts.of(self.folder).refusals]
-        refused = any(re.search(rf"^E .*\b{name}\b", output, re.MULTILINE) for name in names)
         lines = range(mutant["span"]["line"], mutant["span"]["end_line"] + 1)
         places = [rf"^{re.escape(mutant['file'])}:{line}: in " for line in lines]
-        is_there = any(re.search(place, output, re.MULTILINE) for place in places)
-        return refused and (is_there or not mutant["operation"])
+
+        def is_one(failure: str) -> bool:
+            refused = any(re.search(rf"^E .*\b{name}\b", failure, re.MULTILINE) for name in names)
+            is_there = any(re.search(place, failure, re.MULTILINE) for place in places)
+            return refused and (is_there or not mutant["operation"])
+
+        failures = _HEADING.split(output)
+        return all(map(is_one, failures[1:] or failures))
 
     def _notes(self, edits: Sequence[Edit], place: str) -> int:
         """How often the robot refused, under the lines of ``place`` only."""

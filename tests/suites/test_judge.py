@@ -366,3 +366,24 @@ def test_the_judge_knows_every_operator_of_the_catalogue() -> None:
     assert units < found
     edits = {name: "_" + name.replace("-", "_") for name in found - units}
     assert [name for name, edit in edits.items() if not hasattr(CatalogueEditor, edit)] == []
+
+
+REFUSED = """
+_________________________ test_a _________________________
+mission.py:{}: in run
+E   robot.Refused: out of reach
+_________________________ test_b _________________________
+mission.py:1: in run
+E   robot.Refused: out of reach
+"""
+
+
+@pytest.mark.parametrize(("line", "is_refused"), [(1, True), (2, False)])
+def test_a_mutant_is_refused_if_its_own_call_is_wherever_a_test_fails(
+    tmp_path: Path, line: int, is_refused: bool
+) -> None:
+    source = "arm.move(0.5)\n"
+    judge = Judge(project(tmp_path, source))
+    found = mutant("arm.move(0.5)", source, operator="reverse", operation="robot:Arm.move", file="mission.py")
+    judge_says = judge._names_a_refusal(REFUSED.format(line), found)
+    assert judge_says is is_refused
