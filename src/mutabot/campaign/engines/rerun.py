@@ -262,16 +262,21 @@ class _Reruns:
     ) -> list[Key]:
         """Run these in fresh processes, cheapest first. Returns those that were run.
 
-        None begins after ``until`` (``Request.clock``). ``over``: another campaign than this one.
+        None begins after ``until`` (``Request.clock``), and but for the first of all none whose tests would
+        end after it. ``over``: another campaign than this one.
         """
         clock, looked = self.campaign.request.clock, list[Key]()
-        if not keys or (until is not None and clock() >= until):
+        cheapest = sorted(keys, key=self.doubts.cost)
+
+        def is_in_time(key: Key) -> bool:
+            lasts = self.doubts.cost(key) if self.found else 0.0
+            return until is None or clock() + lasts < until
+
+        if not any(map(is_in_time, cheapest[:1])):
             return looked
         self.campaign.progress.stage("second look", len(keys))
-        cheapest = sorted(keys, key=self.doubts.cost)
-        runs = ((self.doubts.mutants[mutant], round) for mutant, round in cheapest)
-        campaign = over or self.campaign
-        for outcome in replay(campaign, takewhile(lambda _: until is None or clock() < until, runs)):
+        runs = ((self.doubts.mutants[key[0]], key[1]) for key in takewhile(is_in_time, cheapest))
+        for outcome in replay(over or self.campaign, runs):
             looked.append((outcome.mutant, outcome.round))
             self.found[looked[-1]] = outcome
             self.campaign.progress.advance(in_words(outcome))
