@@ -152,7 +152,7 @@ class _Topics:
         def wait() -> Any:
             return original(topic, topic_type, None if end is None else max(0.0, end - time.monotonic()))
 
-        return wait_for(handler, anew(wait, _is_latched), node.where())
+        return wait_for(handler, anew(wait, _is_latched, time), node.where(), time)
 
 
 class _Services:

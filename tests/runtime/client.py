@@ -9,6 +9,7 @@ from __future__ import annotations
 import heapq
 import importlib
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import count
@@ -111,7 +112,7 @@ class Client:
 
         handler = self._find(Form.RECEIVE, name)
         where = Where(node=NODE, means=self._means)
-        return wait() if handler is None else wait_for(handler, wait, where)
+        return wait() if handler is None else wait_for(handler, wait, where, time)
 
     def set_up(self, form: Form, **settings: Any) -> None:
         """Set something up."""

@@ -141,8 +141,14 @@ class _Topics:
         limit = kwargs.pop("time_to_wait", -1)
         end = time.monotonic() + limit if limit >= 0 else None
 
+        asked = False
+
         def waited() -> Any:
+            nonlocal asked
             left = -1 if end is None else max(0.0, end - time.monotonic())
+            if asked and left == 0.0:  # what is kept for late subscribers may come at once
+                raise _Nothing
+            asked = True
             with _nodes.own():
                 found, message = original(msg_type, node, topic, **kwargs, time_to_wait=left)
             if not found:
@@ -153,8 +159,8 @@ class _Topics:
         try:
             if handler is None:
                 return True, waited()
-            another = anew(waited, lambda message: _is_kept(kwargs.get("qos_profile")))
-            return True, wait_for(handler, _first(another(), another), _nodes.where(node))
+            another = anew(waited, lambda message: _is_kept(kwargs.get("qos_profile")), time)
+            return True, wait_for(handler, _first(another(), another), _nodes.where(node), time)
         except _Nothing:
             return False, None
 

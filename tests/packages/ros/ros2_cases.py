@@ -229,6 +229,24 @@ def test_waiting_for_a_message_is_a_site(make: Making) -> None:
     assert {operation for operation, _ in places(stage)} == {"receive *"}
 
 
+def test_a_message_that_is_kept_and_was_lost_does_not_come_again(make: Making) -> None:
+    program = """
+    import rclpy.wait_for_message as waiting
+
+    def run():
+        node = begin()
+        level = node.create_publisher(Float64, "/line/level", LATCHED)
+        level.publish(Float64(data=0.5))
+        began = time.monotonic()
+        found, _ = waiting.wait_for_message(Float64, node, "level", qos_profile=LATCHED, time_to_wait=1)
+        node.destroy_node()
+        return found, round(time.monotonic() - began)
+    """
+    told, activation = make(program, LEVEL).mutated("drop", None)
+    assert told == (False, 1)
+    assert activation.evidence.acted == 1
+
+
 CALLING = """
     def run():
         node = begin()

@@ -438,8 +438,10 @@ def _instead(named: Named, used: Collection[Named]) -> str:
     return f"seen: {', '.join(targets[:_MOST])}{more}"
 
 
-#: seconds of wall clock: a topic that keeps its last message gives it at once to who asks again and again
+#: seconds: a topic that keeps its last message gives it at once to who asks again and again
 _PAUSE = 0.01
+#: the same as a share of the time that a wait has lasted: so late another message may be noticed
+_LATE = 0.05
 
 
 @frozen
@@ -473,7 +475,17 @@ def deliver(handler: Handler, message: Any, callback: Callable[[Any], Any], wher
     return returned[-1] if returned else None
 
 
-def wait_for(handler: Handler, wait: Callable[[], Any], where: Where) -> Any:
+class Timer(Protocol):
+    """How time passes for the program: the module ``time``, or what stands for it in a simulation."""
+
+    def monotonic(self) -> float:
+        """Seconds since some moment."""
+
+    def sleep(self, seconds: float, /) -> None:
+        """Let so many seconds pass."""
+
+
+def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, timer: Timer) -> Any:
     """What a program receives that waits for one message; ``wait`` waits for the next and returns it.
 
     A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
@@ -490,10 +502,10 @@ def wait_for(handler: Handler, wait: Callable[[], Any], where: Where) -> Any:
                 _done(_means(where).sleep(late))
             return part
         where = replace(where, is_again=True)
-        time.sleep(_PAUSE)
+        timer.sleep(_PAUSE)
 
 
-def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool]) -> Callable[[], Any]:
+def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool], timer: Timer) -> Callable[[], Any]:
     """Wait for a message that no wait before has brought.
 
     Each wait subscribes anew, and so gets once more what is kept for late subscribers: a node that had lost
@@ -502,12 +514,14 @@ def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool]) -> Callable[[]
     last: list[Any] = []
 
     def wait_for_another() -> Any:
+        began = timer.monotonic()
         while True:
             message = wait()
             if not last or not is_kept(message) or message != last[0]:
                 last[:] = [message]
                 return message
-            time.sleep(_PAUSE)
+            # a simulation goes through ten seconds at once, but not through thousands of subscriptions
+            timer.sleep(max(_PAUSE, _LATE * (timer.monotonic() - began)))
 
     return wait_for_another
 
