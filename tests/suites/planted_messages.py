@@ -114,7 +114,7 @@ def hearing(callback: Any, is_refused: Callable[[Any], bool]) -> Any:
     """A callback that notes when a message says that the robot refuses the mutated command."""
 
     def called(message: Any) -> Any:
-        if _watch.is_on and is_refused(message):
+        if _watch.is_on and _watch.sent and is_refused(message):  # what was not sent is not refused
             with Path(os.environ["JUDGE_NOTES"]).open("a") as notes:
                 notes.write("refused\n")
         _watch.hear()
