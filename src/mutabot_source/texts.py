@@ -11,11 +11,11 @@ from dataclasses import dataclass, field, replace
 from itertools import chain
 from pathlib import Path
 
-from mutabot.digest import digest
 from mutabot.languages.front_end import front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
 from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPlace
+from mutabot.model.source_units import digest
 
 from . import registry
 from .extension import CONVENTIONAL

@@ -11,10 +11,10 @@ from __future__ import annotations
 import json
 import os
 import signal
+from _blake2 import blake2b  # as in source_units
 from collections.abc import Callable
 from typing import Any
 
-from mutabot.digest import blake2b
 from mutabot.model.codec import is_too_deep, sparse, to_json
 from mutabot.model.events import Event, Untrusted, event_from_data
 

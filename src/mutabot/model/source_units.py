@@ -9,10 +9,9 @@ from __future__ import annotations
 import ast
 import os
 import warnings
+from _blake2 import blake2b  # hashlib has the same, and loads OpenSSL in every process
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-
-from mutabot.digest import digest
 
 #: in the place of a line: the module level, or the text of the whole file
 MODULE, WHOLE = -1, 0
@@ -32,6 +31,11 @@ _TEXT = {
     "getsource", "getsourcelines", "getsourcefile", "findsource", "f_lineno", "tb_lineno", "co_firstlineno",
     "lineno", "linecache", "tokenize", "getframeinfo", "extract_stack", "format_stack", "print_stack",
 }  # fmt: skip
+
+
+def digest(text: bytes) -> str:
+    """A short text that other program text hardly has."""
+    return blake2b(text, digest_size=12).hexdigest()
 
 
 def together(parts: Iterable[Executed | None]) -> Executed | None:

@@ -25,11 +25,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import mutabot
-from mutabot.digest import digest
 from mutabot.frozen import frozen
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
-from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, is_test_file, together
+from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, digest, is_test_file, together
 
 from .snapshot import _HASH, State, _digest_of, counts_by_name, digest_of, read
 

@@ -21,10 +21,10 @@ from functools import cache
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mutabot.digest import digest
 from mutabot.languages.python import extent_of, head_size, placed
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.mutant import RUNTIME, Extent, kept_name
+from mutabot.model.source_units import digest
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text import loading

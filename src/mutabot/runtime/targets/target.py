@@ -475,7 +475,7 @@ def deliver(handler: Handler, message: Any, callback: Callable[[Any], Any], wher
     return returned[-1] if returned else None
 
 
-class Timer(Protocol):
+class TimeModule(Protocol):
     """How time passes for the program: the module ``time``, or what stands for it in a simulation."""
 
     def monotonic(self) -> float:
@@ -485,7 +485,7 @@ class Timer(Protocol):
         """Let so many seconds pass."""
 
 
-def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, timer: Timer) -> Any:
+def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, time_module: TimeModule) -> Any:
     """What a program receives that waits for one message; ``wait`` waits for the next and returns it.
 
     A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
@@ -502,10 +502,12 @@ def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, timer: Tim
                 _done(_means(where).sleep(late))
             return part
         where = replace(where, is_again=True)
-        timer.sleep(_PAUSE)
+        time_module.sleep(_PAUSE)
 
 
-def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool], timer: Timer) -> Callable[[], Any]:
+def anew(
+    wait: Callable[[], Any], is_kept: Callable[[Any], bool], time_module: TimeModule
+) -> Callable[[], Any]:
     """Wait for a message that no wait before has brought.
 
     Each wait subscribes anew, and so gets once more what is kept for late subscribers: a node that had lost
@@ -514,14 +516,14 @@ def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool], timer: Timer) 
     last: list[Any] = []
 
     def wait_for_another() -> Any:
-        began = timer.monotonic()
+        began = time_module.monotonic()
         while True:
             message = wait()
             if not last or not is_kept(message) or message != last[0]:
                 last[:] = [message]
                 return message
             # a simulation goes through ten seconds at once, but not through thousands of subscriptions
-            timer.sleep(max(_PAUSE, _LATE * (timer.monotonic() - began)))
+            time_module.sleep(max(_PAUSE, _LATE * (time_module.monotonic() - began)))
 
     return wait_for_another
 
