@@ -19,6 +19,7 @@ import pytest
 from mutabot.model import Instrumentation
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.mutant import RUNTIME
+from mutabot.runtime.program_text import instrument
 from mutabot.runtime.program_text.instrument import SessionText, instrumented
 from mutabot.runtime.program_text.loading import compile_tree
 from mutabot.runtime.program_text.switches import Alternatives, error_of
@@ -59,6 +60,52 @@ def test_every_alternative_does_what_its_text_says(tmp_path: Path) -> None:
         assert outcome(code) == outcome(spliced(MISSION, place, alternative)), (place.text, alternative)
     alternatives.activate()
     assert outcome(code) == outcome(MISSION)
+
+
+SPREAD = '''
+import functools
+
+@functools.lru_cache(maxsize=1 + 2)
+def described(x):
+    return (f"""first {x + 1}
+        second {x * 2:>{3 + 4}}""" f"{
+        x - 5}" "plain"
+        f"{x / 3}")
+
+class Cell:
+    @property
+    def wide(self):
+        if self.x > 1: return 2; y = 3
+        try:
+            return [one + 1
+                    for one in range(4)]
+        except ValueError as error:
+            raise TypeError(1 + 1) from error
+        finally:
+            self.x += 1
+'''
+
+
+@pytest.mark.parametrize("program", [SPREAD, ORDINARY], ids=["spread", "ordinary"])
+@pytest.mark.parametrize("record", [False, True], ids=["alternatives", "recording"])
+def test_to_look_only_around_a_place_makes_the_same_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str, record: bool
+) -> None:
+    try:
+        places = text_of(tmp_path, program).places
+    except SyntaxError:  # before 3.12, an expression in an f-string stands on one line
+        program = program.replace("{\n        x", "{x")
+        places = text_of(tmp_path, program).places
+
+    def made() -> list[str]:
+        some = places[:: len(places) // 50 + 1]
+        trees = [instrumented(ast.parse(program), [place], record=record) for place in some]
+        return [ast.dump(tree, include_attributes=True) for tree in trees]
+
+    near = made()
+    monkeypatch.setattr(instrument, "_FEW", -1)
+    assert made() == near
+    assert len(set(near)) > 10
 
 
 MISSION = """
