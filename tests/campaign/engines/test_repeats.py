@@ -85,6 +85,25 @@ def test_repeats_beyond_their_time_are_left_and_told(
     assert (results.repeats.doubted, false_kills(results.repeats)) == (Repeated(1, 0, 0), None)
 
 
+def test_one_kill_is_repeated_even_if_that_takes_longer_than_its_share(
+    tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission = "\n\n".join(f"def {name}(arm):\n    arm.move_by(0.2)" for name in ("one", "two", "three"))
+    tests = "\n".join(f"def test_{name}():\n    mission.{name}(Arm())\n" for name in ("one", "two", "three"))
+
+    def mutated(run: Run) -> End:
+        is_own = run.mutant is not None and f":{run.test.rpartition('_')[2]}:" in run.mutant.id
+        return CHECKED if is_own and run.mutant.id.endswith("reverse") else {}
+
+    script.mutated = mutated
+    monkeypatch.setattr(rerun, "SHARE", 10.0)
+    monkeypatch.setattr(Doubts, "cost", lambda self, key: 1e6)
+    write_project(tmp_path, mission, f"import mission\nfrom robot import Arm\n{tests}")
+    _, _, progress = campaign(tmp_path, repeats=True)
+    (told,) = [line for line in progress.lines if line.startswith("re-runs:")]
+    assert told.startswith("re-runs: 1 of 1 doubtful kills confirmed; 2 were left")
+
+
 def test_more_kills_are_repeated_once_one_does_not_come_out_again(
     tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch
 ) -> None:
