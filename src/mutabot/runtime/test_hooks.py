@@ -36,8 +36,6 @@ from mutabot.runtime.test_end import FAILED, PASSED, classify, of_evidence, outc
 if TYPE_CHECKING:
     from mutabot.runtime.session import Session
 
-    pass
-
 
 class ForkedRun:
     """This process from its fork on.
