@@ -168,6 +168,7 @@ def test_verdicts_are_those_of_plain_pytest(tmp_path: Path, engine: str, notices
 
 @pytest.mark.usefixtures("always")
 @ENGINE
+@pytest.mark.whole
 def test_fixtures_live_as_long_as_in_the_whole_suite(tmp_path: Path, engine: str) -> None:
     """Else what is run without some tests fails, and all would be run with the whole suite."""
     outcomes, _ = campaign(project(tmp_path), engine=engine)

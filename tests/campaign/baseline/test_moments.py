@@ -70,6 +70,7 @@ def test_a_fault_that_is_seen_on_the_way_alone_is_told(tmp_path: Path) -> None:
     assert (negate.compared.calls, negate.compared.moments) == (3, 3)
 
 
+@pytest.mark.whole
 def test_a_fork_is_compared_on_the_way_in_the_tests_after_its_own_too(tmp_path: Path) -> None:
     folder = project(tmp_path)
     tests = folder / "tests" / "test_mission.py"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 
-@pytest.mark.parametrize("backend", ["egl", "osmesa"])
+@pytest.mark.parametrize("backend", ["egl", pytest.param("osmesa", marks=pytest.mark.whole)])
 def test_cell_can_be_drawn_without_a_screen(tmp_path: Path, backend: str) -> None:
     picture = tmp_path / "cell.png"
     drawing = f"render(Cell(1), {str(picture)!r}, width=160, height=120)"

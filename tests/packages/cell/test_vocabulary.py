@@ -43,6 +43,7 @@ families = ["robot", "graded"]
 
 
 @pytest.mark.usefixtures("plugins")
+@pytest.mark.whole
 def test_mutants_are_made_of_suction_force_and_light_barriers(tmp_path: Path) -> None:
     (tmp_path / "tests").mkdir()
     (tmp_path / "program.py").write_text(PROGRAM)

@@ -71,6 +71,7 @@ SEED = 5
 @needs_ros
 @pytest.mark.skipif(find_spec("greenlet") is None, reason="the simulation needs greenlet")
 @pytest.mark.usefixtures("plugins")
+@pytest.mark.whole
 def test_a_race_of_the_program_is_found_by_random_orders_and_replayed_by_the_printed_command(
     example: Path,
 ) -> None:

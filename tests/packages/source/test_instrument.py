@@ -86,7 +86,9 @@ class Cell:
 '''
 
 
-@pytest.mark.parametrize("program", [SPREAD, ORDINARY], ids=["spread", "ordinary"])
+@pytest.mark.parametrize(
+    "program", [SPREAD, pytest.param(ORDINARY, marks=pytest.mark.whole)], ids=["spread", "ordinary"]
+)
 @pytest.mark.parametrize("record", [False, True], ids=["alternatives", "recording"])
 def test_to_look_only_around_a_place_makes_the_same_program(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str, record: bool

@@ -140,6 +140,7 @@ def test_a_mutant_of_it_is_replayed_over_the_simulation(tmp_path: Path) -> None:
             '0.25 if __import__("mutabot_ros.simulation").simulation.is_running() else 0.5',
             "tests/test_mission.py::test_it_tells_the_speed differs in round 1 in the simulation: ",
             id="another value",
+            marks=pytest.mark.whole,
         ),
     ],
 )
@@ -152,7 +153,8 @@ def test_else_it_runs_over_real_ros_and_says_why(tmp_path: Path, check: str, val
     assert verdicts(results) != []
 
 
-@pytest.mark.parametrize("where", ["conftest", pytest.param("test", marks=pytest.mark.whole)])
+@pytest.mark.whole
+@pytest.mark.parametrize("where", ["conftest", "test"])
 def test_tests_that_import_launch_run_over_real_ros_with_the_reason(tmp_path: Path, where: str) -> None:
     installed = tmp_path / "site-packages"
     installed.mkdir()
@@ -167,6 +169,7 @@ def test_tests_that_import_launch_run_over_real_ros_with_the_reason(tmp_path: Pa
     assert verdicts(results) == [Verdict.KILLED]
 
 
+@pytest.mark.whole
 def test_the_configuration_can_say_real_ros(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION.format(value="0.5"), TESTS.format(check=CHECK), vocabulary=VOCABULARY)
     request = request_for(tmp_path, rounds=1, only=("*reverse*",))
@@ -178,6 +181,7 @@ def test_the_configuration_can_say_real_ros(tmp_path: Path) -> None:
     assert verdicts(results) == [Verdict.KILLED]
 
 
+@pytest.mark.whole
 def test_what_ends_otherwise_over_real_ros_ends_so(tmp_path: Path) -> None:
     results = campaign(tmp_path, "assert heard(mission.run) == [0.5] or not simulation.is_running()")
     assert verdicts(results) == [Verdict.SURVIVED]
