@@ -136,6 +136,7 @@ def test_a_skipped_call_of_which_nobody_knows_the_answer_is_left_out(
 
 
 @pytest.mark.needs("source")
+@pytest.mark.whole
 def test_a_mutant_of_the_text_is_judged_by_the_tests_as_well(tmp_path: Path) -> None:
     """One number for another: the robot refuses either, and the test expects which."""
     write_project(tmp_path, MISSION, TESTS)

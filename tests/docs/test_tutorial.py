@@ -50,6 +50,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.whole
 def test_a_reader_sees_what_the_page_tells(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shown = []
     for what, text in steps():

@@ -167,6 +167,7 @@ def test_no_command_believes_it(
     assert "git tracks .mutabot/" in capfd.readouterr().err
 
 
+@pytest.mark.whole
 def test_merge_takes_no_shard_from_the_checkout(
     attacked: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -79,6 +79,7 @@ def plain_pytest(folder: Path, **variables: str) -> subprocess.CompletedProcess[
 
 @pytest.mark.usefixtures("plugins")
 @ENGINES
+@pytest.mark.whole
 def test_a_test_that_fails_in_one_round_is_set_aside_there_and_plain_pytest_fails_alike(
     tmp_path: Path, engine: str
 ) -> None:

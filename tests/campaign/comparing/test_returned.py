@@ -93,6 +93,7 @@ def test_a_value_returned_to_a_fixture_is_compared(tmp_path: Path) -> None:
 
 
 @pytest.mark.needs("source")
+@pytest.mark.whole
 def test_notes_and_mutants_of_the_text_stand_in_the_same_functions(tmp_path: Path) -> None:
     """What is never twice the same is not compared, and the rest is."""
     tests = """

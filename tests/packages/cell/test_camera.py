@@ -28,6 +28,7 @@ assert before == (cell.simulation.model.vis.quality.shadowsize, cell.simulation.
 """
 
 
+@pytest.mark.whole
 def test_a_cell_is_filmed_while_it_moves(tmp_path: Path) -> None:
     file = tmp_path / "cell.film"
     environment = {**os.environ, "MUJOCO_GL": "egl"}

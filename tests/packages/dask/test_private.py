@@ -112,6 +112,7 @@ def test_no_port_is_a_dashboard(path: str, opened: Opened) -> None:
     assert set(found.values()) <= {404}
 
 
+@pytest.mark.whole
 def test_whoever_has_the_certificate_gets_in(opened: Opened, tmp_path: Path) -> None:
     """The attack works: what keeps others out is the certificate."""
     own = opened.settings

@@ -105,6 +105,7 @@ def served(tmp_path: Path) -> Iterator[Server]:
     assert given == []
 
 
+@pytest.mark.whole
 def test_a_thousand_messages_of_all_kinds_leave_the_page_as_it_was(served: Server) -> None:
     before = ask(served.address).text
     for message in messages(served.address, MESSAGES, random.Random(24)):

@@ -201,6 +201,7 @@ def test_axe_finds_nothing_serious_on_any_page(
     assert found == []
 
 
+@pytest.mark.whole
 def test_no_page_is_wider_than_a_telephone(browser: Any, plain: Path, evil: Path) -> None:
     page = browser.new_page(viewport={"width": 400, "height": 800})
     wide = []
