@@ -87,7 +87,7 @@ def _tell_unable(folder: str, why: str) -> None:
     event = '{"type":"Began","pid":%d,"group":%d,"command":[%s],"time":0.0,"unable":%s}'
     text = event % (os.getpid(), os.getpgrp(), command, quoted(why))
     try:
-        import hashlib  # the form of a line is that of border.event_file
+        import hashlib  # the form of a line is that of model.event_file
         import json
 
         with open(os.path.join(os.path.dirname(folder), "job.json")) as file:
