@@ -18,7 +18,7 @@ from mutabot.cli.app import main
 from mutabot.errors import ExitCode
 from mutabot.journal.database import columns, decode
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import REACHING, ControlEnd
+from mutabot.journal.records import REACHING, BaselineTest, ControlEnd
 from mutabot.model.events import TestEnd
 from mutabot.report.format import Material, format_of, names
 from mutabot.report.terminal.campaign import print_results
@@ -42,8 +42,8 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     samples.write_journal(path)
     reached = {"tests": [samples.TEST], "sites": {samples.MOVE.id: [0]}}
     with Journal.create(path, meta=samples.meta(**{REACHING: reached})) as journal:
-        for round in range(2):
-            journal.add_test(round, 0, TestEnd(samples.TEST, "passed", wall=0.5))
+        passed = TestEnd(samples.TEST, "passed", wall=0.5)
+        journal.add_tests(BaselineTest(round, 0, passed) for round in range(2))
         journal.set_plan(samples.MUTANTS, samples.LEFT_OUT, sources={"mission.py": samples.PROGRAM})
         journal.set_known([(OTHER, True)])
         journal.add_control(ControlEnd("tests/test_mission.py", "identity", True, "as it must"))

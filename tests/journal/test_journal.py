@@ -18,7 +18,7 @@ from mutabot.errors import JournalError
 from mutabot.journal.database import SCHEMA_VERSION, connect
 from mutabot.journal.files import is_written, previous_of
 from mutabot.journal.journal import Journal, guarded
-from mutabot.journal.records import ControlEnd, Kept
+from mutabot.journal.records import BaselineTest, ControlEnd, Kept
 from mutabot.model import By, Outcome, Verdict
 from mutabot.model.events import TestEnd
 from results import samples
@@ -229,7 +229,7 @@ def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
             Outcome("mission\udcff.py", 0, Verdict.KILLED, test="t\udcff", example=(1, "\udcfe"))
         )
         journal.add_control(ControlEnd("tests/t\udcff.py", "identity", ok=True, detail="\udcff"))
-        journal.add_test(0, 0, TestEnd("t\udcff", "passed"))
+        journal.add_tests([BaselineTest(0, 0, TestEnd("t\udcff", "passed"))])
         journal.set_plan([], [], sources={"mission\udcff.py": "x = '\udcff'"})
     with Journal.open(path) as reader:
         assert [one.mutant for one in reader.outcomes()] == ["mission\\udcff.py"]

@@ -7,7 +7,7 @@ from pathlib import Path as File
 from typing import Any
 
 from mutabot.journal.journal import Journal
-from mutabot.journal.records import ControlEnd
+from mutabot.journal.records import BaselineTest, ControlEnd
 from mutabot.model import (
     By,
     Check,
@@ -135,8 +135,7 @@ def write_journal(
 ) -> File:
     """A journal as a campaign would write it."""
     with Journal.create(path, meta=meta(**changes)) as journal:
-        for round in range(2):
-            journal.add_test(round, 0, TestEnd(TEST, "passed", wall=0.5))
+        journal.add_tests(BaselineTest(round, 0, TestEnd(TEST, "passed", wall=0.5)) for round in range(2))
         journal.set_plan(mutants, LEFT_OUT, sources={"mission.py": PROGRAM, "tests/sensors.py": SENSORS})
         for control in ("identity", "fatal"):
             journal.add_control(ControlEnd("tests/test_mission.py", control, True, "as it must"))

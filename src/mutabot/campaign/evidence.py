@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from hashlib import blake2b
 from typing import TYPE_CHECKING
@@ -137,11 +137,6 @@ def recorded(request: Request, progress: Progress) -> Iterator[CampaignEvidence 
                     f"{recordings.dropped} recordings found no room in {limit / 1e6:.0f} MB and were left "
                     "out: set `evidence` to more"
                 )
-
-
-def without_recording(end: TestEnd) -> TestEnd:
-    """The end of a test for the journal, which has recordings beside it, and what outcomes depend on."""
-    return replace(end, recording=None, executed=None)
 
 
 def _digest(recording: str) -> bytes:

@@ -24,7 +24,7 @@ from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.engine import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
-from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
+from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, drawing, make_plan, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
@@ -226,8 +226,7 @@ def _write_beginning(
         )
     for result in results:
         round, repetition = result.task.key
-        for end in result.ends:
-            journal.add_test(round, repetition, without_recording(end))
+        journal.add_tests(records.BaselineTest.of(round, repetition, end) for end in result.ends)
     carried = carry([one for one, _ in journal.known()], request, plan.mutants, whole.mutants)
     files = {mutant.site.span.file for mutant in (*plan.mutants, *carried)}
     sources = {

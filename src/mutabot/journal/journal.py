@@ -22,7 +22,7 @@ import sqlite3
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import Any, Self, TypeVar
 
 from mutabot.errors import JournalError
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
@@ -32,9 +32,6 @@ from . import database, records
 from .database import LAST, columns
 from .files import WriterLock, previous_of, refuse_tracked
 from .records import UNFIT, BaselineTest, ControlEnd, Kept
-
-if TYPE_CHECKING:
-    from mutabot.model.events import TestEnd
 
 T = TypeVar("T")
 #: a key of meta that is the journal's own: why the campaign ended
@@ -400,9 +397,11 @@ class Journal(JournalReader):
 
     # The baseline and the plan
 
-    def add_test(self, round: int, repetition: int, test: TestEnd) -> None:
-        """Add one test of the baseline."""
-        self._put("test", test.test, _dump(BaselineTest(round, repetition, test)))
+    def add_tests(self, tests: Iterable[BaselineTest]) -> None:
+        """Add tests of the baseline, all or none."""
+        with self._transaction():
+            for one in tests:
+                self._put("test", one.test.test, _dump(one))
 
     def add_control(self, control: ControlEnd) -> None:
         """Add the end of one control mutant."""

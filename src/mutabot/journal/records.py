@@ -59,12 +59,19 @@ class BaselineTest:
     Attributes:
         round: 0-based round.
         repetition: 0-based repetition of that round.
-        test: what the process reported.
+        test: how it ended and what it took. Mutants were compared with what it did; nobody asks later.
     """
 
     round: int
     repetition: int
     test: TestEnd
+
+    @classmethod
+    def of(cls, round: int, repetition: int, end: TestEnd) -> BaselineTest:
+        """What is kept of the end of a test."""
+        kept = ("operations", "commands", "wall", "cpu", "simulated", "reading")
+        facts = {name: getattr(end, name) for name in kept}
+        return cls(round, repetition, TestEnd(end.test, end.outcome, **facts))
 
 
 @frozen
