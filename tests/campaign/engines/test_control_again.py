@@ -1,4 +1,4 @@
-"""A control that ends wrongly is tried again in a fresh process, and says where it hung."""
+"""Controls: where they act, and that one that ends wrongly is tried again in a fresh process."""
 
 from __future__ import annotations
 
@@ -6,8 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.engines.controls import FATAL, IDENTITY, IMPORT, controls_of
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ControlError
+from mutabot.model import Mutant, Role, Site, Span
+from mutabot.model.events import TestEnd
+from mutabot.model.mutant import Place
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 from tests.campaign.scripted import Died, Script
 
@@ -63,3 +68,43 @@ def test_a_control_that_hangs_twice_ends_the_campaign(tmp_path: Path) -> None:
     with pytest.raises(ControlError, match="no verdict of this campaign could be believed") as caught:
         run_campaign(request_for(tmp_path, engine="fork", only=("*:reverse",)), Quiet())
     assert "no end after 2 s of wall clock" in str(caught.value)
+
+
+SUITE = ["a::one", "b::two", "c::three"]
+
+
+def mutant_at(line: int) -> Mutant:
+    site = Site(Span("m.py", line, 0, line, 9, "run"), "arm.move", 1, Role.PROGRAM)
+    return Mutant(line, "robot", "skip", site, "robot:Arm.move", None, None, "", "")
+
+
+def baseline_of(reached: dict[int, list[str]], early: set[int]) -> tuple[Baseline, list[Mutant]]:
+    """Lines with the tests that reach them; later tests are quicker."""
+    ends = {
+        (0, test): TestEnd(test, "passed", wall=3.0 - number, operations=3 - number)
+        for number, test in enumerate(SUITE)
+    }
+    baseline = Baseline(tests=[SUITE], ends=ends)
+    mutants = {line: mutant_at(line) for line in reached}
+    baseline.early = {Place.of(mutants[line]) for line in early}
+    for line, tests in reached.items():
+        baseline.reach(0, Place.of(mutants[line]), None if line in early else tests)
+    return baseline, [*mutants.values()]
+
+
+def acting(baseline: Baseline, mutants: list[Mutant], *, forked: bool) -> list[tuple[str, int, str]]:
+    found = controls_of(baseline, mutants, forked=forked)
+    return sorted((one.name, one.place.site.span.line, one.subject) for one in found)
+
+
+def test_without_imports_controls_act_where_the_quickest_test_is() -> None:
+    made = baseline_of({1: ["a::one"], 2: ["b::two"], 3: ["a::one", "c::three"]}, set())
+    for forked in (True, False):
+        assert acting(*made, forked=forked) == [(FATAL, 3, "c"), (IDENTITY, 3, "c")]
+
+
+def test_beside_an_identity_of_the_imports_the_other_one_is_forked_as_late_as_possible() -> None:
+    reached = {1: ["a::one"], 2: ["b::two"], 3: ["a::one", "c::three"], 4: []}
+    made = baseline_of(reached, {4})
+    assert acting(*made, forked=True) == [(FATAL, 2, "b"), (IDENTITY, 2, "b"), (IDENTITY, 4, IMPORT)]
+    assert acting(*made, forked=False) == [(FATAL, 3, "c"), (IDENTITY, 3, "c")]

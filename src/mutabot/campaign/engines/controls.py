@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.faults.providers import provider
@@ -82,32 +83,56 @@ class Control:
         return f"{outcome.verdict}: {outcome.message or 'it changed something'}"
 
 
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """Where a pair of controls could act: ``first`` is the number of the first test that reaches it."""
+
+    round: int
+    is_early: bool
+    seconds: float
+    first: int
+    place: Place
+    test: str
+
+    @property
+    def by_time(self) -> tuple[int, bool, float]:
+        """What raises while the program is imported says little about what is reached in a test."""
+        return self.round, self.is_early, self.seconds
+
+    @property
+    def by_lateness(self) -> tuple[int, int]:
+        return self.round, -self.first
+
+
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
     """One pair for each provider, where a mutant is planned, in the quickest test of the first round.
 
-    What raises while the program is imported says little about what is reached in a test: that comes last.
     Only a test that passes on the original must fail by the fatal one. ``forked``: for processes that are
-    forked at the place. What is forked before any test has an identity of its own.
+    forked at the place. What is forked before any test has an identity of its own, which runs the whole
+    suite; the other pair is then forked as late as possible, when there is most that a fork could share.
     """
     planned = {Place.of(one) for one in mutants if not forked or not baseline.is_apart(one)}
-    chosen: dict[tuple[str, bool], tuple[tuple[int, bool, float], Place, str]] = {}
+    numbers = [{test: number for number, test in enumerate(tests)} for tests in baseline.tests]
+    found: dict[tuple[str, bool], list[_Candidate]] = {}
     for (round, place), tests in baseline.reaching.items():
         ends = [baseline.ends[round, test] for test in tests]
         passing = [end for end in ends if end.outcome == "passed"]
         if not passing or place not in planned or (forked and any(end.processes for end in ends)):
             continue
+        quickest, first = passing[0], min(map(numbers[round].__getitem__, tests))
         is_early = place in baseline.early
+        one = _Candidate(round, is_early, min(end.wall for end in passing), first, place, quickest.test)
         way = (baseline.faults.providers.get(place, CALLS), forked and is_early)
-        cost = (round, is_early, min(end.wall for end in passing))
-        if way not in chosen or cost < chosen[way][0]:
-            chosen[way] = (cost, place, passing[0].test)
-    return [
-        Control(
-            name, place, by, cost[0], baseline.suite(cost[0]), IMPORT if early else test.partition("::")[0]
-        )
-        for (by, early), (cost, place, test) in chosen.items()
-        for name in ((IDENTITY,) if early and (by, False) in chosen else (IDENTITY, FATAL))
-    ]
+        found.setdefault(way, []).append(one)
+    controls: list[Control] = []
+    for (by, early), candidates in found.items():
+        has_other = (by, not early) in found
+        one = min(candidates, key=attrgetter("by_lateness" if has_other and not early else "by_time"))
+        names = (IDENTITY,) if has_other and early else (IDENTITY, FATAL)
+        subject = IMPORT if early else one.test.partition("::")[0]
+        suite = baseline.suite(one.round)
+        controls += [Control(name, one.place, by, one.round, suite, subject) for name in names]
+    return controls
 
 
 def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[ControlEnd]:

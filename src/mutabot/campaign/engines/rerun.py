@@ -117,8 +117,8 @@ class Doubts:
         return suite if outcome.tests else ()
 
     def cost(self, key: Key) -> float:
-        """Seconds that the tests of a repeat take on the original."""
-        return self.baseline.seconds(key[1], self._ran(key))
+        """Seconds that a repeat takes on the original."""
+        return self.baseline.startup + self.baseline.seconds(key[1], self._ran(key))
 
     def _test(self, key: Key) -> str:
         return self.outcomes[key].test or ""
@@ -262,8 +262,8 @@ class _Reruns:
     ) -> list[Key]:
         """Run these in fresh processes, cheapest first. Returns those that were run.
 
-        None begins after ``until`` (``Request.clock``), and but for the first of all none whose tests would
-        end after it. ``over``: another campaign than this one.
+        None begins after ``until`` (``Request.clock``), and but for the first of all none that would end
+        after it. ``over``: another campaign than this one.
         """
         clock, looked = self.campaign.request.clock, list[Key]()
         cheapest = sorted(keys, key=self.doubts.cost)
