@@ -197,7 +197,7 @@ def job_file(home: str | os.PathLike[str]) -> str:
 def write_job(home: str | os.PathLike[str], job: Job) -> None:
     """Write a worker's job into its folder."""
     with open(job_file(home), "w", encoding="utf-8") as file:
-        json.dump(to_data(job), file)
+        file.write(json.dumps(to_data(job)))  # in one piece, it is written by C
 
 
 def read_job(home: str | os.PathLike[str]) -> Job:

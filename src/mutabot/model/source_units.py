@@ -10,7 +10,9 @@ import ast
 import os
 import warnings
 from _blake2 import blake2b  # hashlib has the same, and loads OpenSSL in every process
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from copy import copy
 from functools import cached_property
 
 #: in the place of a line: the module level, or the text of the whole file
@@ -121,10 +123,12 @@ class File:
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             return None
         found: dict[str, ast.AST] = {}
+        numbers: Counter[str] = Counter()
         for name, node in functions_of(tree):
-            number = sum(one.partition("#")[0] == name for one in found)
+            number = numbers[name]
+            numbers[name] += 1
             found[f"{name}#{number}" if number else name] = node
-        found[""] = _ModuleLevel(is_test_file(self.name)).visit(ast.parse(self._text))
+        found[""] = _ModuleLevel(is_test_file(self.name)).visit(tree)
         return found
 
     @cached_property
@@ -216,6 +220,7 @@ class _ModuleLevel(ast.NodeTransformer):
         ):
             return None
         text = ast.get_docstring(node, clean=False) or ""
+        node = copy(node)  # it is a unit, too
         node.body = node.body[:1] if ">>>" in text else []  # the examples of a docstring are tests
         return node
 

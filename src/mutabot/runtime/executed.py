@@ -16,6 +16,7 @@ from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.model.source_units import ALL_FILES, MODULE, WHOLE, Executed, functions_of
+from mutabot.runtime import real_folder
 from mutabot.runtime.processes.environment import FRAMES, listen
 from mutabot.runtime.program_text import loading
 
@@ -77,7 +78,8 @@ class ExecutedUnits(loading.SourceStep):
         assert name is not None
         self._loaded.add(name)
         self._common.add((name, MODULE))
-        if _imports(ast.parse(source), "numba"):  # it compiles functions in a way of its own
+        # it compiles functions in a way of its own
+        if b"numba" in source and _imports(ast.parse(source), "numba"):
             self._common.add((name, WHOLE))
             return
         for _, node in functions_of(tree):
@@ -125,7 +127,7 @@ class ExecutedUnits(loading.SourceStep):
         real = path
         if not path.startswith("<"):  # a link in the project is a file of its own
             folder, last = os.path.split(os.path.abspath(path))
-            real = os.path.join(os.path.realpath(folder), last)
+            real = os.path.join(real_folder(folder), last)
         if not real.startswith(self._root) or "/site-packages/" in real or "/.mutabot/" in real:
             return None
         return real[len(self._root) :]

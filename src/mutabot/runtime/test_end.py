@@ -15,7 +15,7 @@ from mutabot.extensions import packages
 from mutabot.model import By, Role, Vocabulary
 from mutabot.model.events import TestEnd
 from mutabot.model.path import class_name
-from mutabot.runtime import FOLDER
+from mutabot.runtime import FOLDER, real_path
 from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
 from mutabot.runtime.targets.target import is_named
 
@@ -143,7 +143,7 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     # nearest to the raise decides that is the tests', the program's or an operation's.
     folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
     for frame, _ in _from_the_raise(error):
-        filename = locator.real(frame.f_code.co_filename)
+        filename = real_path(frame.f_code.co_filename)
         package = str(frame.f_globals.get("__name__", "")).partition(".")[0]
         if filename.startswith(FOLDER) or package in packages():  # such bring operators, or hooks
             return False

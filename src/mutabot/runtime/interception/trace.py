@@ -19,6 +19,7 @@ from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
+from mutabot.runtime import real_path
 from mutabot.runtime.interception.adapter import SiteCall, call_context
 
 if TYPE_CHECKING:
@@ -184,7 +185,6 @@ class Locator:
 
     Attributes:
         role: tells whose file it is; None for files of neither.
-        real: tells a path without symbolic links.
     """
 
     def __init__(self, root: str, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
@@ -193,7 +193,6 @@ class Locator:
         places = [(self._absolute(path), Role.PROGRAM) for path in program]
         places += [(self._absolute(path), Role.ORACLE) for path in oracle]
         self._places = sorted(places, key=lambda place: -len(place[0]))
-        self.real: Callable[[str], str] = cache(os.path.realpath)
         self.role: Callable[[str], Role | None] = cache(self._find_role)
         # By the identity of code: the code of equal functions in two files is equal, though they are two
         # places. It is kept beside its span, so that no other code can get its address.
@@ -224,10 +223,10 @@ class Locator:
 
     def relative(self, filename: str) -> str:
         """The path relative to the root, with forward slashes."""
-        return os.path.relpath(self.real(filename), self._root).replace(os.sep, "/")
+        return os.path.relpath(real_path(filename), self._root).replace(os.sep, "/")
 
     def _find_role(self, filename: str) -> Role | None:
-        path = self.real(filename)
+        path = real_path(filename)
         within = (role for place, role in self._places if path == place or path.startswith(place + os.sep))
         return next(within, None)
 

@@ -25,6 +25,7 @@ from mutabot.languages.python import extent_of, head_size, placed
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.mutant import RUNTIME, Extent, kept_name
 from mutabot.model.source_units import digest
+from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text import loading
@@ -322,7 +323,6 @@ class SessionText:
         self.problems: dict[str, str] = {}
         self._originals: _Nodes = {}
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
-        self._real: Callable[[str], str] = cache(os.path.realpath)
         self._test: str | None = None
         self._refusals: tuple[BaseException, ...] = ()
         self._unknown = False
@@ -370,7 +370,7 @@ class SessionText:
         self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
 
     def _text_of(self, path: str) -> ProgramText | None:
-        return self._texts.get(self._real(path))
+        return self._texts.get(real_path(path))
 
     def _forms(self, number: int) -> Forms | None:
         """The original and the alternatives of a place, for a look ahead."""
