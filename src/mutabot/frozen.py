@@ -8,24 +8,41 @@ a few of them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import MISSING, Field, dataclass, field
-from operator import attrgetter
-from typing import Any, TypeVar, dataclass_transform
+from dataclasses import MISSING, Field, FrozenInstanceError, dataclass, field
+from operator import attrgetter, ge, gt, le, lt
+from typing import Any, TypeVar, dataclass_transform, overload
 
 T = TypeVar("T")
 #: where ``dataclasses`` keeps the fields of a class
 _FIELDS = "__dataclass_fields__"
 
 
+@overload
+def frozen(kind: type[T], /) -> type[T]: ...
+
+
+@overload
+def frozen(*, refuses: bool = ..., order: bool = ...) -> Callable[[type[T]], type[T]]: ...
+
+
 @dataclass_transform(frozen_default=True, field_specifiers=(field,))
-def frozen(kind: type[T]) -> type[T]:
+def frozen(kind: type[T] | None = None, /, *, refuses: bool = False, order: bool = False) -> Any:
     """Make a dataclass with slots of a class, with the methods of ``dataclass(frozen=True)``.
 
     Its ``__init__`` and its fields are made when they are first asked for, with its first object as a rule,
     or by ``compile_all``; what compares, hashes and shows is shared by all. All annotations are of fields.
-    That nobody sets a field is for the type checker: what operators and reports of others are given is better
-    made by ``dataclass(frozen=True)``, which refuses at run time.
+
+    Args:
+        refuses: whether fields cannot be set at run time either. Without, that is for the type checker; what
+            operators and reports of others are given is better off with it.
+        order: as in ``dataclass``.
     """
+    if kind is None:
+        return lambda kind: _frozen(kind, refuses=refuses, order=order)
+    return _frozen(kind, refuses=refuses, order=order)
+
+
+def _frozen(kind: type[T], *, refuses: bool, order: bool) -> type[T]:
     own = dict(vars(kind))
     inherited: dict[str, tuple[Any, Any]] = {}
     for base in reversed(kind.__mro__[1:]):
@@ -34,7 +51,11 @@ def frozen(kind: type[T]) -> type[T]:
     given = inherited | {name: (text, own.pop(name, MISSING)) for name, text in names.items()}
     shown = [name for name, (_, default) in given.items() if not _is_without(default, "repr")]
     compared = [name for name, (_, default) in given.items() if not _is_without(default, "compare")]
-    for method in (*_comparing(_values_of(compared)), _showing(shown)):
+    values = _values_of(compared)
+    methods = [*_comparing(values), _showing(shown)]
+    methods += [*_REFUSING] if refuses else []
+    methods += [_ordering(values, compare) for compare in (lt, le, gt, ge)] if order else []
+    for method in methods:
         own.setdefault(method.__name__, method)
     for name in ("__dict__", "__weakref__"):
         own.pop(name, None)
@@ -70,7 +91,8 @@ def _compile(kind: Any) -> None:
     body = {name: getattr(kind, name) for name in taken if hasattr(kind, name)}
     body["__annotations__"] = {name: text for name, (text, _) in given.items()}
     body |= {name: default for name, (_, default) in given.items() if default is not MISSING}
-    made = vars(dataclass(eq=False, repr=False)(type(kind.__name__, (), body)))
+    refuses = kind.__setattr__ is _REFUSING[0]
+    made = vars(dataclass(eq=False, repr=False, frozen=refuses)(type(kind.__name__, (), body)))
     for name in ("__init__", "__match_args__", "__dataclass_params__", _FIELDS):
         setattr(kind, name, made[name])
     _pending.discard(kind)
@@ -114,3 +136,28 @@ def _showing(names: list[str]) -> Callable[..., str]:
         return f"{type(self).__qualname__}({values})"
 
     return __repr__
+
+
+def _ordering(values: Callable[[Any], Any], compare: Callable[[Any, Any], bool]) -> Callable[..., Any]:
+    def method(self: Any, other: object) -> bool:
+        return compare(values(self), values(other)) if other.__class__ is self.__class__ else NotImplemented
+
+    method.__name__ = f"__{compare.__name__}__"
+    return method
+
+
+def _refusing() -> tuple[Callable[..., None], ...]:
+    def __setattr__(self: Any, name: str, value: Any) -> None:  # noqa: N807  # methods to be
+        raise FrozenInstanceError(f"cannot assign to field {name!r}")
+
+    def __delattr__(self: Any, name: str) -> None:  # noqa: N807
+        raise FrozenInstanceError(f"cannot delete field {name!r}")
+
+    def __setstate__(self: Any, state: tuple[None, dict[str, Any]]) -> None:  # noqa: N807
+        for name, value in state[1].items():  # as copies and pickle have it
+            object.__setattr__(self, name, value)
+
+    return __setattr__, __delattr__, __setstate__
+
+
+_REFUSING = _refusing()

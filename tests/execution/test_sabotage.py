@@ -232,7 +232,7 @@ def test_a_mutant_that_deletes_the_folder_of_its_process_is_an_error(
 def test_a_mutant_that_deletes_the_job_of_its_process_ends_as_without(
     tmp_path: Path, harmless: dict[str, Outcome]
 ) -> None:
-    found, _, _ = run(project(tmp_path, "import os; os.remove(os.path.join(home(), 'job.json'))"))
+    found, _, _ = run(project(tmp_path, "import os; os.remove(os.path.join(home(), 'job'))"))
     assert ends(found) == ends(harmless)
 
 

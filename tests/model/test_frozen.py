@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import FrozenInstanceError, dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import pytest
@@ -124,3 +124,28 @@ def test_a_class_without_an_object_is_a_dataclass_for_others() -> None:
     match Late("a", "b"):
         case Late(name, note):
             assert (name, note) == ("a", "b")
+
+
+@frozen(refuses=True, order=True)
+class Version:
+    major: int
+    minor: int = 0
+
+
+def test_one_that_refuses_cannot_be_changed_and_can_be_copied() -> None:
+    version = Version(1, 2)
+    with pytest.raises(FrozenInstanceError, match="cannot assign to field 'minor'"):
+        version.minor = 3  # type: ignore[misc]
+    with pytest.raises(FrozenInstanceError, match="cannot delete field 'minor'"):
+        del version.minor  # type: ignore[misc]
+    copies = [copy.copy(version), copy.deepcopy(version), pickle.loads(pickle.dumps(version))]
+    assert [*copies, replace(version, minor=2)] == [Version(1, 2)] * 4
+
+
+def test_one_with_an_order_is_sorted_by_its_fields() -> None:
+    versions = [Version(2), Version(1, 5), Version(1), Version(1, 2)]
+    assert sorted(versions) == [Version(1), Version(1, 2), Version(1, 5), Version(2)]
+    assert Version(1) < Version(1, 1) <= Version(1, 1)
+    assert Version(2) > Version(1, 1) >= Version(1, 1)
+    with pytest.raises(TypeError):
+        _ = Version(1) < (1, 0)  # type: ignore[operator]

@@ -1,4 +1,4 @@
-"""The beginning of a campaign: its baseline and its plan. ``check`` and ``--plan`` end there."""
+"""The beginning of a campaign: its baseline and its plan. ``check`` and ``list`` end there."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -133,7 +133,7 @@ class Role(StrEnum):
     ORACLE = "oracle"
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@frozen(refuses=True, order=True)
 class Span:
     """The exact place of an expression, as the interpreter reports it.
 
@@ -157,7 +157,7 @@ class Span:
         return f"{self.file}:{self.line}" if self.line else self.file
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@frozen(refuses=True, order=True)
 class Site:
     """Where a fault acts: mostly a call expression in the source.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from fnmatch import fnmatchcase
 from typing import Any
@@ -168,7 +167,7 @@ class Case:
     key: str = "mode"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen(refuses=True)
 class Pattern:
     """One command of an operation whose calls are several: by a text, by the value of an argument, or both.
 
@@ -215,7 +214,7 @@ class Pattern:
         return Notation.compile(self.text).short
 
 
-@dataclass(frozen=True, slots=True)
+@frozen(refuses=True)
 class Operation:
     """One callable of a robot API, and what its arguments and result mean.
 

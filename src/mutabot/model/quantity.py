@@ -13,11 +13,11 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from math import isclose
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model.enumeration import is_member, member_of, written_of
 from mutabot.model.path import Path, Step
 from mutabot.model.units import UNITS, Dimension, Quaternion, convert, distance, to_quaternion, to_values
@@ -146,7 +146,7 @@ MEASURED = frozenset(DIMENSIONS.keys() - {Kind.OPENING} | WHOLE | PLAIN)
 READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen(refuses=True)
 class Quantity:
     """The meaning of one argument, or of one part of a result.
 

@@ -32,7 +32,7 @@ def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
     write(os.path.join(folder, _ORDER), order)
     names = {name.rpartition("/")[2].removesuffix(".py") for name in order["program"].values()}
     folders = {part for name in order["program"].values() for part in name.split("/")[:-1]}
-    write_wake(folder, __name__, names | folders, order["program"])
+    write_wake(folder, __name__, "", names | folders, order["program"])
     carry(folder)
     return folder
 

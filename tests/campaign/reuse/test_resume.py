@@ -512,7 +512,7 @@ def test_a_disk_that_is_full_for_the_workers_is_a_clear_error(
     project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*arguments: Any) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "job.json")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "job")
 
     monkeypatch.setattr(campaign, "run_planned", full)
     with pytest.raises(JournalError, match=r"job\.json cannot be written: No space left"):

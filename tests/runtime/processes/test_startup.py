@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -22,8 +23,7 @@ STARTUP = str(Path(startup.__file__).parent)
 def folder_of(home: Path, *lines: str) -> Path:
     folder = home / FOLDER
     folder.mkdir(parents=True)
-    (home / "job.json").write_text(json.dumps({"key": KEY}))
-    (folder / WAKE).write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+    (folder / WAKE).write_text("".join(f"{line}\n" for line in (f"key {KEY}", *lines)), encoding="utf-8")
     return folder
 
 
@@ -112,3 +112,21 @@ def test_a_sitecustomize_that_is_there_already_is_loaded_as_ever(tmp_path: Path)
 
 def test_a_campaign_that_is_over_does_not_matter(tmp_path: Path) -> None:
     assert run(sys.executable, "-c", "print(1)", folder=tmp_path / "gone").stdout == "1\n"
+
+
+def test_a_process_of_interest_does_not_load_what_few_need() -> None:
+    code = """
+        import sys
+        import mutabot.runtime.processes.member
+        few = {"inspect", "subprocess", "asyncio", "hashlib", "pathlib", "random", "pytest"}
+        print(sys.modules.keys() & few)
+        import dataclasses
+        @dataclasses.dataclass
+        class Without:
+            a: int = 3
+        print(Without.__doc__, "inspect" in sys.modules)
+    """
+    told = subprocess.run(
+        [sys.executable, "-c", dedent(code)], capture_output=True, text=True, check=True
+    ).stdout
+    assert told.splitlines() == ["set()", "Without(a: int = 3) True"]

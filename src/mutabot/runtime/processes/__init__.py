@@ -3,3 +3,24 @@
 ``startup`` is what every Python process loads, ``member`` a process that turned out to be of interest, and
 ``members`` the test process's side, which puts together what they tell.
 """
+
+import sys
+from typing import Any
+
+
+class _LateInspect:
+    """Stands for ``inspect`` in ``dataclasses``, which seldom needs it; it takes long to load."""
+
+    def __getattr__(self, name: str) -> Any:
+        if sys.modules.get("inspect") is self:  # the import system asks
+            raise AttributeError(name)
+        import inspect  # noqa: PLC0415  # this is the point
+
+        return getattr(inspect, name)
+
+
+if sys.modules.keys().isdisjoint(("dataclasses", "inspect")):  # a process below the tests
+    sys.modules["inspect"] = _LateInspect()  # type: ignore[assignment]  # nobody asks whether it is a module
+    import dataclasses  # noqa: F401  # all of ours need it
+
+    del sys.modules["inspect"]

@@ -16,7 +16,6 @@ import mmap
 import os
 import re
 import struct
-import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
@@ -58,7 +57,7 @@ def carry(folder: str) -> None:
     os.environ["PYTHONPATH"] = with_startup(os.environ.get("PYTHONPATH"))
     os.environ[VARIABLE] = folder
     if not _folder:
-        _patch()
+        listen(("subprocess.Popen",), _patch)
     _folder = folder
 
 
@@ -77,9 +76,12 @@ def completed(environment: Sequence[bytes]) -> list[bytes]:
     return [name + b"=" + value for name, value in given.items()]
 
 
-def _patch() -> None:
-    module: Any = subprocess
+def _patch(event: str, arguments: tuple[Any, ...]) -> None:
+    """A process is about to be started, which the module has said before: the first one, most never do."""
+    module: Any = sys.modules["subprocess"]
     start = module._fork_exec
+    if hasattr(start, "is_of_mutabot"):
+        return
 
     def fork_exec(*arguments: Any) -> Any:
         environment = arguments[_ENVIRONMENT]
@@ -87,15 +89,17 @@ def _patch() -> None:
             arguments = (*arguments[:_ENVIRONMENT], completed(environment), *arguments[_ENVIRONMENT + 1 :])
         return start(*arguments)
 
+    fork_exec.is_of_mutabot = True  # type: ignore[attr-defined]  # a mark on it
     module._fork_exec = fork_exec
 
 
-def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str]) -> None:
+def write_wake(folder: str, join: str, key: str, names: Iterable[str], files: Iterable[str]) -> None:
     """Say what is of interest.
 
     Args:
         folder: the folder of the campaign's processes.
         join: the module whose ``join`` is called, with this folder, in a process of interest.
+        key: of the seals on its events.
         names: top-level names of modules.
         files: real paths of files and folders.
     """
@@ -104,6 +108,7 @@ def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str
     own = sorted({*packages(), join.partition(".")[0], "wrapt"})
     lines = [
         f"join {join}",
+        f"key {key}",
         *(f"path {place}" for place in _folders_of(own)),
         *(f"own {name}" for name in own),
         *(f"name {name}" for name in sorted(set(names))),
@@ -227,6 +232,8 @@ class ProcessWatch:
         self.signalled: set[int] = set()
         self._tell_unseen = tell_unseen
         listen(("os.kill", "os.killpg", *STARTS), self._hear)
+        import subprocess  # noqa: PLC0415  # of no use to most processes below the tests
+
         kind: Any = subprocess.Popen
         wait, handle = os.waitpid, kind._handle_exitstatus
 

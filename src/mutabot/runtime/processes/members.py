@@ -132,7 +132,7 @@ def _write_wake(folder: str, job: Job) -> None:
     files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
     for path in (*job.program, *job.oracle):
         names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
-    write_wake(folder, _JOIN, names, files)
+    write_wake(folder, _JOIN, job.key, names, files)
 
 
 def _top(target: str) -> str:

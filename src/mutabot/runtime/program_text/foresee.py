@@ -9,7 +9,6 @@ attributes and items. All else is left to a real evaluation.
 from __future__ import annotations
 
 import ast
-import inspect
 import math
 import types
 from collections.abc import Iterable, Mapping
@@ -33,6 +32,8 @@ _CALLABLE = (
     math.copysign, math.cos, math.degrees, math.dist, math.exp, math.fabs, math.floor, math.fmod, math.hypot,
     math.isclose, math.log, math.pow, math.radians, math.sin, math.sqrt, math.tan, math.trunc,
 )  # fmt: skip
+#: ``inspect.CO_OPTIMIZED``: the flag of code whose local names are its own
+_OPTIMIZED = 1
 #: functions that hand out the local names
 _LOOKING = frozenset(("locals", "vars", "dir", "eval", "exec", "f_locals"))
 #: descriptors that only hand out what is stored in the object
@@ -180,7 +181,7 @@ def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
     may have kept.
     """
     code = frame.f_code
-    if code.co_flags & inspect.CO_OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
+    if code.co_flags & _OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
         raise UnforeseenError
     return frame.f_locals
 

@@ -6,9 +6,9 @@ loaded by itself. A process is of interest as soon as it runs or imports a file 
 module that the vocabulary names. Only then the rest of mutabot is loaded.
 
 The file ``wake`` of the folder that the environment names says what is of interest, a line each:
-``join MODULE`` with a function of that name, which is then called with the folder, ``path FOLDER`` where
-packages of ours can be found, ``own NAME`` of such a package, ``name MODULE``, ``file PATH`` of a file or
-folder.
+``join MODULE`` with a function of that name, which is then called with the folder, ``key KEY`` of the seals,
+``path FOLDER`` where packages of ours can be found, ``own NAME`` of such a package, ``name MODULE``, ``file
+PATH`` of a file or folder.
 """
 
 import os
@@ -27,8 +27,9 @@ _NEWEST_TOO_OLD = (3, 10)
 class _Finder:
     """Wakes the process when a module of interest is asked for; finds none itself."""
 
-    def __init__(self, folder: str, join: str, names: "frozenset[str]", files: "Sequence[str]") -> None:
-        self.folder, self.join, self.names, self.files = folder, join, names, files
+    def __init__(self, folder: str, told: "dict[str, list[str]]") -> None:
+        self.folder, self.join, self.key = folder, told["join"][-1], told["key"][-1]
+        self.names, self.files = frozenset(told["name"]), told["file"]
 
     def find_spec(
         self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
@@ -68,17 +69,17 @@ def _wake(finder: _Finder) -> None:
     if finder in sys.meta_path:
         sys.meta_path.remove(finder)
     if sys.version_info[:2] <= _NEWEST_TOO_OLD:
-        _tell_unable(finder.folder, "Python %d.%d is older than 3.11" % sys.version_info[:2])
+        _tell_unable(finder, "Python %d.%d is older than 3.11" % sys.version_info[:2])
         return
     try:
         module = __import__(finder.join, fromlist=["join"])
     except Exception as error:
-        _tell_unable(finder.folder, "mutabot cannot be loaded: %r" % (error,))
+        _tell_unable(finder, "mutabot cannot be loaded: %r" % (error,))
     else:
         module.join(finder.folder)
 
 
-def _tell_unable(folder: str, why: str) -> None:
+def _tell_unable(finder: _Finder, why: str) -> None:
     def quoted(text: str) -> str:
         return '"%s"' % "".join(one if one.isalnum() or one in " ._-/:()'," else "?" for one in text)
 
@@ -88,12 +89,9 @@ def _tell_unable(folder: str, why: str) -> None:
     text = event % (os.getpid(), os.getpgrp(), command, quoted(why))
     try:
         import hashlib  # the form of a line is that of model.event_file
-        import json
 
-        with open(os.path.join(os.path.dirname(folder), "job.json")) as file:
-            key = json.load(file)["key"]
-        seal = hashlib.blake2b(("%s 1 %s" % (name, text)).encode(), key=key.encode(), digest_size=8)
-        with open(os.path.join(folder, name + ".jsonl"), "w") as file:
+        seal = hashlib.blake2b(("%s 1 %s" % (name, text)).encode(), key=finder.key.encode(), digest_size=8)
+        with open(os.path.join(finder.folder, name + ".jsonl"), "w") as file:
             file.write("%s 1 %s\n" % (seal.hexdigest(), text))
     except OSError:
         pass
@@ -112,10 +110,10 @@ def enter(command: "str | None" = None) -> None:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return
-    told: "dict[str, list[str]]" = {"join": [""], "path": [], "own": [], "name": [], "file": []}
+    told: "dict[str, list[str]]" = {"join": [""], "key": [""], "path": [], "own": [], "name": [], "file": []}
     for key, _, value in lines:
         told[key].append(value)
-    finder = _Finder(folder, told["join"][-1], frozenset(told["name"]), told["file"])
+    finder = _Finder(folder, told)
     sys.meta_path.append(_Ours(told["path"], told["own"]))
     sys.meta_path.insert(0, finder)
     script = command if command is not None else getattr(sys, "argv", [""])[0]
