@@ -9,7 +9,7 @@ from typing import Any
 
 
 class _LateInspect:
-    """Stands for ``inspect`` in ``dataclasses``, which seldom needs it; it takes long to load."""
+    """Stands for ``inspect`` in ``dataclasses``, which seldom needs it before Python 3.12."""
 
     def __getattr__(self, name: str) -> Any:
         if sys.modules.get("inspect") is self:  # the import system asks
