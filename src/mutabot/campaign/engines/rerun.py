@@ -19,7 +19,7 @@ import random
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import takewhile
+from itertools import accumulate, takewhile
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import FAILS
@@ -263,19 +263,22 @@ class _Reruns:
         """Run these in fresh processes, cheapest first. Returns those that were run.
 
         None begins after ``until`` (``Request.clock``), and but for the first of all none that would end
-        after it. ``over``: another campaign than this one.
+        after it with those before it. ``over``: another campaign than this one.
         """
-        clock, looked = self.campaign.request.clock, list[Key]()
+        request, looked = self.campaign.request, list[Key]()
         cheapest = sorted(keys, key=self.doubts.cost)
+        at_once, free = request.clock(), not self.found
+        costs = accumulate(self.doubts.cost(key) / request.jobs for key in cheapest)
+        ends = [at_once if free and not number else at_once + cost for number, cost in enumerate(costs)]
 
-        def is_in_time(key: Key) -> bool:
-            lasts = self.doubts.cost(key) if self.found else 0.0
-            return until is None or clock() + lasts < until
+        def is_in_time(end: float) -> bool:  # they are asked for a little ahead
+            return until is None or (end < until and request.clock() < until)
 
-        if not any(map(is_in_time, cheapest[:1])):
+        if not any(map(is_in_time, ends[:1])):
             return looked
         self.campaign.progress.stage("second look", len(keys))
-        runs = ((self.doubts.mutants[key[0]], key[1]) for key in takewhile(is_in_time, cheapest))
+        due = takewhile(lambda one: is_in_time(one[1]), zip(cheapest, ends, strict=True))
+        runs = ((self.doubts.mutants[key[0]], key[1]) for key, _ in due)
         for outcome in replay(over or self.campaign, runs):
             looked.append((outcome.mutant, outcome.round))
             self.found[looked[-1]] = outcome

@@ -12,7 +12,8 @@ class _LateInspect:
     """Stands for ``inspect`` in ``dataclasses``, which seldom needs it before Python 3.12."""
 
     def __getattr__(self, name: str) -> Any:
-        if sys.modules.get("inspect") is self:  # the import system asks
+        found: Any = sys.modules.get("inspect")
+        if found is self:  # the import system asks
             raise AttributeError(name)
         import inspect  # noqa: PLC0415  # this is the point
 
