@@ -86,7 +86,7 @@ def campaign(folder: Path, **changes: Any) -> Any:
 
 @pytest.mark.usefixtures("script")
 def test_a_spent_budget_leaves_the_rest_to_the_next_run(project: Path) -> None:
-    results = campaign(project, budget=0.05)
+    results = campaign(project, budget=0.001)
     assert results.state == "out of time"
     assert results.done < results.planned
     assert results.budget is not None

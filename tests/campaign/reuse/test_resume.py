@@ -515,7 +515,7 @@ def test_a_disk_that_is_full_for_the_workers_is_a_clear_error(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "job")
 
     monkeypatch.setattr(campaign, "run_planned", full)
-    with pytest.raises(JournalError, match=r"job\.json cannot be written: No space left"):
+    with pytest.raises(JournalError, match="job cannot be written: No space left"):
         project.run()
     assert_nothing_is_left(project)
 
