@@ -69,9 +69,7 @@ class BaselineTest:
     @classmethod
     def of(cls, round: int, repetition: int, end: TestEnd) -> BaselineTest:
         """What is kept of the end of a test."""
-        kept = ("operations", "commands", "wall", "cpu", "simulated", "reading")
-        facts = {name: getattr(end, name) for name in kept}
-        return cls(round, repetition, TestEnd(end.test, end.outcome, **facts))
+        return cls(round, repetition, TestEnd(end.test, end.outcome, wall=end.wall, simulated=end.simulated))
 
 
 @frozen
