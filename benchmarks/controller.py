@@ -21,6 +21,7 @@ import argparse
 import cProfile
 import json
 import os
+import pickle
 import pstats
 import shutil
 import sys
@@ -35,7 +36,7 @@ from typing import Any
 from mutabot.campaign.beginning import begin, open_executor, selected
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.evidence import CampaignEvidence, recorded, without_recording
+from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
@@ -43,8 +44,8 @@ from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.cli.request import request_of
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.journal.journal import Journal
+from mutabot.journal.records import BaselineTest
 from mutabot.model import Mutant
-from mutabot.model.codec import to_data
 from mutabot.model.events import (
     Event,
     ForkDied,
@@ -117,7 +118,7 @@ class Player:
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """What the workers of these jobs would say."""
         for task in tasks:
-            self.sent += len(json.dumps(to_data(task.job)))
+            self.sent += len(pickle.dumps(task.job))
             told = self.told[_key(task)]
             result = Result(task, exit_code=told.exit_code, wall=told.wall)
             forking = task.job.forking
@@ -223,8 +224,7 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
         plan = selected(campaign, make_plan(campaign.baseline, request.project))
         for result in results:
             number, repetition = result.task.key
-            for end in result.ends:
-                journal.add_test(number, repetition, without_recording(end))
+            journal.add_tests(BaselineTest.of(number, repetition, end) for end in result.ends)
         if evidence is not None:
             runs = [(*one.task.key, one.ends) for one in results]
             evidence.begin(runs, plan.mutants)
