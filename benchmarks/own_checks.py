@@ -1,0 +1,89 @@
+"""What share of a campaign's processor time controls and second looks take.
+
+Runs a campaign of the project in the current folder, with the options given, and prints the processor time of
+its parts: what begins it (baseline included), its controls, the mutants with them, the second looks, and all.
+Time is that of the controller and all processes below it, which Linux tells to a hundredth of a second.
+
+Use: ``cd PROJECT; python …/benchmarks/own_checks.py [options of mutabot run]``, for example ``--fresh -j 1``.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from mutabot.campaign import run
+from mutabot.campaign.engines import controls, engine
+from mutabot.cli.app import main
+from mutabot.model import Outcome
+
+
+def spent() -> float:
+    """Processor time of this process, of those below it, and of those that they have waited for, s."""
+    processes: dict[int, tuple[int, int]] = {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended
+            fields = stat.read_text().rpartition(")")[2].split()
+            processes[int(stat.parent.name)] = int(fields[1]), sum(map(int, fields[11:15]))
+    own = os.getpid()
+
+    def is_below(process: int) -> bool:
+        while process in processes and process != own:
+            process = processes[process][0]
+        return process == own
+
+    ticks = sum(time for process, (_, time) in processes.items() if is_below(process))
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+def measure(parts: Counter[str]) -> None:
+    """Let the parts of campaigns be counted."""
+
+    def timed(name: str) -> None:
+        part: Callable[..., Any] = getattr(run, name)
+
+        def measured(*given: Any, **named: Any) -> Any:
+            before = spent()
+            try:
+                return part(*given, **named)
+            finally:
+                parts[name] += spent() - before
+
+        setattr(run, name, measured)
+
+    def counted(module: ModuleType) -> None:
+        settled: Callable[..., Iterator[Any]] = module.settled
+
+        def measured(campaign: Any, by: Any, control: Any, outcome: Outcome, **named: Any) -> Iterator[Any]:
+            parts["controls"] += outcome.cpu
+            return settled(campaign, by, control, outcome, **named)
+
+        module.settled = measured  # type: ignore[attr-defined]
+
+    for name in ("begin", "run_planned", "rerun"):
+        timed(name)
+    for module in (controls, engine):
+        counted(module)
+
+
+if __name__ == "__main__":
+    found: Counter[str] = Counter()
+    measure(found)
+    sys.argv[1:1] = ["run"]
+    try:
+        main()
+    finally:
+        whole = spent()
+        share = (found["controls"] + found["rerun"]) / whole
+        print(
+            f"beginning {found['begin']:.2f} s, mutants {found['run_planned']:.2f} s, of these controls "
+            f"{found['controls']:.2f} s; second looks {found['rerun']:.2f} s; all {whole:.2f} s: "
+            f"controls and second looks {share:.1%}",
+            file=sys.stderr,
+        )
