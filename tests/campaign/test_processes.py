@@ -69,6 +69,13 @@ SCRIPTS = {
         arm.move_by(0.5)
         print(arm.x)
     """,
+    "spawned.py": """
+        from robot import Arm
+
+        arm = Arm()
+        arm.move_by(0.5)
+        print(arm.x)
+    """,
     "stays.py": """
         import time
 
@@ -105,6 +112,9 @@ STARTS = """
 
     def test_bare():
         check(start("bare.py", env={"PATH": os.environ["PATH"], "PYTHONPATH": "elsewhere"}))
+
+    def test_spawned():  # without files to close, `subprocess` may start it in another way
+        check(start("spawned.py", env={"PATH": os.environ["PATH"]}, close_fds=False))
 
     def test_stays():
         stays = subprocess.Popen([sys.executable, "stays.py"], stdout=subprocess.PIPE, text=True)
@@ -156,6 +166,7 @@ def test_a_process_that_never_ends_times_out(ends: dict[str, Outcome]) -> None:
 
 def test_an_environment_of_its_own_does_not_hide_a_process(ends: dict[str, Outcome]) -> None:
     assert ends["bare.py"].verdict is Verdict.KILLED
+    assert ends["spawned.py"].verdict is Verdict.KILLED
 
 
 @pytest.mark.whole
@@ -231,6 +242,7 @@ def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path)
 
 def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
     tests = """
+        import os
         import subprocess
         import sys
 
@@ -241,6 +253,18 @@ def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
 
         def test_apart():
             subprocess.run([sys.executable, "-I", "-c", "pass"], check=True)
+
+        def test_spawned():
+            for environment in ({}, os.environ):
+                arguments = [sys.executable, "-c", "'spawned'"]
+                _, status = os.waitpid(os.posix_spawn(sys.executable, arguments, environment), 0)
+                assert status == 0
+
+        def test_executed():
+            child = os.fork()
+            if not child:
+                os.execve(sys.executable, [sys.executable, "-c", "'executed'"], {})
+            assert os.waitpid(child, 0) == (child, 0)
     """
     mission = """
         from robot import Arm
@@ -253,8 +277,11 @@ def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
     progress = Quiet()
     run_campaign(request_for(write_project(tmp_path, mission, tests)), progress)
     notes = [line for line in progress.lines if "nothing in this process is seen or mutated" in line]
-    assert len(notes) == 1
-    assert "-I" in notes[0]
+    assert len(notes) == 3
+    assert "the option -I keeps it apart" in notes[0]
+    for name, note in zip(("spawned", "executed"), notes[1:], strict=True):
+        assert name in note
+        assert "its environment lacks PYTHONPATH and MUTABOT_PROCESSES" in note
 
 
 @pytest.mark.needs("source")

@@ -82,6 +82,7 @@ def _patch(event: str, arguments: tuple[Any, ...]) -> None:
     start = module._fork_exec
     if hasattr(start, "is_of_mutabot"):
         return
+    module._USE_POSIX_SPAWN = False  # it goes another way with ``close_fds=False``; this one does the same
 
     def fork_exec(*arguments: Any) -> Any:
         environment = arguments[_ENVIRONMENT]
@@ -255,11 +256,27 @@ class ProcessWatch:
             self.signalled.add(arguments[0])
         elif event == "os.killpg":
             self.signalled.add(-arguments[0])
-        elif starts_a_killer(event, arguments):
-            self.signalled.add(ANYBODY)
-        elif event == "subprocess.Popen":
-            words = _words(*arguments[:2])
-            if words and os.path.basename(words[0]).startswith("python"):
-                options = takewhile(lambda word: word.startswith("-"), words[1:])
-                for apart in [option for option in options if option in _APART][:1]:
-                    self._tell_unseen(" ".join(words[:3]), f"the option {apart} keeps it apart")
+        else:
+            if starts_a_killer(event, arguments):
+                self.signalled.add(ANYBODY)
+            if event != "os.system" and (why := _why_unseen(event, arguments)):
+                self._tell_unseen(" ".join(_words(*arguments[:2])[:3]), why)
+
+
+def _why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
+    """Why a Python that is being started will not find its way to the campaign; None if nothing says so."""
+    words = _words(*arguments[:2])
+    if not words or not os.path.basename(words[0]).startswith("python"):
+        return None
+    options = takewhile(lambda word: word.startswith("-"), words[1:])
+    apart = next((option for option in options if option in _APART), None)
+    if apart is not None:
+        return f"the option {apart} keeps it apart"
+    environment = None if event == "subprocess.Popen" else arguments[2]
+    if environment is None:
+        return None
+    given = {os.fsencode(name): os.fsencode(value) for name, value in environment.items()}
+    path = os.fsdecode(given.get(b"PYTHONPATH", b"")).split(os.pathsep)
+    if os.fsencode(VARIABLE) in given and STARTUP in path:
+        return None
+    return f"its environment lacks PYTHONPATH and {VARIABLE}: hand them on, they are in os.environ"
