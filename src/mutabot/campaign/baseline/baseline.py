@@ -420,10 +420,15 @@ def cost(end: TestEnd) -> tuple[float, int]:
 
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     """What is compared of a test."""
+    # a campaign holds many traces: the calls of a site share what tells it
+    known = {}
+    for index in {call[0] for call in end.trace}:
+        place = places[index]
+        known[index] = place.key, (place.operation, place.pattern)
     events = []
     for index, written, read, _ in end.trace:
-        place = places[index]
-        events.append(TraceCall(place.key, written, read, (place.operation, place.pattern)))
+        key, what = known[index]
+        events.append(TraceCall(key, written, read, what))
     prepared, called = end.returned[: end.prepared], end.returned[end.prepared :]
     return Observation(
         events, end.probes, end.truncated, end.unread, end.outcome, prepared, called, end.moments

@@ -17,6 +17,8 @@ one that passes, that cannot be told apart, so its kills are repeated.
 from __future__ import annotations
 
 import math
+import pickle
+import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
@@ -36,6 +38,7 @@ from mutabot.model.job import Forking
 from .controls import Control, controls_of, run_controls, settled
 
 if TYPE_CHECKING:
+    from mutabot.campaign.comparison import Observation
     from mutabot.campaign.reuse.keys import OutcomeWriter
     from mutabot.model.mutant import Place
 
@@ -49,6 +52,8 @@ _LEAST, _PARTS = 10, 16
 _WORTH, _FEWEST = 4, 2
 #: seconds that a fork takes at least
 _FORK = 0.01
+#: the level at which zlib costs least
+_QUICKLY = 1
 
 
 def run_trials(
@@ -317,14 +322,29 @@ class _ForkedRun(Run):
     """What is known of one mutant so far.
 
     Attributes:
-        own: its tests that have ended.
+        own: its tests that have ended, but for those in ``held``.
+        held: how its own tests ended and what is compared of them, packed: all that were forked in a test
+            wait for their parent to end it.
         forked: number of the test in which it was forked, as far as it has told; -1: before any.
         is_decided: whether one of them has decided about the mutant.
     """
 
     own: dict[str, events.TestEnd] = field(default_factory=dict)
+    held: dict[str, bytes] = field(default_factory=dict)
     forked: int | None = None
     is_decided: bool = False
+
+    def hold(self, end: events.TestEnd, seen: Observation | None) -> None:
+        """One of its tests has ended. ``seen``: what is compared of it, if anything is."""
+        self.held[end.test] = zlib.compress(pickle.dumps((end, seen)), _QUICKLY)
+
+    def unpack(self) -> None:
+        """Put what was held where the end of a run is looked for."""
+        for test, data in self.held.items():
+            self.own[test], seen = pickle.loads(zlib.decompress(data))  # it was packed here
+            if seen is not None:
+                self.observations[test] = seen
+        self.held.clear()
 
 
 class _ForkParent:
@@ -467,12 +487,11 @@ class _ForkParent:
         fork, test = self._open[event.mutant], event.end.test
         if fork.forked is None:
             fork.forked = -1 if event.is_early else self._numbers[test]
-        fork.own[test] = event.end
         fork.is_decided |= event.end.is_decided
         if event.shared is not None:
             fork.shared = (fork.shared or 0.0) + event.shared
-        if event.end.outcome != "failed":
-            fork.observations[test] = observation(event.end, self._sources.places(event.sites))
+        places = self._sources.places(event.sites)
+        fork.hold(event.end, observation(event.end, places) if event.end.outcome != "failed" else None)
         yield from self._settle(event.mutant)
 
     def _test_ended(self, end: events.TestEnd) -> Iterator[Outcome]:
@@ -513,6 +532,7 @@ class _ForkParent:
 
     def _judged(self, run: _ForkedRun, shared: int) -> Outcome:
         """The outcome of a mutant that has so many tests from its parent."""
+        run.unpack()
         ends = {end.test: end for end in self._own_ends[:shared]} | run.own
         run.ends = [ends[test] for test in self._tests if test in ends]
         run.wall = sum(end.wall for end in run.ends)

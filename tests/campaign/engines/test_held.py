@@ -1,0 +1,41 @@
+"""What the controller holds of forks that wait for their parent: hundreds of mutants, each with all tests."""
+
+from __future__ import annotations
+
+import pickle
+
+from mutabot.campaign.baseline.baseline import observation
+from mutabot.campaign.engines.engine import _ForkedRun
+from mutabot.model.events import TestEnd
+from mutabot.model.mutant import Mutant, Place, Role, Site, Span
+
+SITE = Site(Span("mission.py", 1, 0, 1, 9, "go"), "arm.move", 1, Role.PROGRAM)
+MOVE = Mutant(1, "robot", "skip", SITE, "robot:Arm.move", None, None, "", "")
+
+
+def ended() -> TestEnd:
+    trace = tuple((0, [0.1 * number], [number], None) for number in range(1000))
+    return TestEnd("tests/test_mission.py::test_mission", "passed", trace=trace)
+
+
+def test_what_waits_takes_less_than_a_third_of_itself() -> None:
+    end = ended()
+    seen = observation(end, {0: Place.of(MOVE)})
+    run = _ForkedRun(MOVE, 0, (end.test,))
+    run.hold(end, seen)
+    assert sum(map(len, run.held.values())) < len(pickle.dumps((end, seen))) / 3
+    run.unpack()
+    assert (run.own, run.observations, run.held) == ({end.test: end}, {end.test: seen}, {})
+
+
+def test_a_failed_test_has_nothing_to_compare() -> None:
+    end = TestEnd("tests/test_mission.py::test_mission", "failed")
+    run = _ForkedRun(MOVE, 0, (end.test,))
+    run.hold(end, None)
+    run.unpack()
+    assert (run.own, run.observations) == ({end.test: end}, {})
+
+
+def test_the_calls_of_a_site_share_what_tells_it() -> None:
+    events = observation(ended(), {0: Place.of(MOVE)}).events
+    assert len({id(call.key) for call in events}) == 1
