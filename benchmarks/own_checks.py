@@ -2,7 +2,8 @@
 
 Runs a campaign of the project in the current folder, with the options given, and prints the processor time of
 its parts: what begins it (baseline included), its controls, the mutants with them, the second looks, and all.
-Time is that of the controller and all processes below it, which Linux tells to a hundredth of a second.
+Time is that of the controller and all processes below it, which Linux tells to a hundredth of a second. Of
+controls it is that of their tests, without the start of their processes.
 
 Use: ``cd PROJECT; python …/benchmarks/own_checks.py [options of mutabot run]``, for example ``--fresh -j 1``.
 """
@@ -11,11 +12,10 @@ from __future__ import annotations
 
 import os
 import sys
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from mutabot.campaign import run
@@ -42,7 +42,7 @@ def spent() -> float:
     return ticks / os.sysconf("SC_CLK_TCK")
 
 
-def measure(parts: Counter[str]) -> None:
+def measure(parts: dict[str, float]) -> None:
     """Let the parts of campaigns be counted."""
 
     def timed(name: str) -> None:
@@ -57,14 +57,14 @@ def measure(parts: Counter[str]) -> None:
 
         setattr(run, name, measured)
 
-    def counted(module: ModuleType) -> None:
+    def counted(module: Any) -> None:
         settled: Callable[..., Iterator[Any]] = module.settled
 
         def measured(campaign: Any, by: Any, control: Any, outcome: Outcome, **named: Any) -> Iterator[Any]:
             parts["controls"] += outcome.cpu
             return settled(campaign, by, control, outcome, **named)
 
-        module.settled = measured  # type: ignore[attr-defined]
+        module.settled = measured
 
     for name in ("begin", "run_planned", "rerun"):
         timed(name)
@@ -73,7 +73,7 @@ def measure(parts: Counter[str]) -> None:
 
 
 if __name__ == "__main__":
-    found: Counter[str] = Counter()
+    found: dict[str, float] = defaultdict(float)
     measure(found)
     sys.argv[1:1] = ["run"]
     try:
