@@ -17,8 +17,9 @@ from mutabot_cell.motion.feedforward import FeedForward
 from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.motion.line import Line
 from mutabot_cell.motion.online import JointSteps, OnlineMotion
+from mutabot_cell.motion.planning import Planner
 from mutabot_cell.motion.tracking import TrackedBelt, Tracking
-from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
+from mutabot_cell.motion.trajectory import Motion
 
 from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
 from .force_sensor import ForceSensor
@@ -56,6 +57,7 @@ class Arm:
         self._robot = robot
         self._model = robot.model
         self.kinematics = Kinematics(self._model)
+        self._planner = Planner(self._model, self.kinematics)
         self._setpoint: Array = np.array(self._model.home)
         self.guard = Guard(simulation, robot)
         self._stream: Array | None = None
@@ -145,7 +147,7 @@ class Arm:
                     excess=excess,
                     unit="deg",
                 )
-        return self._start(joint_motion(self._setpoint, target, PHYSICS_STEP, self._model.limits, speed))
+        return self._start(self._planner.between(self._setpoint, target, speed))
 
     def move_to(self, pose: Pose, *, speed: float = 1.0) -> None:
         """Move the tool in a straight line to `pose`, turning evenly on the way.
@@ -172,9 +174,7 @@ class Arm:
         if line.length < 1e-7 and line.angle < 1e-7:
             return Move(self)
         if tracking is None:
-            knots = self.kinematics.follow(self._setpoint, line)
-            lengths, limits = (line.length, line.angle), (self._model.limits, self._model.tool_limits)
-            return self._start(line_motion(knots, *lengths, PHYSICS_STEP, *limits, speed))
+            return self._start(self._planner.along(self._setpoint, line, speed))
         tracking.move(line, speed, lambda line: self.kinematics.follow(self._setpoint, line))
         self._move = Move(self)
         return self._move

@@ -48,8 +48,7 @@ class Guard:
         # views of the physics' own memory
         self._constraints: Array = simulation.data.qfrc_constraint[robot.dofs]
         self._motors = simulation.data.qfrc_actuator[robot.dofs]
-        # of each tick of a stretch: what pushed the joints, what their motors gave
-        self.planned, self._pushes, self._loads = np.zeros((3, LONGEST, count))
+        self.planned, self._pushes = np.zeros((2, LONGEST, count))
         self._heats: list[tuple[int, Array]] = []
 
     def state(self) -> tuple[int, bytes]:
@@ -115,15 +114,18 @@ class Guard:
             following_error=float(error[joint]),
         )
 
-    def note(self, number: int) -> None:
+    def note(self, stretch: Stretch, number: int) -> None:
         """After a tick of a stretch (its number): remember what the stretch does not."""
-        self._pushes[number] = self._external()
-        self._loads[number] = self._motors
+        if self._looks_closer():
+            stretch.reach(number)
+            self._pushes[number] = self._external()
 
     def quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
         """See `foresight.Glance`."""
-        pushes = (self._pushes[known:ticks] / self._torque_limit).ravel()
-        errors = (self.planned[known:ticks] - stretch.places[known:ticks, self._robot.joints]).ravel()
+        dofs, now = self._robot.dofs, slice(known, ticks)
+        external = self._pushes[now] if self._looks_closer() else stretch.constraints[now, dofs]
+        pushes = (external / self._torque_limit).ravel()
+        errors = (self.planned[now] - stretch.places[now, self._robot.joints]).ravel()
         # mostly even the lengths of all together are below the limits of their parts; not so if one is NaN
         if not (pushes.dot(pushes) < 1.0 and errors.dot(errors) < self._following_limit**2):
             fine = (np.abs(pushes) < _SURELY) & (np.abs(errors) < _SURELY * self._following_limit)
@@ -134,7 +136,7 @@ class Guard:
         for number in range(known, ticks):
             if (self._simulation.ticks + 1 + number) % _WARMING_TICKS:
                 continue
-            heat = self._warmer(heat, self._loads[number])
+            heat = self._warmer(heat, stretch.motors[number, dofs])
             if not self._is_cool(heat):
                 return number
             self._heats.append((number, heat))
@@ -164,6 +166,10 @@ class Guard:
         if self.payload:
             torque = torque - self._payload_torque()
         return torque
+
+    def _looks_closer(self) -> bool:
+        """Whether something else than contacts and limits of the joints is among the constraints' torques."""
+        return bool(self.explained or self.payload or self._simulation.data.nf)
 
     def _friction(self) -> Array:
         """Torque on each joint from dry friction in it, which MuJoCo counts among the constraints, Nm."""

@@ -19,6 +19,7 @@ from .foresight import Foresight
 from .geometry import Array
 from .robot import Robot
 from .scene import Scene
+from .stepping import Stepping
 from .stretch import Stretch
 
 STEPS_PER_TICK = 5
@@ -63,12 +64,13 @@ class Simulation:
         self.after_tick: list[Callable[[], None]] = []
         self.travels: dict[str, Callable[[], float]] = {}
         self.foresight = Foresight()
-        self._stretch = Stretch(self.model, self.data, STEPS_PER_TICK)
+        self._stepping = Stepping(self.model, self.data)
+        self._stretch = Stretch(self.model, self.data, self._stepping, STEPS_PER_TICK)
         self._ticks = self._quiet = 0
         self._frames: deque[tuple[int, Array]] = deque([(0, self.data.qpos.copy())], maxlen=_KEPT_FRAMES)
         self._ids: dict[tuple[str, str], int] = {}
         # views of the physics' own memory
-        self._speeds, self._places, self._servos = self.data.qvel, self.data.qpos, self.data.ctrl
+        self._speeds, self._places = self.data.qvel, self.data.qpos
 
     @property
     def time(self) -> float:
@@ -119,10 +121,7 @@ class Simulation:
         return self.time
 
     def _step(self) -> None:
-        data, cell_model, step, servos = self.data, self.model, mujoco.mj_step, self._servos
-        for row in self.setpoints:
-            servos[:] = row
-            step(cell_model, data)
+        self._stepping.tick(self.setpoints)
         self._ticks += 1
         if self._ticks % FRAME_TICKS == 0:
             self._frames.append((self._ticks, self._places.copy()))
@@ -156,6 +155,7 @@ class Simulation:
         ticks = number + 1
         if self._quiet_until(ticks) < ticks:
             return
+        self._stretch.reach(number)
         self._ticks += ticks
         try:
             hook()
@@ -171,11 +171,11 @@ class Simulation:
 
     def _sane(self, known: int, ticks: int) -> int:
         """After how many of the first so many ticks of the stretch nothing was wrong in the physics."""
-        states = self._stretch.states[known:ticks].ravel()
-        # one number tells of all, in doubt each tick is looked at; it is not below the limit if one is NaN
-        if states.dot(states) < _ABSURD_SPEED**2:
+        places, speeds = self._stretch.places[known:ticks], self._stretch.speeds[known:ticks]
+        # two numbers tell of all, in doubt each tick is looked at
+        if _are_sane(places.ravel(), speeds.ravel()):
             return ticks
-        moments = zip(self._stretch.places[known:ticks], self._stretch.speeds[known:ticks], strict=True)
+        moments = zip(places, speeds, strict=True)
         return next((tick for tick, moment in enumerate(moments, known) if not _are_sane(*moment)), ticks)
 
     def _check_speeds(self) -> None:

@@ -1,21 +1,22 @@
-"""Several control ticks stepped in a row by MuJoCo, with what the ticks looked like at their ends."""
+"""Several control ticks stepped in a row, with what the ticks looked like at their ends."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import mujoco
 import numpy as np
-from mujoco.rollout import Rollout
 
 from .geometry import Array
+from .stepping import MOVING, Stepping
 
 LONGEST = 50
 """Control ticks in a stretch at most."""
 
-_STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
-_USER = int(mujoco.mjtState.mjSTATE_USER)
-"""What a step takes from outside: inputs of the servos first, then forces and the like."""
+
+Note = Callable[["Stretch", int], None]
+"""Called after a tick of a stretch, with its number."""
 
 
 class Stretch:
@@ -24,69 +25,62 @@ class Stretch:
     Attributes:
         inputs: of all servos, shape (LONGEST, physics steps in a tick, servos).
         places, speeds, readings: `qpos`, `qvel`, `sensordata` at the end of each tick, shapes (LONGEST, n).
-        states: all that moves, at each physics step, shape (LONGEST, values of all steps in a tick).
+        constraints, motors: `qfrc_constraint`, `qfrc_actuator` likewise.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, steps: int) -> None:
-        self._model, self._data, self._steps = model, data, steps
-        self._before = mujoco.MjData(model)
-        self._rollout = Rollout(nthread=0).rollout
-        self._user: Array = np.zeros(mujoco.mj_stateSize(model, _USER))
-        given: Array = np.zeros((LONGEST, steps, len(self._user)))
-        self._start: Array = np.zeros((1, mujoco.mj_stateSize(model, _STATE)))
-        states: Array = np.zeros((LONGEST, steps, self._start.size))
-        readings: Array = np.zeros((LONGEST, steps, model.nsensordata))
-        self.inputs = given[:, :, : model.nu]
-        self._rest = given[:, :, model.nu :]
-        self.states = states.reshape(LONGEST, -1)
-        self._times = states[:, -1, 0]
-        self.places = states[:, -1, 1 : 1 + model.nq]
-        self.speeds = states[:, -1, 1 + model.nq : 1 + model.nq + model.nv]
-        self.readings = readings[:, -1]
-        # of each tick: the state it starts from, and the arrays that the rollout reads and fills
-        self._ticks = [
-            (states[number - 1, -1:] if number else self._start, given[number, None], states[number, None],
-             readings[number, None])
-            for number in range(LONGEST)
-        ]  # fmt: skip
-        self._lists = [model], [data]
-        self._warmstart = data.qacc_warmstart[None]
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, stepping: Stepping, steps: int) -> None:
+        self._model, self._data, self._stepping = model, data, stepping
+        self._length = steps * model.opt.timestep
+        self._start = mujoco.MjData(model)
+        self.inputs: Array = np.zeros((LONGEST, steps, model.nu))
+        ends = (data.qpos, data.qvel, data.qfrc_constraint, data.qfrc_actuator, data.sensordata)
+        first = mujoco.mj_stateSize(model, MOVING)
+        borders = np.cumsum([first, *map(len, ends)]).tolist()
+        self._ticks: Array = np.zeros((LONGEST, borders[-1]))
+        self._before = self._ticks[:, :first]
+        columns = [self._ticks[:, begin:end] for begin, end in pairwise(borders)]
+        self._ends = list(zip(columns, ends, strict=True))
+        self.places, self.speeds, self.constraints, self.motors, self.readings = columns
+        self._reached = 0
 
-    def run(self, ticks: int, notes: Sequence[Callable[[int], None]]) -> bool:
+    def run(self, ticks: int, notes: Sequence[Note]) -> bool:
         """Step so many ticks from the present state; each of `notes` is called after each tick.
 
         Returns:
-            Whether all went well: a rollout gives up a tick in which MuJoCo warns.
+            Whether all went well: MuJoCo begins anew where its numbers are beyond hope.
         """
-        model, data = self._model, self._data
-        mujoco.mj_copyData(self._before, model, data)
-        mujoco.mj_getState(model, data, self._start[0], _STATE)
-        mujoco.mj_getState(model, data, self._user, _USER)
-        self._rest[:ticks] = self._user[model.nu :]
-        self._step(ticks, notes)
-        step, wanted = model.opt.timestep, ticks * self._steps
-        return bool(self._times[ticks - 1] - self._start[0, 0] > (wanted - 0.5) * step)
+        data, inputs = self._data, self.inputs[:ticks]
+        start = data.time
+        mujoco.mj_copyData(self._start, self._model, data)
+        known = self._stepping.recall(inputs)
+        if known is not None:
+            self._ticks[:ticks] = known.reshape(ticks, -1)
+            self._reached = -1
+        for number in range(ticks):
+            if known is None:
+                self._step(number)
+            for note in notes:
+                note(self, number)
+        self.reach(ticks - 1)
+        is_well = bool(data.time - start > (ticks - 0.5) * self._length)
+        if is_well and known is None:
+            self._stepping.keep(self._ticks[:ticks])
+        return is_well
+
+    def reach(self, number: int) -> None:
+        """While a stretch runs: bring the physics to the end of a tick that was remembered."""
+        if number != self._reached:
+            self._stepping.end(self._before[number], self.inputs[number])
+            self._reached = number
 
     def go_back(self, ticks: int) -> None:
         """Return to the state that the last run had after so many of its ticks."""
-        mujoco.mj_copyData(self._data, self._model, self._before)
-        self._step(ticks, ())
-
-    def _step(self, ticks: int, notes: Sequence[Callable[[int], None]]) -> None:
-        (models, datas), roll, warm, steps = self._lists, self._rollout, self._warmstart, self._steps
+        mujoco.mj_copyData(self._data, self._model, self._start)
         for number in range(ticks):
-            start, given, states, readings = self._ticks[number]
-            roll(
-                models,
-                datas,
-                start,
-                given,
-                control_spec=_USER,
-                skip_checks=True,
-                nstep=steps,
-                initial_warmstart=warm,
-                state=states,
-                sensordata=readings,
-            )
-            for note in notes:
-                note(number)
+            self._step(number)
+
+    def _step(self, number: int) -> None:
+        self._stepping.step(self.inputs[number], self._before[number])
+        for column, now in self._ends:
+            column[number] = now
+        self._reached = number

@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.errors import MotionRefused
+from mutabot_cell.fingerprint import Fingerprint
 from mutabot_cell.geometry import Array
 from mutabot_cell.models.assembly import TOOL_SITE, build_arm
 from mutabot_cell.models.robot import RobotModel
@@ -44,15 +45,24 @@ _ORIENTATION_COST = 0.3
 
 
 class Kinematics:
-    """The arm without the cell around it. The base frame is the world frame here."""
+    """The arm without the cell around it. The base frame is the world frame here.
+
+    Attributes:
+        count: of the arm's joints.
+    """
 
     def __init__(self, robot: RobotModel) -> None:
         self._model = build_arm(robot)
         self._data = mujoco.MjData(self._model)
+        self.count: int = self._model.nv
         self._site = self._model.site(TOOL_SITE).id
         self._reach = WristReach(robot)
         self._solver: _Solver | None = None
         self._turns = np.zeros((6, self._model.nv))  # the tool's speed by joint speeds
+
+    def fingerprint(self) -> bytes:
+        """Tells arms apart, to the bit."""
+        return Fingerprint(self._model).now()
 
     def tool(self, joints: Array) -> tuple[Array, Array]:
         """Tool position (shape (3,), m) and rotation (shape (3, 3)) in the base frame.

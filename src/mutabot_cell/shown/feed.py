@@ -12,7 +12,7 @@ from mutabot_cell.foresight import Glance
 from mutabot_cell.robot import Robot
 from mutabot_cell.scene import Scene
 from mutabot_cell.simulation import TICK, Simulation
-from mutabot_cell.stretch import LONGEST
+from mutabot_cell.stretch import LONGEST, Stretch
 
 from .camera import TracingCamera, View
 from .contacts import Contacts
@@ -65,7 +65,7 @@ class _Teller:
         self._due = self._feed.due - _EARLY
         return 1 if self._due < self._simulation.time else LONGEST
 
-    def _note(self, number: int) -> None:
+    def _note(self, _: Stretch, number: int) -> None:
         if (self._simulation.ticks + number + 1) * TICK < self._due:
             return
         self._simulation.call_within_stretch(self._feed.tick, number)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from mutabot.evidence import tape
+from mutabot.evidence.recording import Recording
 from mutabot_cell import (
     BadModel,
     Box,
@@ -34,6 +35,8 @@ from mutabot_cell.gripper import Gripper
 from mutabot_cell.simulation import Simulation
 from mutabot_cell.suction import Suction
 from mutabot_cell.system import RobotSystem
+
+from .memory import remembering
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 DOWN = (0.0, 26.0, 180.0, -78.0, 0.0, -76.0, 90.0)
@@ -104,16 +107,20 @@ def told(story: Story, make: Callable[[], Cell], *, singly: bool) -> Witness:
 
 
 def check_same(story: Story, make: Callable[[], Cell] = Cell) -> Witness:
-    """Tell the story both ways; gives the one in stretches."""
+    """Tell the story tick by tick, in stretches, and each from memory; gives the one in stretches."""
     single, stretched = told(story, make, singly=True), told(story, make, singly=False)
     assert single.longest == 1
     assert stretched.longest > 1
-    assert max(stretched.moments) == max(single.moments)
-    differing = [number for number, found in stretched.moments.items() if found != single.moments[number]]
-    assert differing == []
-    assert (type(stretched.error), str(stretched.error)) == (type(single.error), str(single.error))
-    if single.error is not None:
-        assert vars(stretched.error) == vars(single.error)
+    with remembering():
+        remembered = [told(story, make, singly=singly) for singly in (True, True, False, False)]
+    for found in (stretched, *remembered):
+        assert max(found.moments) == max(single.moments)
+        differing = [number for number, moment in found.moments.items() if moment != single.moments[number]]
+        assert differing == []
+        assert (type(found.error), str(found.error)) == (type(single.error), str(single.error))
+        if single.error is not None:
+            assert vars(found.error) == vars(single.error)
+    assert remembered[-1].moments.keys() == stretched.moments.keys()
     return stretched
 
 
@@ -378,20 +385,27 @@ def test_physics_that_diverge_are_found_at_the_same_tick(torque: float) -> None:
 
     single, stretched = (told(story, Cell, singly=singly) for singly in (True, False))
     assert isinstance(single.error, SimulationDiverged)
-    assert str(stretched.error) == str(single.error)
-    assert max(stretched.moments) == max(single.moments)
+    with remembering():
+        remembered = [told(story, Cell, singly=singly) for singly in (True, True, False, False)]
+    for found in (stretched, *remembered):
+        assert str(found.error) == str(single.error)
+        assert max(found.moments) == max(single.moments)
 
 
 def test_a_recording_of_a_test_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    recordings = []
-    for singly in (True, False):
+
+    def recorded(*, singly: bool) -> Recording:
         running = tape.Tape()
-        monkeypatch.setattr(tape, "running", lambda running=running: running)
+        monkeypatch.setattr(tape, "running", lambda: running)
         told(paper, lambda: Cell(1), singly=singly)
         running.finish()
-        recordings.append(running.recording)
-    assert len(recordings[0].times) > 200
-    assert recordings[0] == recordings[1]
+        return running.recording
+
+    single = recorded(singly=True)
+    assert len(single.times) > 200
+    assert recorded(singly=False) == single
+    with remembering():
+        assert [recorded(singly=singly) for singly in (True, True, False, False)] == [single] * 4
 
 
 def test_a_collision_of_one_of_two_robots_in_a_recorded_test_is_the_same(

@@ -16,6 +16,7 @@ import socket
 import sys
 from dataclasses import dataclass, field
 
+from mutabot import shared_memory
 from mutabot.frozen import compile_all
 from mutabot.model.events import ForkEnded, Serving
 from mutabot.runtime.event_file import EventFile
@@ -62,6 +63,7 @@ class ForkServer:
         self.pipe.send(Serving(reason))
         if reason is not None:
             return None
+        shared_memory.share()
         compile_all()
         gc.collect()
         gc.freeze()  # what is never looked at stays shared with all copies

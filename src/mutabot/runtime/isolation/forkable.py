@@ -93,7 +93,10 @@ def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> s
         own_children: processes that this one forked for mutants.
         known: what was open before the user's code ran, as ``open_now`` gives it.
     """
-    return _threads() or subprocesses(own_children) or _open_since(known) or _graphics()
+    if (busy := _threads() or subprocesses(own_children)) is not None:
+        return busy
+    maps = _maps()  # which takes a while
+    return _open_since(known, maps) or _graphics(maps)
 
 
 def _threads() -> str | None:
@@ -144,10 +147,11 @@ def subprocesses(own: Iterable[int]) -> str | None:
     return f"{len(others)} subprocess{'es' if len(others) > 1 else ''} in flight" if others else None
 
 
-def _open_since(known: frozenset[tuple[int, str]]) -> str | None:
+def _open_since(known: frozenset[tuple[int, str]], maps: list[str]) -> str | None:
     ends = (end for loop in open_loops() for end in (loop._ssock, loop._csock, loop._selector))
     loops = {end.fileno() for end in ends if end is not None}
-    found = [name for descriptor, name in open_now() - known if descriptor not in loops]
+    now = {*_open(), *_shared_memory(maps)}
+    found = [name for descriptor, name in now - known if descriptor not in loops]
     sockets = sum(name.startswith("socket:") for name in found)
     if sockets:
         return f"{sockets} open socket{'s' if sockets > 1 else ''}"
@@ -156,7 +160,7 @@ def _open_since(known: frozenset[tuple[int, str]]) -> str | None:
 
 def open_now() -> frozenset[tuple[int, str]]:
     """What of this process a fork would share, bar files and folders, which can be opened again."""
-    return frozenset([*_open(), *_shared_memory()])
+    return frozenset([*_open(), *_shared_memory(_maps())])
 
 
 def _open() -> Iterator[tuple[int, str]]:
@@ -174,17 +178,16 @@ def descriptors() -> Iterator[tuple[int, os.stat_result]]:
             yield int(name), os.fstat(int(name))
 
 
-def _shared_memory() -> Iterator[tuple[int, str]]:
+def _shared_memory(maps: list[str]) -> Iterator[tuple[int, str]]:
     """Memory to which a fork and its parent would both write: where it is, in the place of a descriptor."""
-    for line in _maps():
+    for line in maps:
         place, rights = line.split(maxsplit=2)[:2]
         if rights[1] == "w" and rights[3] == "s":
             where = -int(place.partition("-")[0], 16)
             yield where, f"memory shared with others {line[73:].strip()}".rstrip()
 
 
-def _graphics() -> str | None:
-    maps = _maps()
+def _graphics(maps: list[str]) -> str | None:
     found = next((name for name in _GRAPHICS if any(name in line for line in maps)), None)
     return f"a graphics library is loaded ({found.rstrip('.')})" if found is not None else None
 

@@ -1,0 +1,89 @@
+"""The physics, stepped by control ticks, or taken from memory where the same ticks were stepped before.
+
+What a tick leads to depends on the model, on the state of the physics and on the inputs of the servos, and on
+nothing else.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+import mujoco
+import numpy as np
+
+from mutabot import shared_memory
+
+from .fingerprint import Fingerprint
+from .geometry import Array
+
+MOVING = int(mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART)
+"""What of a state changes within a tick."""
+
+_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION) & ~int(mujoco.mjtState.mjSTATE_CTRL)
+_SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+_CALLBACKS = (
+    mujoco.get_mjcb_passive, mujoco.get_mjcb_control, mujoco.get_mjcb_contactfilter, mujoco.get_mjcb_sensor,
+    mujoco.get_mjcb_act_dyn, mujoco.get_mjcb_act_gain, mujoco.get_mjcb_act_bias,
+)  # fmt: skip
+
+
+class Stepping:
+    """Steps one cell's physics; the processes of a campaign remember together.
+
+    What is remembered of a tick is the state before its last step. That step is carried out anew, since
+    contacts, forces and the like are no part of a state.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self._model, self._data, self._servos = model, data, data.ctrl
+        # which islands sleep is no part of a state either
+        self._memory = None if model.opt.enableflags & _SLEEP else shared_memory.shared()
+        self._key: bytes | None = None
+        self._start: Array = np.zeros(mujoco.mj_stateSize(model, _STATE))
+        self._before: Array = np.zeros(mujoco.mj_stateSize(model, MOVING))
+        self._fingerprint = Fingerprint(model)
+
+    def tick(self, inputs: Array) -> None:
+        """Step one tick.
+
+        Args:
+            inputs: of all servos, shape (physics steps in a tick, servos).
+        """
+        before = self.recall(inputs)
+        if before is not None:
+            self.end(before, inputs)
+            return
+        self.step(inputs, self._before)
+        self.keep(self._before)
+
+    def recall(self, inputs: Array) -> Array | None:
+        """What was kept when the physics was as it is now and had these inputs; None if nothing was."""
+        self._key = None
+        if self._memory is None or any(callback() for callback in _CALLBACKS):
+            return None
+        mujoco.mj_getState(self._model, self._data, self._start, _STATE)
+        everything = b"".join((self._fingerprint.now(), self._start.tobytes(), inputs.tobytes()))
+        self._key = hashlib.sha256(everything).digest()[: shared_memory.KEY]
+        kept = self._memory.get(self._key)
+        return None if kept is None else np.frombuffer(kept)
+
+    def keep(self, values: Array) -> None:
+        """Keep values that follow from all that was given when `recall` was last asked."""
+        if self._memory is not None and self._key is not None:
+            self._memory.put(self._key, values.tobytes())
+
+    def step(self, inputs: Array, before: Array) -> None:
+        """Step one tick anew; `before` becomes the state before its last step."""
+        model, data, step, servos = self._model, self._data, mujoco.mj_step, self._servos
+        for row in inputs[:-1]:
+            servos[:] = row
+            step(model, data)
+        mujoco.mj_getState(model, data, before, MOVING)
+        servos[:] = inputs[-1]
+        step(model, data)
+
+    def end(self, before: Array, inputs: Array) -> None:
+        """Carry out the last step of a tick, from the state before it."""
+        mujoco.mj_setState(self._model, self._data, before, MOVING)
+        self._servos[:] = inputs[-1]
+        mujoco.mj_step(self._model, self._data)

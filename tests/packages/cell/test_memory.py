@@ -1,0 +1,150 @@
+"""What was computed once in a campaign is taken from memory, and nothing else is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import mujoco
+import numpy as np
+import pytest
+
+from mutabot_cell import Box, Cell, Scene
+from mutabot_cell.motion.kinematics import Kinematics
+
+from .memory import remembering
+
+STEPS = 5
+"""Physics steps in a control tick."""
+
+
+@pytest.fixture(autouse=True)
+def _remember() -> Iterator[None]:
+    with remembering():
+        yield
+
+
+@pytest.fixture
+def steps(monkeypatch: pytest.MonkeyPatch) -> Callable[[], int]:
+    """How many physics steps were carried out since it was last asked."""
+    original, counted = mujoco.mj_step, [0]
+
+    def step(*arguments: object) -> None:
+        counted[0] += 1
+        original(*arguments)
+
+    def asked() -> int:
+        count, counted[0] = counted[0], 0
+        return count
+
+    monkeypatch.setattr(mujoco, "mj_step", step)
+    return asked
+
+
+def move(cell: Cell) -> int:
+    """Move a little; how many ticks that takes."""
+    before = cell.simulation.ticks
+    cell.arm.move_by(z=0.02)
+    return cell.simulation.ticks - before
+
+
+def singly(cell: Cell) -> Cell:
+    """A cell with a condition under watch is stepped tick by tick."""
+    cell.always(lambda: True, "true")
+    return cell
+
+
+def test_a_tick_that_was_stepped_before_takes_one_step(steps: Callable[[], int]) -> None:
+    ticks = move(singly(Cell(1)))
+    assert steps() == STEPS * ticks
+    assert move(singly(Cell(1))) == ticks
+    assert steps() == ticks
+
+
+def test_a_stretch_that_was_stepped_before_takes_few_steps(steps: Callable[[], int]) -> None:
+    ticks = move(Cell(1))
+    assert steps() == STEPS * ticks
+    assert move(Cell(1)) == ticks
+    assert steps() < ticks / 2
+
+
+def test_another_seed_is_stepped_anew(steps: Callable[[], int]) -> None:
+    move(Cell(1))
+    steps()
+    assert STEPS * move(Cell(2)) == steps()
+
+
+def heavier(cell: Cell) -> None:
+    cell.simulation.model.body("box").mass[:] *= 1.001
+
+
+def pushed(cell: Cell) -> None:
+    cell.simulation.data.xfrc_applied[cell.simulation.id_of("body", "box"), 2] = 0.1
+
+
+def moved(cell: Cell) -> None:
+    cell.simulation.data.qvel[-1] += 1e-9
+
+
+def at_the_moon(cell: Cell) -> None:
+    cell.simulation.model.opt.gravity[2] = -1.62
+
+
+@pytest.mark.parametrize("change", [heavier, pushed, moved, at_the_moon])
+@pytest.mark.parametrize("prepared", [singly, lambda cell: cell], ids=["tick by tick", "in stretches"])
+def test_what_is_changed_by_hand_is_stepped_anew(
+    change: Callable[[Cell], None], prepared: Callable[[Cell], Cell], steps: Callable[[], int]
+) -> None:
+    move(prepared(Cell(1)))
+    cell = prepared(Cell(1))
+    change(cell)
+    steps()
+    assert STEPS * move(cell) == steps()
+
+
+@pytest.mark.parametrize("prepared", [singly, lambda cell: cell], ids=["tick by tick", "in stretches"])
+def test_where_a_callback_acts_on_the_physics_all_is_stepped(
+    prepared: Callable[[Cell], Cell], steps: Callable[[], int]
+) -> None:
+    """What it does is not known."""
+    move(prepared(Cell(1)))
+    cell = prepared(Cell(1))
+    steps()
+    mujoco.set_mjcb_passive(lambda model, data: None)
+    try:
+        assert STEPS * move(cell) == steps()
+    finally:
+        mujoco.set_mjcb_passive(None)
+
+
+def test_where_parts_may_sleep_all_is_stepped(steps: Callable[[], int]) -> None:
+    """Which of them do is no part of the state."""
+    boxes = tuple(Box(name=f"box {number}", position=(0.1 * number, 0.6, 1.0)) for number in range(4))
+    for _ in range(2):
+        assert STEPS * move(Cell(1, scene=Scene(parts=boxes))) == steps()
+
+
+def test_a_motion_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    planned = []
+    original = Kinematics.follow
+
+    def follow(self: Kinematics, *given: object) -> object:
+        planned.append(given)
+        return original(self, *given)
+
+    monkeypatch.setattr(Kinematics, "follow", follow)
+    for _ in range(2):
+        cell = Cell(1)
+        cell.arm.move_by(z=0.02)
+        cell.arm.move_by(z=0.02)
+        cell.arm.home()
+    assert len(planned) == 2
+    Cell(1).arm.move_by(z=0.02, speed=0.5)
+    Cell(1).arm.move_by(z=0.02, theta_x=1.0)
+    assert len(planned) == 4
+
+
+def test_a_plan_from_memory_is_the_plan_to_the_bit() -> None:
+    first, second = (Cell(1).arm._planner.between(np.zeros(7), np.full(7, 0.1), 0.7) for _ in range(2))
+    assert first.joints.tobytes() == second.joints.tobytes()
+    assert first.speeds.tobytes() == second.speeds.tobytes()
+    assert first.joints.shape == second.joints.shape

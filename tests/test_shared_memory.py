@@ -1,0 +1,75 @@
+"""Memory that processes share."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from mutabot import shared_memory
+from mutabot.shared_memory import KEY, SharedMemory
+
+
+def key(number: int) -> bytes:
+    return number.to_bytes(8, "little").ljust(KEY, b"k")
+
+
+def test_what_was_put_is_there() -> None:
+    memory = SharedMemory()
+    memory.put(key(1), b"one")
+    memory.put(key(2), b"")
+    assert (memory.get(key(1)), memory.get(key(2)), memory.get(key(3))) == (b"one", b"", None)
+
+
+def test_a_key_that_falls_on_the_place_of_another_finds_nothing() -> None:
+    memory = SharedMemory()
+    memory.put(key(1), b"one")
+    other = key(1)[:8] + b"another!"
+    assert memory.get(other) is None
+
+
+def test_the_oldest_make_room() -> None:
+    memory, value = SharedMemory(), bytes(1 << 20)
+    for number in range(200):
+        memory.put(key(number), value)
+    found = [number for number in range(200) if memory.get(key(number)) is not None]
+    assert found == list(range(found[0], 200))
+    assert 50 < len(found) < 64
+
+
+def test_what_is_longer_than_the_memory_is_not_kept() -> None:
+    memory = SharedMemory()
+    memory.put(key(1), b"one")
+    memory.put(key(2), bytes(1 << 27))
+    assert (memory.get(key(1)), memory.get(key(2))) == (b"one", None)
+
+
+def test_a_value_that_is_incomplete_is_not_given() -> None:
+    """Two processes may write to the same place at once."""
+    memory = SharedMemory()
+    memory.put(key(1), b"a" * 1000)
+    place = memory._bytes.find(b"a" * 1000)
+    memory._bytes[place + 500 : place + 1000] = b"b" * 500
+    assert memory.get(key(1)) is None
+
+
+def test_a_length_that_is_wrong_is_no_error() -> None:
+    memory = SharedMemory()
+    memory.put(key(1), b"a" * 1000)
+    place = memory._bytes.find(b"a" * 1000)
+    memory._bytes[place - 8 : place - 4] = b"\xff" * 4
+    assert memory.get(key(1)) is None
+
+
+def test_processes_share_what_they_put(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shared_memory, "_shared", None)
+    assert shared_memory.shared() is None
+    shared_memory.share()
+    memory = shared_memory.shared()
+    assert memory is not None
+    child = os.fork()
+    if not child:
+        memory.put(key(1), b"by the child")
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert memory.get(key(1)) == b"by the child"
