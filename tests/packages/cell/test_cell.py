@@ -267,3 +267,9 @@ def test_putting_models_together_writes_nothing_into_the_working_directory(tmp_p
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     assert (list(tmp_path.iterdir()), done.stderr) == ([], "")
+
+
+def test_no_time_is_spent_on_measuring_how_long_steps_take(cell: Cell) -> None:
+    cell.wait(0.1)
+    assert [timer.duration for timer in cell.simulation.data.timer if timer.duration] == []
+    assert cell.simulation.data.timer[0].number
