@@ -412,3 +412,26 @@ def test_the_test_that_a_fork_begins_is_not_taken_for_its_parent_s(
     found = outcomes(run_campaign(request_for(tmp_path, engine="fork", only=("reverse",)), Quiet()))
     assert {(one.verdict, one.engine, one.tests) for one in found} == {(Verdict.SURVIVED, "fork", 2)}
     assert told == ["test_first", "test_second"]
+
+
+def test_processes_of_a_campaign_remember_together(tmp_path: Path) -> None:
+    """The test looks closely only where another process, which is the baseline, has run it before."""
+    write_project(
+        tmp_path,
+        "def run(arm):\n    arm.move_by(0.25)\n",
+        """
+        import mission
+        from mutabot import shared_memory
+        from robot import Arm
+
+        def test_once():
+            memory, key = shared_memory.shared(), b"test_once".ljust(shared_memory.KEY)
+            is_first = memory.get(key) is None
+            memory.put(key, b"was here")
+            arm = Arm()
+            mission.run(arm)
+            assert is_first or arm.x == 0.25
+        """,
+    )
+    found = outcomes(run_campaign(request_for(tmp_path, engine="fork", only=("reverse",)), Quiet()))
+    assert {(one.verdict, one.by, one.engine) for one in found} == {(Verdict.KILLED, "check", "fork")}
