@@ -535,6 +535,7 @@ class Arm:
             raise self._stopped(stop)
 
     def _until(self) -> int:
+        self.guard.begin_stretch()
         decides = self.guard.pressed_ticks or self._stop is not None or self._lost is not None
         return 1 if decides else LONGEST
 

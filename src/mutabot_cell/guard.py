@@ -50,6 +50,7 @@ class Guard:
         self._motors = simulation.data.qfrc_actuator[robot.dofs]
         self.planned, self._pushes = np.zeros((2, LONGEST, count))
         self._heats: list[tuple[int, Array]] = []
+        self._looks_closer = False
 
     def state(self) -> tuple[int, bytes]:
         """What it remembers from one tick to the next, to compare two runs to the bit."""
@@ -114,16 +115,22 @@ class Guard:
             following_error=float(error[joint]),
         )
 
+    def begin_stretch(self) -> None:
+        """A stretch may begin: find out whether more than contacts is among the constraints' torques in it."""
+        model = self._simulation.model
+        rubs = model.dof_frictionloss.any() or model.tendon_frictionloss.any()
+        self._looks_closer = bool(self.explained or self.payload or rubs)
+
     def note(self, stretch: Stretch, number: int) -> None:
         """After a tick of a stretch (its number): remember what the stretch does not."""
-        if self._looks_closer():
+        if self._looks_closer:
             stretch.reach(number)
             self._pushes[number] = self._external()
 
     def quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
         """See `foresight.Glance`."""
         dofs, now = self._robot.dofs, slice(known, ticks)
-        external = self._pushes[now] if self._looks_closer() else stretch.constraints[now, dofs]
+        external = self._pushes[now] if self._looks_closer else stretch.constraints[now, dofs]
         pushes = (external / self._torque_limit).ravel()
         errors = (self.planned[now] - stretch.places[now, self._robot.joints]).ravel()
         # mostly even the lengths of all together are below the limits of their parts; not so if one is NaN
@@ -166,10 +173,6 @@ class Guard:
         if self.payload:
             torque = torque - self._payload_torque()
         return torque
-
-    def _looks_closer(self) -> bool:
-        """Whether something else than contacts and limits of the joints is among the constraints' torques."""
-        return bool(self.explained or self.payload or self._simulation.data.nf)
 
     def _friction(self) -> Array:
         """Torque on each joint from dry friction in it, which MuJoCo counts among the constraints, Nm."""

@@ -224,6 +224,21 @@ def test_friction_in_a_joint_and_wrong_encoders_are_the_same() -> None:
     check_same(story)
 
 
+def test_a_collision_soon_after_joints_began_to_rub_is_the_same() -> None:
+    """What a stretch from memory is looked at for must not be told by the state before it."""
+
+    def story(cell: Cell) -> None:
+        cell.arm.move_by(theta_x=90)
+        with pytest.raises(ProtectiveStop):
+            cell.arm.move_by(z=-0.45)
+        cell.arm.acknowledge_stop()
+        cell.arm.move_by(z=0.02)
+        cell.simulation.model.dof_frictionloss[1] = 15.0
+        cell.arm.move_by(z=-0.1)
+
+    assert isinstance(check_same(story).error, ProtectiveStop)
+
+
 def test_a_force_from_outside_is_the_same() -> None:
     """It comes from no servo, so a stretch must keep it as it was."""
 
