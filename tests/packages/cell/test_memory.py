@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mutabot_cell import Box, Cell, Scene
+from mutabot_cell.fingerprint import Fingerprint
 from mutabot_cell.motion.kinematics import Kinematics
 
 from .memory import remembering
@@ -114,6 +115,30 @@ def test_where_a_callback_acts_on_the_physics_all_is_stepped(
         assert STEPS * move(cell) == steps()
     finally:
         mujoco.set_mjcb_passive(None)
+
+
+def test_whatever_is_changed_in_a_model_changes_its_fingerprint() -> None:
+    model = Cell(1).simulation.model
+    fingerprint = Fingerprint(model)
+    same, changed = [], 0
+    for owner in (model, model.opt):
+        for name in (name for name in dir(owner) if not name.startswith("_")):
+            value, before = getattr(owner, name), fingerprint.now()
+            assert fingerprint.now() == before
+            if isinstance(value, np.ndarray) and value.size and value.flags.writeable:
+                value.flat[0] = not value.flat[0] if value.dtype == bool else value.flat[0] + 1
+            elif isinstance(value, bool | int | float):
+                try:
+                    setattr(owner, name, not value if isinstance(value, bool) else value + 1)
+                except AttributeError:  # sizes cannot be changed
+                    continue
+            else:
+                continue
+            changed += 1
+            if fingerprint.now() == before:
+                same.append(name)
+    assert same == []
+    assert changed > 200
 
 
 def test_where_parts_may_sleep_all_is_stepped(steps: Callable[[], int]) -> None:
