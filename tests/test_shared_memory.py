@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from mutabot import shared_memory
+from mutabot.runtime.session_hooks import _tests_us
 from mutabot.shared_memory import KEY, SharedMemory
 
 
@@ -61,6 +64,16 @@ def test_a_length_that_is_wrong_is_no_error() -> None:
     assert memory.get(key(1)) is None
 
 
+def test_where_there_is_no_memory_nothing_is_shared(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(12, "Cannot allocate memory")
+
+    monkeypatch.setattr(shared_memory, "_shared", None)
+    monkeypatch.setattr("mmap.mmap", fail)
+    shared_memory.share()
+    assert shared_memory.shared() is None
+
+
 def test_processes_share_what_they_put(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shared_memory, "_shared", None)
     assert shared_memory.shared() is None
@@ -73,3 +86,16 @@ def test_processes_share_what_they_put(monkeypatch: pytest.MonkeyPatch) -> None:
         os._exit(0)
     os.waitpid(child, 0)
     assert memory.get(key(1)) == b"by the child"
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [("src/mutabot_cell/motion", True), ("src", True), ("examples/paper/mission.py", False)],
+)
+def test_nothing_is_shared_where_mutabot_itself_is_the_program(program: str, expected: bool) -> None:
+    """What its mutants would compute, their original has computed."""
+    if Path(shared_memory.__file__).parents[1].name != "src":
+        pytest.skip("mutabot is not run from its repository")
+    root = Path(shared_memory.__file__).parents[2]
+    job = SimpleNamespace(root=str(root), program=(program,), oracle=("tests",))
+    assert _tests_us(job) is expected

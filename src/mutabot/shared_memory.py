@@ -10,6 +10,7 @@ from __future__ import annotations
 import mmap
 import struct
 import zlib
+from contextlib import suppress
 
 KEY = 16
 """Bytes of a key."""
@@ -70,10 +71,14 @@ def _slot(key: bytes) -> int:
 
 
 def share() -> None:
-    """Before the first fork: what is forked from this process from now on shares a memory with it."""
+    """Before the first fork: what is forked from this process from now on shares a memory with it.
+
+    Where there is not enough memory, nothing is shared.
+    """
     global _shared  # noqa: PLW0603
     if _shared is None:
-        _shared = SharedMemory()
+        with suppress(OSError):
+            _shared = SharedMemory()
 
 
 def shared() -> SharedMemory | None:

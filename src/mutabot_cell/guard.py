@@ -116,7 +116,7 @@ class Guard:
         )
 
     def begin_stretch(self) -> None:
-        """A stretch may begin: find out whether more than contacts is among the constraints' torques in it."""
+        """A stretch may begin: find out whether its constraints' torques are of more than contacts."""
         model = self._simulation.model
         rubs = model.dof_frictionloss.any() or model.tendon_frictionloss.any()
         self._looks_closer = bool(self.explained or self.payload or rubs)

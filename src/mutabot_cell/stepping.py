@@ -38,8 +38,8 @@ class Stepping:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data, self._servos = model, data, data.ctrl
-        # which islands sleep is no part of a state either
-        self._memory = None if model.opt.enableflags & _SLEEP else shared_memory.shared()
+        # plugins and flexible bodies may have more to them than a state tells
+        self._memory = None if model.nplugin or model.nflex else shared_memory.shared()
         self._key: bytes | None = None
         self._start: Array = np.zeros(mujoco.mj_stateSize(model, _STATE))
         self._before: Array = np.zeros(mujoco.mj_stateSize(model, MOVING))
@@ -55,19 +55,27 @@ class Stepping:
         if before is not None:
             self.end(before, inputs)
             return
+        start = self._data.time
         self.step(inputs, self._before)
-        self.keep(self._before)
+        # where MuJoCo begins anew, more has changed than what is kept
+        if self._data.time - start > (len(inputs) - 0.5) * self._model.opt.timestep:
+            self.keep(self._before)
 
     def recall(self, inputs: Array) -> Array | None:
         """What was kept when the physics was as it is now and had these inputs; None if nothing was."""
         self._key = None
-        if self._memory is None or any(callback() for callback in _CALLBACKS):
+        if self._memory is None or not self._is_told_by_state():
             return None
         mujoco.mj_getState(self._model, self._data, self._start, _STATE)
         everything = b"".join((self._fingerprint.now(), self._start.tobytes(), inputs.tobytes()))
         self._key = hashlib.sha256(everything).digest()[: shared_memory.KEY]
         kept = self._memory.get(self._key)
         return None if kept is None else np.frombuffer(kept)
+
+    def _is_told_by_state(self) -> bool:
+        """Whether nothing else decides, such as which islands sleep, or what callbacks do."""
+        sleeps = self._model.opt.enableflags & _SLEEP
+        return not sleeps and all(callback() is None for callback in _CALLBACKS)
 
     def keep(self, values: Array) -> None:
         """Keep values that follow from all that was given when `recall` was last asked."""

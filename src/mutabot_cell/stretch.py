@@ -30,7 +30,7 @@ class Stretch:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, stepping: Stepping, steps: int) -> None:
         self._model, self._data, self._stepping = model, data, stepping
-        self._length = steps * model.opt.timestep
+        self._steps = steps
         self._start = mujoco.MjData(model)
         self.inputs: Array = np.zeros((LONGEST, steps, model.nu))
         ends = (data.qpos, data.qvel, data.qfrc_constraint, data.qfrc_actuator, data.sensordata)
@@ -62,7 +62,7 @@ class Stretch:
             for note in notes:
                 note(self, number)
         self.reach(ticks - 1)
-        is_well = bool(data.time - start > (ticks - 0.5) * self._length)
+        is_well = bool(data.time - start > (ticks - 0.5) * self._steps * self._model.opt.timestep)
         if is_well and known is None:
             self._stepping.keep(self._ticks[:ticks])
         return is_well

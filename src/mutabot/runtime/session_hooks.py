@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import _pytest.pathlib
 import pytest
 
+import mutabot
 from mutabot import extensions
 from mutabot.frozen import compile_all
 from mutabot.model import Mutant, Role
@@ -86,7 +87,9 @@ class SessionHooks:
             from mutabot.runtime.isolation.fork_server import ForkServer  # noqa: PLC0415  # of no use to others
 
             preload()
-            hooks = cls(job, pipe, ForkServer(job.serving, pipe, LOG, home, job.private_files))
+            hooks = cls(
+                job, pipe, ForkServer(job.serving, pipe, LOG, home, job.private_files, not _tests_us(job))
+            )
         else:
             hooks = cls(job, pipe)
             if job.pictures is not None:  # before its folder is hidden from this process
@@ -262,3 +265,13 @@ def _keep_cache_in(config: pytest.Config, home: str) -> None:
     cache = getattr(config, "cache", None)
     if cache is not None:
         cache._cachedir = Path(home, "cache")
+
+
+def _tests_us(job: Job) -> bool:
+    """Whether the program has parts of mutabot: what these compute must not be taken from memory."""
+    home = Path(mutabot.__file__).resolve().parent.parent
+    if home.name == "site-packages":
+        return False
+    ours = list(home.glob("mutabot*"))
+    parts = [Path(job.root, part).resolve() for part in (*job.program, *job.oracle)]
+    return any(one.is_relative_to(part) or part.is_relative_to(one) for part in parts for one in ours)

@@ -26,7 +26,8 @@ class Planner:
         self._memory = shared_memory.shared()
         self._robot = b""
         if self._memory is not None:
-            self._robot = kinematics.fingerprint() + repr((robot.limits, robot.tool_limits)).encode()
+            numbers = robot.limits, robot.tool_limits, robot.reach
+            self._robot = kinematics.fingerprint() + repr(numbers).encode()
 
     def along(self, joints: Array, line: Line, speed: float) -> Motion:
         """A motion of the tool along a line.

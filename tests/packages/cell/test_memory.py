@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
 
-from mutabot_cell import Box, Cell, Scene
+from mutabot_cell import Box, Cell, CellError, MotionRefused, Scene, gen3
 from mutabot_cell.fingerprint import Fingerprint
 from mutabot_cell.motion.kinematics import Kinematics
 
@@ -148,6 +150,37 @@ def test_where_parts_may_sleep_all_is_stepped(steps: Callable[[], int]) -> None:
         assert STEPS * move(Cell(1, scene=Scene(parts=boxes))) == steps()
 
 
+def test_from_where_parts_may_sleep_on_all_is_stepped(steps: Callable[[], int]) -> None:
+    for _ in range(2):
+        cell = Cell(1)
+        cell.simulation.model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+        assert STEPS * move(cell) == steps()
+
+
+@pytest.mark.parametrize("prepared", [singly, lambda cell: cell], ids=["tick by tick", "in stretches"])
+def test_after_another_time_step_was_set_ticks_are_remembered(
+    prepared: Callable[[Cell], Cell], steps: Callable[[], int]
+) -> None:
+    for _ in range(2):
+        cell = prepared(Cell(1))
+        cell.simulation.model.opt.timestep = 0.001
+        ticks = move(cell)
+        counted = steps()
+    assert counted <= ticks
+
+
+def test_a_tick_in_which_mujoco_begins_anew_is_not_kept() -> None:
+    """It then clears more than changes in a tick otherwise."""
+    ends = []
+    for _ in range(2):
+        cell = singly(Cell(1))
+        cell.simulation.data.qfrc_applied[-1] = np.nan
+        with suppress(CellError):
+            cell.wait(0.05)
+        ends.append((cell.simulation.data.time, cell.simulation.data.qpos.tobytes()))
+    assert ends[0] == ends[1]
+
+
 def test_a_motion_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
     planned = []
     original = Kinematics.follow
@@ -166,6 +199,15 @@ def test_a_motion_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
     Cell(1).arm.move_by(z=0.02, speed=0.5)
     Cell(1).arm.move_by(z=0.02, theta_x=1.0)
     assert len(planned) == 4
+
+
+def test_a_robot_of_shorter_reach_is_refused_what_another_one_planned() -> None:
+    robot = gen3()
+    assert robot.reach is not None
+    short = replace(robot, reach=replace(robot.reach, length=0.4 * robot.reach.length))
+    Cell(1, robot=robot).arm.move_by(z=0.02)
+    with pytest.raises(MotionRefused):
+        Cell(1, robot=short).arm.move_by(z=0.02)
 
 
 def test_a_plan_from_memory_is_the_plan_to_the_bit() -> None:

@@ -40,6 +40,7 @@ class ForkServer:
         log: name of the file for what a process prints, in its folder.
         home: the server's folder.
         is_private: whether the files of copies are to be private.
+        may_remember: whether copies may share a memory of what they compute.
     """
 
     descriptor: int
@@ -47,6 +48,7 @@ class ForkServer:
     log: str
     home: str
     is_private: bool
+    may_remember: bool
     _known: frozenset[tuple[int, str]] = field(default_factory=open_now)
     _copies: dict[int, int] = field(default_factory=dict)
 
@@ -63,7 +65,8 @@ class ForkServer:
         self.pipe.send(Serving(reason))
         if reason is not None:
             return None
-        shared_memory.share()
+        if self.may_remember:
+            shared_memory.share()
         compile_all()
         gc.collect()
         gc.freeze()  # what is never looked at stays shared with all copies
