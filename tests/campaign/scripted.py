@@ -77,10 +77,11 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Died:
-    """The process ends during the test, without a word."""
+    """The process ends during the test, without a word; ``acted``: after its mutant has changed something."""
 
     exit_code: int = -9
     overdue: str | None = None
+    acted: bool = True
 
 
 End = Mapping[str, Any] | Died
@@ -177,7 +178,7 @@ class Scripted:
                 yield from self._forks(job, run, found, forked)
             end = self.script.end(run)
             if isinstance(end, Died):
-                if job.mutant is not None:
+                if job.mutant is not None and end.acted:
                     yield Acted(test)
                 result.exit_code, result.overdue = end.exit_code, end.overdue
                 return
@@ -207,7 +208,7 @@ class Scripted:
             )
             end = self.script.end(run)
             if isinstance(end, Died):
-                yield ForkDied(mutant.id, run.test, end.exit_code, end.overdue, acted=True)
+                yield ForkDied(mutant.id, run.test, end.exit_code, end.overdue, acted=end.acted)
                 del found[mutant.id], forked[mutant.id]
                 continue
             ended = self.suite.end(run, end)

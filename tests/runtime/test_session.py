@@ -6,6 +6,7 @@ import pytest
 
 from mutabot.model.events import Acted, Problem
 from mutabot.model.job import Budget
+from mutabot.operators.command import FatalFault
 from mutabot.runtime.evidence import BudgetExceeded
 from tests.runtime.stage import Make
 
@@ -105,6 +106,15 @@ def test_the_first_act_is_reported_at_once(make_stage: Make) -> None:
     stage.mutated("reverse", "x")
     told = [line for line in stage.pipe.lines if isinstance(line, Acted)]
     assert told == [Acted("test", in_call=True), Acted("test", in_call=False), Acted("test")]
+
+
+def test_the_fatal_control_reports_that_it_acts_before_anybody_can_wait_for_what_it_ends(
+    make_stage: Make,
+) -> None:
+    stage = make_stage(ROBOT, "from robot import move\n\ndef run():\n    move(0.1)\n", VOCABULARY)
+    with pytest.raises(FatalFault):
+        stage.mutated("fatal", None)
+    assert [line for line in stage.pipe.lines if isinstance(line, Acted)] == [Acted("test")]
 
 
 def test_a_mutant_that_changes_nothing_has_hits_but_did_not_act(make_stage: Make) -> None:

@@ -50,7 +50,7 @@ def project(folder: Path, mission: str) -> None:
 def test_a_control_that_hangs_once_does_not_end_the_campaign(
     tmp_path: Path, script: Script, engine: str
 ) -> None:
-    hangs = Died(overdue="no end after 2 s of wall clock")
+    hangs = Died(overdue="no end after 2 s of wall clock", acted=False)
     script.control = lambda run: None if run.before else hangs
     project(tmp_path, MISSION)
     progress = Quiet()
@@ -61,6 +61,18 @@ def test_a_control_that_hangs_once_does_not_end_the_campaign(
         "the fatal control of tests/test_mission.py ended wrongly once",
     }
     assert all("no end after 2 s of wall clock" in line for line in lines)
+
+
+@pytest.mark.parametrize("engine", ["replay", "fork"])
+def test_a_suite_that_waits_for_ever_for_what_the_fatal_control_ended_shows_that_it_acted(
+    tmp_path: Path, script: Script, engine: str
+) -> None:
+    hangs = Died(overdue="no end after 2 s of wall clock")
+    script.control = lambda run: hangs if run.mutant is not None and run.mutant.operator == FATAL else None
+    project(tmp_path, MISSION)
+    progress = Quiet()
+    run_campaign(request_for(tmp_path, engine=engine, only=("*:reverse",)), progress)
+    assert not [line for line in progress.lines if "ended wrongly" in line]
 
 
 def test_a_control_that_hangs_twice_ends_the_campaign(tmp_path: Path) -> None:

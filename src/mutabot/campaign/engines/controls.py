@@ -1,8 +1,8 @@
 """Controls: mutants of mutabot's own whose end is known.
 
-The identity changes nothing, so it must survive. The fatal mutant raises, so it must die: turning a mutant on
-changes something. A control that ends wrongly is tried again in a fresh process. One that ends wrongly there
-too stops the campaign: its verdicts could not be believed.
+The identity changes nothing, so it must survive. The fatal mutant raises, so it must die, or make the suite
+wait for ever: turning a mutant on changes something. A control that ends wrongly is tried again in a fresh
+process. One that ends wrongly there too stops the campaign: its verdicts could not be believed.
 
 Each way of running has one pair: each provider by each engine, and forks before any test. Controls of the
 program text ask at their place like any alternative: the hits of the identity prove that instrumented text
@@ -76,7 +76,9 @@ class Control:
 
     def what_is_wrong(self, outcome: Outcome) -> str | None:
         """Why its end is not the one that it must have; None if it is."""
-        if outcome.verdict is (Verdict.NO_EFFECT if self.name == IDENTITY else Verdict.KILLED):
+        # a suite that waits for ever for what the fatal one has ended shows as well that it acted
+        right = (Verdict.NO_EFFECT,) if self.name == IDENTITY else (Verdict.KILLED, Verdict.TIMEOUT)
+        if outcome.verdict in right:
             return None
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
             return f"the test passes although the {provider(self.provider).location} raises"

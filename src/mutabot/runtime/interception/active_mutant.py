@@ -250,7 +250,7 @@ class ActiveMutant:
             if passage.received is None:
                 self.note(passage)
             if isinstance(error, FatalFault):
-                self.evidence.acted += 1
+                self._count_act()
             elif mutated.raised is None and self.evidence.failure is None:
                 # neither the robot nor the program: the operator or the vocabulary is at fault
                 self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
@@ -356,8 +356,12 @@ class ActiveMutant:
     def _acts(self, passage: CallRecord) -> None:
         if not self.evidence.acted:
             self.evidence.example = self._example(passage)
-            self.on_act()
+        self._count_act()
+
+    def _count_act(self) -> None:
         self.evidence.acted += 1
+        if self.evidence.acted == 1:
+            self.on_act()
 
     def _example(self, passage: CallRecord) -> tuple[Any, ...]:
         name = self.mutant.quantity
