@@ -6,7 +6,6 @@ Alternatives are text for the compiler with what is kept named, and for people a
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Callable
 
 from mutabot.languages.python import extent_of
@@ -14,7 +13,6 @@ from mutabot.model.mutant import Extent, kept_name
 
 from .operator import Node, Parts, Surroundings
 
-_LINE_ENDS = re.compile(r"\r\n|\r|\n")
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
@@ -22,12 +20,12 @@ class ModuleTree:
     """The syntax tree of a module and its text.
 
     Args:
-        text: the program text.
+        text: the program text, with ``\n`` at the ends of lines.
         tree: its tree.
     """
 
     def __init__(self, text: str, tree: ast.Module) -> None:
-        self._lines = [line.encode() for line in _LINE_ENDS.split(text)]
+        self._lines = [line.encode() for line in text.split("\n")]
         self._parents: dict[ast.AST, ast.AST] = {}
         self._formatted: set[ast.AST] = set()
         for node in ast.walk(tree):  # from the outside in

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import ast
-import io
-import tokenize
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from importlib.util import decode_source
 from itertools import chain
 from pathlib import Path
 
@@ -55,7 +54,7 @@ def find_places(
     """The places of one file that the rules have to do with, in the order of the text, and its index."""
     tree = ast.parse(source, file)
     index = Index.of(tree)
-    finder = _Finder(ModuleTree(_decoded(source), tree), list(rules), index)
+    finder = _Finder(ModuleTree(decode_source(source), tree), list(rules), index)
     counts: Counter[tuple[str, str, str]] = Counter()
     places: list[TextPlace] = []
     for number, seed in enumerate(sorted(finder.seeds(), key=_order), first):
@@ -138,8 +137,3 @@ class _Finder:
         seed.alternatives.append(
             Alternative(rule.name, draft.variant, made, text, draft.needs, rule.family, draft.raises)
         )
-
-
-def _decoded(source: bytes) -> str:
-    encoding, _ = tokenize.detect_encoding(io.BytesIO(source).readline)
-    return source.decode(encoding)

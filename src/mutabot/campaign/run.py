@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import decode_source
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -229,11 +230,7 @@ def _write_beginning(
         journal.add_tests(records.BaselineTest.of(round, repetition, end) for end in result.ends)
     carried = carry([one for one, _ in journal.known()], request, plan.mutants, whole.mutants)
     files = {mutant.site.span.file for mutant in (*plan.mutants, *carried)}
-    sources = {
-        file: path.read_text(encoding="utf-8", errors="replace")
-        for file in files
-        if (path := request.root / file).is_file()
-    }
+    sources = {file: _text_of(path) for file in files if (path := request.root / file).is_file()}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
@@ -243,6 +240,15 @@ def _write_beginning(
     journal.set_meta(records.OPERATORS, summaries(plan.mutants))
     journal.set_meta(records.DRAWS, drawing(plan.mutants))
     journal.set_meta(records.REACHING, reaching(campaign.baseline, plan.mutants))
+
+
+def _text_of(file: Path) -> str:
+    """A program text with ``\\n`` at the ends of lines, as far as it can be read."""
+    source = file.read_bytes()
+    try:
+        return decode_source(source)
+    except (SyntaxError, ValueError):
+        return source.decode("utf-8", "replace")
 
 
 def _meta(request: Request) -> dict[str, Any]:

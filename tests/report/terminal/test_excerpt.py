@@ -27,5 +27,9 @@ def test_lines_around_are_shown() -> None:
     assert lines[-1] == "  11 │ line11"
 
 
+def test_only_what_ends_a_line_of_a_program_ends_one() -> None:
+    assert excerpt("a\x0c\nb = 'x\u2028y'\nc()\n", span(3, 3))[-1] == "> 3 │ c()"
+
+
 def test_a_place_that_is_no_longer_there_gives_nothing() -> None:
     assert excerpt("x", span(9, 9)) == []

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from importlib.util import decode_source
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -211,7 +212,7 @@ class Sources:
         """What is found in the text of a file; None for one that cannot be read."""
         if (file, find) not in self._read:
             try:
-                found = find((self.root / file).read_text(encoding="utf-8"))
+                found = find(decode_source((self.root / file).read_bytes()))
             except (OSError, SyntaxError, ValueError):
                 found = None
             self._read[file, find] = found

@@ -164,7 +164,7 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
 
 def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
     """Return the lines of a span, marked with ``>``, and ``around`` lines before and after it."""
-    lines = source.splitlines()
+    lines = source.removesuffix("\n").split("\n")  # nothing else ends a line of a program
     if not 1 <= span.line <= len(lines):
         return []
     first, last = max(1, span.line - around), min(len(lines), span.end_line + around)

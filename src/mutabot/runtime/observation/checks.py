@@ -15,6 +15,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from importlib.util import decode_source
 from typing import Any
 
 from mutabot.model.outcome import Check
@@ -184,7 +185,10 @@ class Checks:
 
     def _look(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Number the comparisons and calls that decide about assertions, by where they stand."""
-        lines = source.splitlines(keepends=True)  # ``ast.get_source_segment`` splits all of it for each part
+        # columns count bytes of UTF-8, whatever the file is written in
+        lines = (
+            decode_source(source).encode().splitlines(keepends=True)
+        )  # ``ast.get_source_segment`` splits all of it for each part
         name = os.path.relpath(os.path.realpath(path), self._root)
         self._found = {}
         for node in ast.walk(tree):
