@@ -235,12 +235,12 @@ class Dispatch:
 
 def longest(task: Task) -> float:
     """Seconds after which a worker that has not answered never will: limits inside end a task long before."""
-    walls = [task.deadlines.get(test, task.deadline) for test in task.job.tests or ()]
+    walls = [task.deadlines.get(test, task.deadline).wall for test in task.job.tests or ()]
     forking = task.job.forking
     if forking is not None:
-        suite = [forking.walls.get(test, forking.wall) for test in task.job.tests or ()]
-        walls += [task.deadline, *suite, len(forking.mutants) * sum(suite)]
-    return _GRACE + 2 * (task.startup + sum(walls))
+        suite = [forking.limits.get(test, forking.limit).wall for test in task.job.tests or ()]
+        walls += [task.deadline.wall, *suite, len(forking.mutants) * sum(suite)]
+    return _GRACE + 2 * (task.startup.wall + sum(walls))
 
 
 def is_for_home(task: Task) -> bool:

@@ -101,7 +101,8 @@ def _tasks(
             pictures=Pictures(tests[-1], str(folder / f"{name}.film")),
         )
         simulated = campaign.baseline.ends[round, tests[-1]].simulated or 0.0
-        limit = planned.deadlines[tests[-1]] + _PER_PICTURE * _RATE * (simulated + 1.0)
+        more = _PER_PICTURE * _RATE * (simulated + 1.0)
+        limit = planned.deadlines[tests[-1]].with_more(more, more)
         yield replace(
             planned, key=name, job=job, deadlines={**planned.deadlines, tests[-1]: limit}, deadline=limit
         )

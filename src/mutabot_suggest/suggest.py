@@ -16,6 +16,7 @@ from mutabot.execution.task import Task, death
 from mutabot.frozen import frozen
 from mutabot.journal.journal import JournalReader
 from mutabot.model import By, Mutant, Verdict
+from mutabot.model.deadline import Limit
 from mutabot.model.events import TestEnd
 from mutabot.results.results import MutantResult
 from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
@@ -261,7 +262,9 @@ class Proof:
             self.progress.stage("proof on the original", len(rounds))
             with open_executor(these, self.progress) as opened:
                 share = these.forks
-                tasks = (Task(round, these.job(round), startup=300.0, may_share=share) for round in rounds)
+                tasks = (
+                    Task(round, these.job(round), startup=Limit(300.0), may_share=share) for round in rounds
+                )
                 for result in opened.run(tasks):
                     self.progress.advance(f"round {result.task.key + 1}")
                     where = f"round {result.task.key + 1} of the original"

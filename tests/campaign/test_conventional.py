@@ -80,7 +80,7 @@ TESTS = """
         assert mission.count("abc") == 3
 """
 
-#: short wall clocks: loops without an end are only ended by them
+#: loops without an end are ended by their processor time
 QUICK = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = ["-o", "pythonpath=."]\n'
 
 
@@ -230,7 +230,7 @@ def test_a_difference_in_a_process_that_the_test_forked_is_not_overlooked(tmp_pa
 def test_a_loop_without_end_times_out(ends: dict[str, Outcome]) -> None:
     found = end(ends, "count:total += 1#1:ASR=sub")
     assert found.verdict is Verdict.TIMEOUT
-    assert "wall clock" in (found.message or "")
+    assert "processor time" in (found.message or "")
 
 
 def test_a_refusal_that_ends_the_test_stands_outside(ends: dict[str, Outcome]) -> None:

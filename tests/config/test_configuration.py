@@ -44,7 +44,7 @@ def test_what_is_not_said_has_a_default(project: Path) -> None:
         jobs=None,
         selection=None,
         timeout_factor=10,
-        timeout_seconds=60,
+        timeout_seconds=None,
         memory=4_000_000_000,
         unstable_limit=0.1,
         timeout_limit=1.0,

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.model import Choice, Clock, Instrumentation, Mutant, Operation, Role, Site, Span, Vocabulary
-from mutabot.model.job import Budget, Job
+from mutabot.model.job import Job
 
 SITE = Site(Span("a.py", 1, 0, 1, 3, "f"), "x", 1, Role.PROGRAM)
 MUTANT = Mutant(1, "conventional", "AOR", SITE, "", None, None, "+", "")
 PARTS: dict[str, Any] = {
     "root": "/project", "program": ("a.py",), "oracle": (), "seed": 1, "round": 0, "tests": ("t",),
-    "budgets": {"t": Budget(200)}, "extensions": {"operators": {"x": "package:X"}},
+    "simulated": {"t": 20.0}, "extensions": {"operators": {"x": "package:X"}},
     "instrumentation": Instrumentation(()),
 }  # fmt: skip
 
@@ -19,7 +19,7 @@ PARTS: dict[str, Any] = {
 def test_processes_below_a_fork_are_told_what_they_need() -> None:
     job = Job(vocabulary=Vocabulary(), reaching={"m": (0,)}, **PARTS)
     below = job.below(MUTANT, (Choice(1, 0),))
-    assert (below.mutant, below.tests, below.reaching, below.budgets) == (MUTANT, None, {}, {})
+    assert (below.mutant, below.tests, below.reaching, below.simulated) == (MUTANT, None, {}, {})
     assert below.instrumentation == Instrumentation((), active=(Choice(1, 0),))
     assert job.is_of_text
 
@@ -28,4 +28,4 @@ def test_where_calls_are_seen_they_count_for_the_limits_of_tests() -> None:
     operations = (Operation("robot:Arm.move", ()),)
     for vocabulary in (Vocabulary(operations=operations), Vocabulary(clock=Clock("robot:now"))):
         below = Job(vocabulary=vocabulary, **PARTS).below(MUTANT, ())
-        assert (below.budgets, below.extensions) == (PARTS["budgets"], PARTS["extensions"])
+        assert (below.simulated, below.extensions) == (PARTS["simulated"], PARTS["extensions"])

@@ -19,7 +19,7 @@ from typing import Any
 
 from mutabot.model import Mutant, Operation, Role, Site, Vocabulary
 from mutabot.model.events import SiteSeen
-from mutabot.model.job import Budget, Job
+from mutabot.model.job import Job
 from mutabot.model.operation import Form
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
@@ -207,7 +207,6 @@ class ClientStage:
             seed=1,
             round=0,
             mutant=mutant,
-            budgets={"test": Budget()},
             inspect=False,
             oracle_nodes=oracle_nodes,
         )

@@ -20,7 +20,7 @@ from unittest import mock
 from mutabot.config.vocabulary import load
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.events import Event, SiteSeen
-from mutabot.model.job import Budget, Job
+from mutabot.model.job import Job
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import loading
@@ -83,7 +83,7 @@ class Stage:
         return load(["robot.toml"], self.folder)
 
     def session(
-        self, mutant: Mutant | None = None, *, budget: Budget | None = None, inspect: bool = False
+        self, mutant: Mutant | None = None, *, simulated: float | None = None, inspect: bool = False
     ) -> Session:
         """A session with everything in place, in the middle of a test."""
         job = Job(
@@ -94,7 +94,7 @@ class Stage:
             seed=1,
             round=0,
             mutant=mutant,
-            budgets={"test": budget or Budget()},
+            simulated={} if simulated is None else {"test": simulated},
             inspect=inspect,
         )
         locator = Locator(job.root, job.program, job.oracle)

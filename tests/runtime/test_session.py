@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mutabot.model.events import Acted, Problem
-from mutabot.model.job import Budget
 from mutabot.operators.command import FatalFault
-from mutabot.runtime.evidence import BudgetExceeded
+from mutabot.runtime.evidence import Meter, TimeExceeded
 from tests.runtime.stage import Make
 
 ROBOT = """
@@ -148,25 +147,6 @@ def test_noise_is_the_same_for_the_same_seed_and_differs_between_hits(make_stage
     assert activation.evidence.acted == 3
 
 
-def test_more_operations_than_the_budget_end_the_test(make_stage: Make) -> None:
-    program = """
-        from robot import move
-
-        def run():
-            while True:
-                try:
-                    move(0.1)
-                except Exception:
-                    pass
-    """
-    stage = make_stage(ROBOT, program, VOCABULARY)
-    session = stage.session(budget=Budget(operations=50))
-    with pytest.raises(BudgetExceeded, match="more than 50 operations"):
-        stage.run(session)
-    assert session.meter is not None
-    assert session.meter.exceeded == "more than 50 operations"
-
-
 CLOCKED = """
     class Simulation:
         def __init__(self): self.time = 0.0
@@ -185,14 +165,24 @@ CLOCKED = """
         'clock = { tick = "robot:Simulation.step", step = 10, unit = "ms" }',
     ],
 )
-def test_more_simulated_time_than_the_budget_ends_the_test(make_stage: Make, clock: str) -> None:
+def test_more_simulated_time_than_its_limit_ends_the_test(make_stage: Make, clock: str) -> None:
     tick = "tick" if "Simulation.tick" in clock else "step"
     program = f"import robot\n\ndef run():\n    s = robot.Simulation()\n    while True:\n        s.{tick}()\n"
     vocabulary = f'{clock}\n[[operation]]\ncall = "robot:Simulation.{"step" if tick == "tick" else "tick"}"\n'
     stage = make_stage(CLOCKED, program, vocabulary)
-    session = stage.session(budget=Budget(simulated=1.0))
-    with pytest.raises(BudgetExceeded, match="simulated time"):
+    session = stage.session(simulated=1.0)
+    with pytest.raises(TimeExceeded, match="simulated time"):
         stage.run(session)
+
+
+def test_simulated_time_is_no_limit_until_processor_time_was_used() -> None:
+    meter = Meter(limit=1.0, spare=1e9)
+    for time in range(1000):
+        meter.tick(float(time))
+    assert (meter.simulated, meter.exceeded) == (999.0, None)
+    meter.spare = 0.0
+    with pytest.raises(TimeExceeded, match="more than 1 s of simulated time"):
+        meter.tick(1000.0)
 
 
 @pytest.mark.parametrize(

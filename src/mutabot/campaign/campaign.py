@@ -17,14 +17,20 @@ from mutabot.execution.task import Executor, Task
 from mutabot.execution.workers import Workers
 from mutabot.families import CONTROL
 from mutabot.model import Mutant, Outcome
+from mutabot.model.deadline import Limit
 
 if TYPE_CHECKING:
     from mutabot.model.job import Job
 
 #: a mutant in a round
 MutantRun = tuple[Mutant, int]
-#: how many times its baseline's wall clock a test may take before the safety net ends it
-WALL_FACTOR = 10.0
+#: seconds by the clock on the wall that any test gets at least: the mutant may wait for what comes at last
+WAITING = 60.0
+#: seconds of processor time that any test gets beside a multiple of the baseline's; and what so many calls of
+#: operations take to be looked at as no poll loop makes if its end is near
+SPARE, SPARE_FOR_CALLS = 2.0, 8.0
+#: seconds of simulated time likewise
+SPARE_SIMULATED = 10.0
 
 
 @dataclass(frozen=True)
@@ -83,20 +89,19 @@ class Campaign:
             instrumentation=faults.instrumentation([mutant], active=True),
             faults=faults.in_process(mutant),
         )  # fmt: skip
-        walls, least = self.wall_limits(round, tests), request.configuration.timeout_seconds
-        alone = self.baseline.is_exclusive(round)
-        return Task((mutant, round), job, walls, least, self.startup_limit, alone=alone)
+        limits, alone = self.limits(round, tests), self.baseline.is_exclusive(round)
+        return Task((mutant, round), job, limits, self.startup_limit, self.startup_limit, alone=alone)
 
     def job(self, round: int, tests: tuple[str, ...], mutants: Iterable[Mutant], **details: Any) -> Job:
         """The job of running these tests as these mutants, with the limits that the baseline gives."""
-        factor = self.request.configuration.timeout_factor
         refused = ((test, self.baseline.refused.get((round, test))) for test in tests)
         return self.request.job(
             round,
             tests=tests,
             record=True,
             reaching=self.reaching(mutants, round),
-            budgets={test: self.baseline.budget(round, test, factor) for test in tests},
+            simulated=self._simulated(round, tests),
+            spare=self._spare,
             moments=self.baseline.probe_intervals.get(round, {}),
             refused={test: calls for test, calls in refused if calls},
             known=self.baseline.known,
@@ -104,14 +109,50 @@ class Campaign:
         )
 
     @property
-    def startup_limit(self) -> float:
-        """Seconds of wall clock that a mutant may take until its first test begins."""
-        return max(self.request.configuration.timeout_seconds, WALL_FACTOR * self.baseline.startup)
+    def startup_limit(self) -> Limit:
+        """What a mutant may take until its first test begins."""
+        startup = self.baseline.startup
+        return self._limit(startup, startup)
 
-    def wall_limits(self, round: int, tests: Iterable[str]) -> dict[str, float]:
-        """Seconds of wall clock that each test may take: the safety net behind the other limits."""
-        least, ends = self.request.configuration.timeout_seconds, self.baseline.ends
-        return {test: max(least, WALL_FACTOR * ends[round, test].wall) for test in tests}
+    def limits(self, round: int, tests: Iterable[str]) -> dict[str, Limit]:
+        """What a mutant may take for each of these tests, of which it may run some alone.
+
+        A test that comes after others which are not run may be the first to prepare what these did.
+        """
+        run, found = set() if self.is_short else set(tests), dict[str, Limit]()
+        wall = processor = 0.0
+        for test in self.baseline.suite(round):
+            end = self.baseline.ends[round, test]
+            found[test] = self._limit(end.wall, end.cpu).with_more(wall, processor)
+            if test not in run:
+                wall, processor = wall + end.wall, processor + end.cpu
+        return found
+
+    def _limit(self, wall: float, processor: float) -> Limit:
+        """What that may take which took so many seconds on the original."""
+        factor, least = self._factor, self.request.configuration.timeout_seconds
+        if least is None:
+            return Limit(max(WAITING, factor * wall), self._spare + factor * processor)
+        return Limit(max(least, factor * wall), max(least, factor * processor))
+
+    def _simulated(self, round: int, tests: Iterable[str]) -> dict[str, float]:
+        """How much simulated time each test may take that takes any on the original."""
+        times = {test: self.baseline.ends[round, test].simulated for test in tests}
+        return {
+            test: SPARE_SIMULATED + self._factor * time for test, time in times.items() if time is not None
+        }
+
+    @property
+    def _factor(self) -> float:
+        return self.request.configuration.timeout_factor
+
+    @property
+    def _spare(self) -> float:
+        """Seconds of processor time that any test gets beside a multiple of the baseline's."""
+        least = self.request.configuration.timeout_seconds
+        if least is not None:
+            return least
+        return SPARE + (SPARE_FOR_CALLS if self.request.vocabulary.operations else 0.0)
 
 
 def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:

@@ -143,12 +143,13 @@ class Settings(Table):
         selection = "published.txt"
     """
     timeout_factor: Annotated[float, Field(gt=1, le=options.FACTOR)] = 10.0
-    """How many times the original's operations and simulated time a mutant may use in a test.
+    """How many times what a test takes on the original it may take with a mutant:
+    [limits of time](verdicts.md#limits-of-time).
 
         timeout_factor = 3.0
     """
-    timeout_seconds: Annotated[float, Field(gt=0, le=options.SECONDS)] = 60.0
-    """Seconds of wall clock that every test gets at least:
+    timeout_seconds: Annotated[float, Field(gt=0, le=options.SECONDS)] | None = None
+    """Seconds that every test may take at least, by the clock and of processor time; without, by
     [limits of time](verdicts.md#limits-of-time).
 
         timeout_seconds = 300.0

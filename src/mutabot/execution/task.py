@@ -15,6 +15,7 @@ from typing import Any, Protocol
 
 from mutabot.frozen import frozen
 from mutabot.model import Span, events
+from mutabot.model.deadline import Limit
 from mutabot.model.event_file import UNWRITTEN
 from mutabot.model.job import Job
 
@@ -60,9 +61,9 @@ class Task:
     Attributes:
         key: what the caller knows it by.
         job: the job.
-        deadlines: wall-clock seconds each test may take; tests that are missing get ``deadline``.
-        deadline: wall-clock seconds for any other test.
-        startup: wall-clock seconds until the first test begins.
+        deadlines: what each test may take; tests that are missing get ``deadline``.
+        deadline: the same for any other test.
+        startup: the same until the first test begins.
         is_fork_parent: whether it forks: it then runs on a token of the pool.
         may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
         alone: whether nothing may run beside it.
@@ -70,9 +71,9 @@ class Task:
 
     key: Any
     job: Job
-    deadlines: Mapping[str, float] = field(default_factory=dict)
-    deadline: float = 600.0
-    startup: float = STARTUP_SECONDS
+    deadlines: Mapping[str, Limit] = field(default_factory=dict)
+    deadline: Limit = Limit(600.0)
+    startup: Limit = Limit(STARTUP_SECONDS)
     is_fork_parent: bool = False
     may_share: bool = False
     alone: bool = False
@@ -98,7 +99,7 @@ class Result:
         watched: limits of the suite's own that would end it during that test.
         end: its orderly end; None if there was none.
         exit_code: its exit code, negative for a signal.
-        overdue: which wall-clock limit it exceeded, in words, or None.
+        overdue: which limit of time it exceeded, in words, or None.
         hindered: why that says little of it, as the machine was busy, in words; None if it was not.
         is_starved: whether it was ended although it had not had its time, as it would have taken too long.
         wall: seconds from its start to its end.

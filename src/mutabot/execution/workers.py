@@ -33,9 +33,9 @@ from mutabot.execution.processes import (
 )
 from mutabot.execution.remains import claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.task import Result, Task
+from mutabot.model.deadline import Deadline
 from mutabot.model.events import Acted, Event, TestEnd, TestStart, Untrusted
 from mutabot.model.fold import Children, acted_in
-from mutabot.model.process_time import MOST, TimeUsed, overdue
 
 _BYTE = b"t"
 #: bytes that a pipe holds at most
@@ -237,7 +237,7 @@ class Workers:
         self._servers.append(server)
         for descriptor in (server.events.bell, server.process.pidfd):  # with it, its copies end
             self._selector.register(descriptor, selectors.EVENT_READ, server)
-        reason = server.wait_until_ready(task.startup, self.look)
+        reason = server.wait_until_ready(task.startup.wall, self.look)
         if reason is None:
             return server
         self._may_share = False
@@ -272,7 +272,7 @@ class Workers:
                     yield key.data.task, line
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.until and not worker.has_ended and worker.is_out_of_time():
+            if now >= worker.deadline.until and not worker.has_ended and worker.is_out_of_time():
                 worker.expire()
             if worker.has_ended:
                 yield from self._finish(worker)
@@ -281,7 +281,7 @@ class Workers:
         """Seconds until something is to be looked at, whatever happens; None if nothing is."""
         if any(worker.has_ended for worker in self._workers):
             return 0.0  # a fork server may have told so while it was asked for something else
-        until = min((worker.until for worker in self._workers), default=None)
+        until = min((worker.deadline.until for worker in self._workers), default=None)
         return None if until is None else max(0.0, until - time.monotonic())
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Event]]:
@@ -307,7 +307,7 @@ class _Worker:
         self._home, self.process = home, process
         self.left: list[str] | None = None
         self._started = time.monotonic()
-        self._allow(task.startup)
+        self.deadline = Deadline(task.startup)
 
     @property
     def has_ended(self) -> bool:
@@ -324,36 +324,26 @@ class _Worker:
         return self._taken(self.events.read())
 
     def _taken(self, events: list[Event]) -> list[Event]:
-        seconds = None
+        limit = None
         for event in events:
             self.result.take(event)
             if isinstance(event, TestEnd):
-                seconds = self.task.startup
+                limit = self.task.startup
             elif isinstance(event, TestStart) or self.task.is_fork_parent:
-                seconds = self.task.deadlines.get(self.result.running or "", self.task.deadline)
-        if seconds is not None:
-            self._allow(seconds)
+                limit = self.task.deadlines.get(self.result.running or "", self.task.deadline)
+        if limit is not None:
+            self.deadline = Deadline(limit)
         return events
 
-    def _allow(self, seconds: float) -> None:
-        """From now on it may take so long."""
-        self._limit, self._used = seconds, TimeUsed.from_now([self.process.pid])
-        self.until = self._used.began + seconds
-
     def is_out_of_time(self) -> bool:
-        """Whether it has used its time, now that the wall clock has run out; if not, it gets what is left."""
-        left = self._used.left(self._limit, [self.process.pid])
-        if left > 0:
-            self.until = time.monotonic() + max(left, LOOKS)
-        return left <= 0
+        """Whether it has used its time."""
+        return self.deadline.is_over(self.process.pid)
 
     def expire(self) -> None:
         """Its time is up: end the process group."""
-        self.result.hindered = self._used.hindrance([self.process.pid])
-        self.result.is_starved = time.monotonic() >= self._used.began + MOST * self._limit
-        test = self.result.running
-        limit = self.task.startup if test is None else self.task.deadlines.get(test, self.task.deadline)
-        self.result.overdue = overdue(limit, test)
+        deadline = self.deadline
+        self.result.hindered, self.result.is_starved = deadline.hindered, deadline.is_starved
+        self.result.overdue = deadline.overdue(self.result.running)
         self.process.end()
 
     def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result]:
@@ -362,7 +352,7 @@ class _Worker:
         lines = self._taken([] if self._home.is_whole else [_HOME_LOST])
         lines += self._taken(self.events.read(is_last=True))
         if self.result.find_overdue(time.monotonic()):
-            self.result.hindered = self._used.hindrance()
+            self.result.hindered = self.deadline.used.hindrance()
         if self.result.end is None:
             children = Children(str(self._home.folder), self._home.key)
             children.read()

@@ -281,7 +281,7 @@ class ForkDied(Event):
         mutant: id of the mutant it was.
         test: the test it was in; empty before any.
         exit_code: its exit code, negative for a signal.
-        overdue: which wall-clock limit it exceeded, in words, or None.
+        overdue: which limit of time it exceeded, in words, or None.
         hindered, is_starved: as in ``Result``.
         acted: whether the mutant had changed anything.
         in_mutated_call: whether it was in the midst of a mutated call.
@@ -465,7 +465,7 @@ class Did(Event):
 
 @frozen
 class Used(Event):
-    """What the process used of the running test's budget by now: the last one counts.
+    """What the process has used in the running test by now: the last one counts.
 
     ``exceeded`` is the limit that was exceeded, in words.
     """

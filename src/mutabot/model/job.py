@@ -15,6 +15,7 @@ from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
+from mutabot.model.deadline import Limit
 from mutabot.model.mutant import Choice, Instrumentation, Mutant, Span
 from mutabot.model.operation import Vocabulary
 
@@ -22,19 +23,6 @@ from mutabot.model.operation import Vocabulary
 JOB_VARIABLE = "MUTABOT_JOB"
 #: environment variable with the number of the pipe's writing end
 PIPE_VARIABLE = "MUTABOT_PIPE"
-
-
-@frozen
-class Budget:
-    """What one test may use before it counts as timed out.
-
-    Attributes:
-        operations: intercepted calls; None for no limit.
-        simulated: simulated seconds; None for no limit.
-    """
-
-    operations: int | None = None
-    simulated: float | None = None
 
 
 @frozen
@@ -72,8 +60,8 @@ class Forking:
     Attributes:
         mutants: the mutants that are alive in this round.
         tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
-        walls: wall-clock seconds that a fork may take for a test, by test.
-        wall: the same for tests that are missing there.
+        limits: the time that a fork may take for a test, by test.
+        limit: the same for tests that are missing there.
         startup: the same until its first test begins.
         choices: of mutants that are alternatives in the program text: which, by id.
         every_test: whether a fork goes on after a test that decided about its mutant.
@@ -84,9 +72,9 @@ class Forking:
 
     mutants: tuple[Mutant, ...]
     tokens: tuple[int, int] = (-1, -1)
-    walls: Mapping[str, float] = field(default_factory=dict)
-    wall: float = 600.0
-    startup: float = 600.0
+    limits: Mapping[str, Limit] = field(default_factory=dict)
+    limit: Limit = Limit(600.0)
+    startup: Limit = Limit(600.0)
     choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
     every_test: bool = False
     serial: bool = False
@@ -122,7 +110,9 @@ class Job:
         mutant: the fault to plant; None for the original.
         record: whether to report traces and values.
         stop_at_kill: whether to stop after the first test that fails for another reason than a refusal.
-        budgets: limits by node id.
+        simulated: seconds of simulated time that each test may take, by node id; those that are missing may
+            take any.
+        spare: seconds of processor time within which no test has exceeded that.
         memory: address space limit in bytes; None for no limit.
         moments: after every how many commands the probes are read along the way, by node id; tests that are
             missing are read at their end only.
@@ -154,7 +144,8 @@ class Job:
     mutant: Mutant | None = None
     record: bool = False
     stop_at_kill: bool = False
-    budgets: Mapping[str, Budget] = field(default_factory=dict)
+    simulated: Mapping[str, float] = field(default_factory=dict)
+    spare: float = 0.0
     memory: int | None = None
     moments: Mapping[str, int] = field(default_factory=dict)
     inspect: bool = False
@@ -180,7 +171,7 @@ class Job:
         """The job of the processes below a fork that is this mutant, which all read it: what they need."""
         text = self.instrumentation.only(choices) if self.instrumentation is not None else None
         slim = replace(self, mutant=mutant, forking=None, instrumentation=text, reaching={}, tests=None)
-        return replace(slim, budgets={}, extensions={}) if self.is_of_text else slim
+        return replace(slim, simulated={}, extensions={}) if self.is_of_text else slim
 
     def left_out(self, mutant: str) -> frozenset[str]:
         """The tests that are not run as this mutant once one has reached it."""

@@ -8,6 +8,7 @@ nothing; one that wants to compute and has no processor looks just as idle to a 
 from __future__ import annotations
 
 import os
+import resource
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
@@ -33,13 +34,6 @@ class Account:
 
 #: by the number of the task; None where the kernel keeps no such accounts
 Accounts = Mapping[int, Account] | None
-
-
-def overdue(seconds: float, test: str | None) -> str:
-    """Which limit of wall clock a process has exceeded, in words; without a ``test``, before it began one."""
-    if test:
-        return f"no end after {seconds:.0f} s of wall clock"
-    return f"no test begun or finished within {seconds:.0f} s"
 
 
 def accounts_of(processes: Iterable[int]) -> Accounts:
@@ -75,6 +69,19 @@ def below(roots: Iterable[int], children: Mapping[int, Iterable[int]]) -> set[in
             found.add(pid)
             due += children.get(pid, ())
     return found
+
+
+def ran_below() -> float:
+    """Seconds that processes below this one have been on a processor: those that ended and those that run."""
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = ended.ru_utime + ended.ru_stime
+    try:
+        os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+    except ChildProcessError:  # there is none: to look for them would take long
+        return seconds
+    here = os.getpid()
+    found = accounts_of(below([here], children()) - {here})
+    return seconds + sum(account.ran for account in (found or {}).values())
 
 
 def shortage() -> float | None:
@@ -118,7 +125,7 @@ def _read(path: str) -> str:
         return file.read()
 
 
-#: a limit is extended to this many times its length at most
+#: a limit of wall clock is extended to this many times its length at most
 MOST = 10.0
 #: the share of the time in the queue, and that in which processors were short, which make a time-out doubtful
 _QUEUED, _SHORT = 0.1, 0.5
@@ -141,7 +148,7 @@ class TimeUsed:
 
     @classmethod
     def from_now(cls, processes: Iterable[int] = ()) -> TimeUsed:
-        """The time of these processes, and of those that they start, begins."""
+        """The time of these processes begins; that of any other begins with its start."""
         return cls(monotonic(), accounts_of(processes), shortage())
 
     @property
@@ -149,20 +156,21 @@ class TimeUsed:
         """Seconds since then."""
         return monotonic() - self.began
 
-    def left(self, limit: float, processes: Iterable[int]) -> float:
-        """Seconds until so many are used up, if the processes, and those below them, are not held up again.
+    def left(
+        self, wall: float, processor: float | None, processes: Iterable[int]
+    ) -> tuple[float, float | None]:
+        """Seconds until so many are used up, of each kind, if the processes are not held up again.
 
-        0 or less: they are, or ``MOST`` times as many have passed.
+        0 or less: they are used up. Of the wall clock they are also if ``MOST`` times as many have passed.
         """
-        passed = monotonic() - self.began
-        if passed >= MOST * limit:
-            return 0.0
+        passed = self.age
         ran, queued = self._had(processes)
-        return limit - max(ran, passed - min(queued, passed))
+        left = 0.0 if passed >= MOST * wall else wall - (passed - min(queued, passed))
+        return left, None if processor is None else processor - ran
 
     def hindrance(self, processes: Iterable[int] = ()) -> str | None:
         """Why nobody can say that the time was enough, in words; None if the machine was quiet enough."""
-        passed = monotonic() - self.began
+        passed = self.age
         _, queued = self._had(processes)
         if min(queued, passed) >= _QUEUED * passed:
             share = min(1.0, queued / passed) if passed else 1.0

@@ -1,15 +1,14 @@
-"""Evidence of a mutant at work, the exceptions that it causes, and the budget of a test."""
+"""Evidence of a mutant at work, the exceptions that it causes, and the time of a test."""
 
 from __future__ import annotations
 
 import resource
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from math import inf
-from typing import Any, NoReturn
+from time import process_time  # tests may replace that of the module
+from typing import Any
 
 from mutabot.errors import MutabotError
-from mutabot.model.job import Budget
 from mutabot.model.path import class_name
 
 #: classes that are told by their names, since their modules may not be loaded, with what they hold
@@ -135,8 +134,8 @@ class Evidence:
         return str(leaves(self.refusals[-1])[0]) if self.refusals else self.said
 
 
-class BudgetExceeded(BaseException):  # it is no error of the program's
-    """A test used more than its budget. Not an ``Exception``, so that no program handles it by mistake."""
+class TimeExceeded(BaseException):  # it is no error of the program's
+    """A test took too much simulated time. Not an ``Exception``, so that no program handles it by mistake."""
 
 
 @dataclass(slots=True)
@@ -144,27 +143,31 @@ class Meter:
     """What the running test has used so far.
 
     Attributes:
-        budget: its limits.
+        limit: seconds of simulated time that it may take; None for any.
+        spare: seconds of processor time within which it has not exceeded that: a loop whose end is near may
+            ask a simulated clock many times in a moment.
         operations: intercepted calls so far.
-        most: how many there may be.
         started, now: simulated time at the test's first tick and at its last one, s; None before.
         used: simulated time that earlier clocks of the same test counted, s.
-        exceeded: the first limit that was exceeded, in words.
+        exceeded: the limit that was exceeded, in words.
+        began: processor time of this process when it began with the test, s.
     """
 
-    budget: Budget
+    limit: float | None = None
+    spare: float = 0.0
     operations: int = 0
     started: float | None = None
     now: float | None = None
     used: float = 0.0
     exceeded: str | None = None
-    most: float = field(init=False)
+    began: float = field(default_factory=process_time)
 
-    def __post_init__(self) -> None:
-        self.most = inf if self.budget.operations is None else self.budget.operations
+    def go_on_in_copy(self) -> None:
+        """This process was just forked: its processor time begins anew."""
+        self.began = process_time()
 
     def tick(self, time: float) -> None:
-        """The simulation has advanced to ``time`` (s). Raises BudgetExceeded beyond the limit."""
+        """The simulation has advanced to ``time`` (s). Raises TimeExceeded beyond the limit."""
         if self.started is None or self.now is None:
             self.started = time
         elif time < self.now:  # a new simulation began in the same test
@@ -173,16 +176,15 @@ class Meter:
         self._reach(time)
 
     def advance(self, seconds: float) -> None:
-        """The simulation has advanced by a step (s). Raises BudgetExceeded beyond the limit."""
+        """The simulation has advanced by a step (s). Raises TimeExceeded beyond the limit."""
         if self.started is None or self.now is None:
             self.started = self.now = 0.0
         self._reach(self.now + seconds)
 
     def _reach(self, time: float) -> None:
         self.now = time
-        limit = self.budget.simulated
-        if limit is not None and (self.simulated or 0.0) > limit:
-            self.exceed(f"more than {limit:.6g} s of simulated time")
+        if self.limit is not None and (self.simulated or 0.0) > self.limit:
+            self._exceed(self.limit)
 
     @property
     def simulated(self) -> float | None:
@@ -191,10 +193,10 @@ class Meter:
             return None
         return self.used + self.now - self.started
 
-    def exceed(self, text: str) -> NoReturn:
-        """End a test that goes beyond a limit. Raises BudgetExceeded."""
-        self.exceeded = self.exceeded or text
-        raise BudgetExceeded(text)
+    def _exceed(self, limit: float) -> None:
+        if process_time() - self.began > self.spare:
+            self.exceeded = self.exceeded or f"more than {limit:.6g} s of simulated time"
+            raise TimeExceeded(self.exceeded)
 
 
 def limit_memory(limit: int) -> None:

@@ -11,7 +11,6 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSeen, TextsSeen
-from mutabot.model.job import Budget, Job
 from mutabot.model.operation import owner_of
 from mutabot.runtime.evidence import Evidence, Meter
 from mutabot.runtime.inspection import Inspection
@@ -31,6 +30,7 @@ from mutabot.runtime.targets.target import Finding, Handler, Messages
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.model import Choice, Moment, Mutant, Operation, Probe
+    from mutabot.model.job import Job
     from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import EventWriter
     from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -117,7 +117,7 @@ class Session:
             self.activate(self.job.mutant)
         if self.job.record or self.job.serving is not None:
             # what the program does while it is imported counts for every test that comes after
-            self.passing.meter = Meter(Budget())
+            self.passing.meter = Meter()
             is_original = self.job.mutant is None
             self.recorder.answers = Answers(handles_of(vocabulary)) if is_original else None
             self._start_mutant()
@@ -230,6 +230,8 @@ class Session:
     def become(self, mutant: Mutant, choices: Iterable[Choice]) -> None:
         """In a process that was just forked: be this mutant, with its alternatives in the program text."""
         self.passing.fork_parent, self.is_fork = None, True
+        if self.meter is not None:
+            self.meter.go_on_in_copy()
         self.activate(mutant)
         self._start_mutant()
         if self.text is not None:
@@ -257,7 +259,7 @@ class Session:
                 self.mutant.early = self.mutant.evidence
         self.test = test
         self.standing.note_modules(self.call_sites.loaded)
-        self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
+        self.passing.meter = Meter(self.job.simulated.get(test), self.job.spare)
         is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()

@@ -16,7 +16,7 @@ from mutabot.model import By, Role, Vocabulary
 from mutabot.model.events import TestEnd
 from mutabot.model.path import class_name
 from mutabot.runtime import FOLDER, real_path
-from mutabot.runtime.evidence import BudgetExceeded, Evidence, failure_in, is_due_to, leaves
+from mutabot.runtime.evidence import Evidence, TimeExceeded, failure_in, is_due_to, leaves
 from mutabot.runtime.targets.target import is_named
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def _lines(error: BaseException) -> list[str]:
 
 def _is_timeout(error: BaseException) -> bool:
     """Whether a limit ended the test: ours, or one of the suite's own."""
-    if isinstance(error, BudgetExceeded) or is_named(error, _TIMEOUTS):
+    if isinstance(error, TimeExceeded) or is_named(error, _TIMEOUTS):
         return True
     return isinstance(error, pytest.fail.Exception) and any(
         frame.f_globals.get("__name__") == "pytest_timeout" for frame, _ in _from_the_raise(error)

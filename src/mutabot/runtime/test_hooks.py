@@ -20,7 +20,7 @@ import pytest
 from mutabot.model import By, Mutant
 from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
-from mutabot.model.process_time import TimeUsed
+from mutabot.model.process_time import TimeUsed, ran_below
 from mutabot.runtime import seeds
 from mutabot.runtime.executed import STARTS, ExecutedUnits
 from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
@@ -148,9 +148,15 @@ class TestHooks:
 
     def start_clocks(self, *, is_new: bool = False) -> None:
         """Count from now on what the test takes; ``is_new``: in a process that was just forked."""
-        self._started = (perf_counter(), process_time())
+        self._started = (perf_counter(), self._ran())
         if is_new or self._used.age > _RECENT:
             self._used = TimeUsed.from_now([os.getpid()])
+
+    def _ran(self) -> float:
+        """Processor seconds of this process; in the baseline, also of those below it, which limits count."""
+        job = self.session.job
+        is_baseline = job.mutant is None and job.forking is None
+        return process_time() + (ran_below() if is_baseline else 0.0)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
@@ -269,7 +275,7 @@ class TestHooks:
             self._failure, self._outcome = None, PASSED
         session, returns = self.session, self.session.returns
         evidence, meter = session.evidence, session.meter
-        wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
+        wall, cpu = perf_counter() - self._started[0], self._ran() - self._started[1]
         assert meter is not None
         # of a test that a mutant neither reached nor failed, it is told what was executed in that test alone
         is_mutant = session.job.mutant is not None or self.fork is not None

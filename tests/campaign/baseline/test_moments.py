@@ -146,20 +146,6 @@ def test_a_first_run_that_was_not_read_along_the_way_is_equal_to_one_that_was() 
     assert baseline.inexact == {(0, "t")}
 
 
-def test_where_equal_runs_make_different_numbers_of_calls_only_time_limits_a_mutant() -> None:
-    baseline = Baseline()
-    for test, again in (("steady", 80), ("waits", 95)):
-        baseline.ends[0, test] = TestEnd(test, "passed", operations=80, simulated=2.0)
-        baseline.observations[0, test] = moved(0.0)
-        end = TestEnd(test, "passed", operations=again, simulated=2.0)
-        baseline.compare_runs(0, end, moved(0.0), Vocabulary(()))
-    steady, waits = (baseline.budget(0, test, 10.0) for test in ("steady", "waits"))
-    assert steady.operations is not None
-    assert steady.operations >= 800
-    assert waits.operations is None
-    assert waits.simulated == steady.simulated
-
-
 def test_the_cost_of_a_reading_decides_how_often() -> None:
     def end(reading: float | None, commands: int = 40, cpu: float = 1.0, why: str | None = None) -> TestEnd:
         return TestEnd("t", "passed", commands=commands, cpu=cpu, reading=reading, not_along=why)

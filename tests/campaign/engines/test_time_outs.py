@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,9 +14,9 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.verdict import Death, Run, _ruling
-from mutabot.execution import workers
 from mutabot.execution.workers import Workers
-from mutabot.model import Outcome, Verdict, process_time
+from mutabot.model import Outcome, Verdict, deadline, process_time
+from mutabot.model.deadline import Deadline, Limit
 from mutabot.model.process_time import TimeUsed
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 
@@ -162,7 +162,7 @@ def test_a_mutant_that_never_gets_its_time_is_no_time_out(
     tmp_path: Path, begun: list[tuple[bool, int]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(process_time, "MOST", 1.2)
-    monkeypatch.setattr(workers, "MOST", 1.2)
+    monkeypatch.setattr(deadline, "MOST", 1.2)
     with loops(16):
         found, _ = campaign(tmp_path, "compute(1000)", "replay")
     assert found.verdict is Verdict.UNSTABLE
@@ -183,13 +183,13 @@ def test_who_had_too_little_time_is_not_judged() -> None:
 def test_time_in_the_queue_is_not_used() -> None:
     with loops(10) as (one, *_):
         used = TimeUsed.from_now([one])
-        while used.left(1.0, [one]) > 0:  # until it has been on the processor for that long
+        while (used.left(1e9, 1.0, [one])[1] or 0.0) > 0:  # until it has been on the processor for that long
             pass
         passed = process_time.monotonic() - used.began
         assert passed > 2.0
         assert used.hindrance([one]) is not None
-        assert used.left(2 * passed, [one]) > 0
-        assert used.left(passed / process_time.MOST, [one]) <= 0  # whatever it had
+        assert used.left(2 * passed, None, [one])[0] > 0
+        assert used.left(passed / process_time.MOST, None, [one])[0] <= 0  # whatever it had
 
 
 def test_time_asleep_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -197,9 +197,87 @@ def test_time_asleep_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
     process = subprocess.Popen(["sleep", "600"])
     try:
         used = TimeUsed.from_now([process.pid])
-        while used.left(0.5, [process.pid]) > 0:
+        while used.left(0.5, None, [process.pid])[0] > 0:
             pass
         assert process_time.monotonic() - used.began >= 0.5
     finally:
         process.kill()
         process.wait()
+
+
+class Clock:
+    """A machine of which a test says what a process has had."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = self.ran = self.queued = 0.0
+        for module in (deadline, process_time):
+            monkeypatch.setattr(module, "monotonic", lambda: self.now)
+        monkeypatch.setattr(process_time, "shortage", lambda: 0.0)
+        monkeypatch.setattr(process_time, "children", dict)
+        monkeypatch.setattr(process_time, "accounts_of", self.accounts)
+
+    def accounts(self, processes: Iterable[int]) -> dict[int, process_time.Account]:
+        return {one: process_time.Account(self.ran, self.queued) for one in processes}
+
+    def passes(self, seconds: float, *, ran: float = 0.0, queued: float = 0.0) -> None:
+        self.now, self.ran, self.queued = self.now + seconds, self.ran + ran, self.queued + queued
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    return Clock(monkeypatch)
+
+
+LIMITS = Limit(wall=60.0, processor=5.0)
+
+
+def test_what_computes_is_ended_by_its_processor_time_however_busy_the_machine(clock: Clock) -> None:
+    time = Deadline(LIMITS, is_counted=True)
+    clock.passes(20, ran=4.9, queued=15)
+    assert not time.is_over(1)
+    clock.passes(1, ran=0.2, queued=0.8)
+    assert time.is_over(1)
+    assert time.overdue("t") == "no end after 5 s of processor time"
+    assert (time.hindered, time.is_starved) == (None, False)  # it had its time: to repeat it tells nothing
+
+
+def test_what_waits_is_ended_by_the_clock_on_the_wall(clock: Clock) -> None:
+    time = Deadline(LIMITS, is_counted=True)
+    clock.passes(59, ran=0.1)
+    assert not time.is_over(1)
+    clock.passes(2)
+    assert time.is_over(1)
+    assert time.overdue("t") == "no end after 60 s of wall clock"
+    assert time.hindered is None
+
+
+def test_what_waits_for_a_processor_gets_its_time(clock: Clock) -> None:
+    time = Deadline(LIMITS, is_counted=True)
+    clock.passes(100, ran=0.1, queued=50)
+    assert not time.is_over(1)
+    clock.passes(11)
+    assert time.is_over(1)
+    assert "stood in the queue" in (time.hindered or "")
+
+
+def test_what_a_process_had_before_the_first_look_does_not_count(clock: Clock) -> None:
+    clock.passes(100, ran=90)  # tests before this one
+    time = Deadline(LIMITS)
+    assert time.until <= clock.now + 1
+    clock.passes(1, ran=1)
+    assert not time.is_over(1)
+    clock.passes(4.5, ran=4.5)
+    assert not time.is_over(1)
+    clock.passes(1, ran=1)
+    assert time.is_over(1)
+
+
+def test_where_the_kernel_keeps_no_accounts_the_clock_on_the_wall_ends_all(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(process_time, "accounts_of", lambda processes: None)
+    time = Deadline(LIMITS, is_counted=True)
+    clock.passes(30)
+    assert not time.is_over(1)
+    clock.passes(31)
+    assert time.is_over(1)

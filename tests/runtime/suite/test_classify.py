@@ -21,7 +21,7 @@ from hypothesis import strategies
 
 from mutabot.model import By, Vocabulary
 from mutabot.model.events import TestEnd
-from mutabot.runtime.evidence import BudgetExceeded, Evidence, is_due_to, leaves
+from mutabot.runtime.evidence import Evidence, TimeExceeded, is_due_to, leaves
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.test_end import classify
 
@@ -181,8 +181,8 @@ def test_a_group_is_a_check_if_all_of_it_but_refusals_are() -> None:
     assert found.message == "'y'\n(one of 2 exceptions in a group)"
 
 
-def test_a_budget_in_a_group_is_a_time_out() -> None:
-    assert ending(group(KeyError(), BudgetExceeded("more than 3 operations"))).timeout is not None
+def test_a_limit_in_a_group_is_a_time_out() -> None:
+    assert ending(group(KeyError(), TimeExceeded("more than 3 s of simulated time"))).timeout is not None
 
 
 def test_leaves_are_in_order() -> None:

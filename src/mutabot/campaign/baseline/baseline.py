@@ -24,7 +24,7 @@ from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.model import FATAL, IDENTITY, Operation, Pattern, Vocabulary
 from mutabot.model.answer import is_plain
 from mutabot.model.events import Remark, SiteSeen, TestEnd
-from mutabot.model.job import Budget, Idle, InProcess, RefusedAt
+from mutabot.model.job import Idle, InProcess, RefusedAt
 from mutabot.model.mutant import Choice, Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
 from mutabot.operators.command import Identity
 
@@ -223,10 +223,6 @@ def _extent(span: Span) -> Extent:
     return (span.line, span.column, span.end_line, span.end_column)
 
 
-#: operations and simulated seconds that a test may use beyond its multiple of the baseline
-SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
-
-
 @frozen
 class Hit:
     """One recorded call: the values it wrote and read, and the round and test in which it was made."""
@@ -259,8 +255,6 @@ class Baseline(Original):
         nondeterministic: (round, test) whose trace or probes differ between repetitions; never compared.
         doubted: tests that have failed once where equal runs pass.
         inexact: (round, test) that were not the same to the last bit in all runs of the original.
-        varying_calls: (round, test) in which equal runs made different numbers of calls, as nodes do that
-            look again and again whether something has come: how many they make is a matter of time.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
         prepared: what the providers have found out before, by their names.
@@ -295,7 +289,6 @@ class Baseline(Original):
     remarks: tuple[Remark, ...] = ()
     known: tuple[tuple[Span, str], ...] = ()
     early: set[Place] = field(default_factory=set)
-    varying_calls: set[tuple[int, str]] = field(default_factory=set)
     shares_files: bool = False
 
     def suite(self, round: int) -> tuple[str, ...]:
@@ -359,8 +352,6 @@ class Baseline(Original):
         Only what both have alike can be compared with a mutant's.
         """
         key = (round, end.test)
-        if end.operations != self.ends[key].operations:
-            self.varying_calls.add(key)
         first = self.observations[key]
         if found == first and end.simulated == self.ends[key].simulated:
             return
@@ -400,18 +391,6 @@ class Baseline(Original):
             for test in known.get((other, place), ())
         }
         return [test for where, test in self.unstable if where == round and test in reaching]
-
-    def budget(self, round: int, test: str, factor: float) -> Budget:
-        """What a mutant may use in this test.
-
-        Where the number of calls is a matter of time, only time limits it.
-        """
-        end = self.ends[round, test]
-        is_even = (round, test) not in self.varying_calls
-        return Budget(
-            operations=int(end.operations * factor) + SPARE_OPERATIONS if is_even else None,
-            simulated=None if end.simulated is None else end.simulated * factor + SPARE_SIMULATED,
-        )
 
 
 def cost(end: TestEnd) -> tuple[float, int]:

@@ -23,6 +23,7 @@ from mutabot.faults import Preparation, TextSeen
 from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
+from mutabot.model.deadline import Limit
 from mutabot.model.events import Remark, TestEnd
 from mutabot.model.outcome import first_line
 from mutabot.operators import load_all
@@ -123,7 +124,7 @@ class _Suite:
     def task(self, round: int, repetition: int, **details: Any) -> Task:
         """A run of the original in a round. With forks, imports and collection are done once for all runs."""
         job = self.request.job(round, record=True, known=tuple(self.known.items()), **details)
-        return Task((round, repetition), job, startup=300.0, may_share=self.request.forks)
+        return Task((round, repetition), job, startup=Limit(300.0), may_share=self.request.forks)
 
     def learns(self) -> bool:
         """Whether the runs so far tell of operations where they did not know of them in all tests."""
@@ -286,9 +287,9 @@ def _add_round(
         else:
             baseline.skipped += end.outcome == "skipped"
             good.append(test)
-            baseline.ends[round, test] = replace(
-                end, wall=max([end.wall, *(o.wall for o in others if o)]), recording=None
-            )
+            seen = [end, *(other for other in others if other is not None)]
+            wall, cpu = max(one.wall for one in seen), max(one.cpu for one in seen)
+            baseline.ends[round, test] = replace(end, wall=wall, cpu=cpu, recording=None)
             baseline.observations[round, test] = observation(end, places[0])
             for again, there in zip(others, places[1:], strict=True):
                 if again is not None:

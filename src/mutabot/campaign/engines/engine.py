@@ -33,6 +33,7 @@ from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
+from mutabot.model.deadline import Limit
 from mutabot.model.job import Forking
 
 from .controls import Control, controls_of, run_controls, settled
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from mutabot.model.mutant import Place
 
 #: seconds for a test of the suite without any mutant
-_DEADLINE = 600.0
+_DEADLINE = Limit(600.0)
 #: seconds without any word from a fork parent, beyond what its tests and forks may take
 _PATIENCE = 60.0
 #: mutants under which a part costs more than it spreads, and parts for each place: they are not equally long
@@ -393,7 +394,7 @@ class _ForkParent:
     def task(self, key: int, text: Instrumentation | None) -> Task:
         """The task that runs the fork parent."""
         campaign, baseline, mutants = self._campaign, self._baseline, self.mutants
-        walls = campaign.wall_limits(self._round, self._tests)
+        limits = campaign.limits(self._round, self._tests)
         choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
         at_start: dict[str, tuple[str, ...]] = {}  # where tests have processes below them
         for mutant in mutants:
@@ -402,8 +403,8 @@ class _ForkParent:
                     at_start[test] = (*at_start.get(test, ()), mutant.id)
         forking = Forking(
             mutants=mutants,
-            walls=walls,
-            wall=max(walls.values(), default=0.0),
+            limits=limits,
+            limit=max(limits.values(), key=lambda one: one.wall, default=campaign.startup_limit),
             startup=campaign.startup_limit,
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=campaign.request.every_test,
@@ -414,7 +415,7 @@ class _ForkParent:
         for fork in self._open.values():
             fork.left_out = job.left_out(fork.mutant.id)
         # it waits for forks that go to the end
-        patience = 2.0 * sum(walls.values()) + forking.startup + _PATIENCE
+        patience = Limit(2.0 * sum(one.wall for one in limits.values()) + forking.startup.wall + _PATIENCE)
         may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
         return Task(
             key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=forking.serial

@@ -124,8 +124,6 @@ class Dispatcher:
                 return wrapped(*args, **kwargs)
             if is_counted and not where.is_again:
                 self.meter.operations += 1
-                if self.meter.operations > self.meter.most:
-                    self.meter.exceed(f"more than {self.meter.most} operations")
             frame = sys._getframe(1)
             site = where.site or self._site(frame, where, adapter)
             if site is None:

@@ -24,9 +24,9 @@ from dataclasses import dataclass
 from time import monotonic  # tests may replace that of the module
 
 from mutabot.model import Call, Mutant, Span
+from mutabot.model.deadline import Deadline, Limit
 from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Unforked
 from mutabot.model.job import Forking
-from mutabot.model.process_time import MOST, TimeUsed, overdue
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation import forkable, namespaces
 from mutabot.runtime.isolation.files import PrivateFiles
@@ -38,8 +38,6 @@ DECIDED = 113
 #: exit code of a child that stopped before it did what others would have noticed
 STOPPED = 116
 
-#: seconds by which a child's time is extended at least
-_LEAST = 0.2
 #: bytes of a whole number on the board
 _NUMBER_BYTES = 4
 _TOKEN = b"t"
@@ -58,11 +56,8 @@ class Child:
         fork: its number among those that were forked here.
         pids, pidfd: its process, and what keeps its namespace.
         test: the number of the test that it was in when its time began.
-        limit: the seconds it was given for that test.
-        used: how much of them it has used.
-        until: moment (``time.monotonic``) at which its time is up.
-        overdue: whether its time was up.
-        hindered, is_starved: as in ``ForkDied``.
+        deadline: the time that it was given for that test.
+        overdue: whether that was up.
     """
 
     mutant: str
@@ -70,24 +65,12 @@ class Child:
     pids: namespaces.ForkedPids
     pidfd: int
     test: int
-    limit: float
-    used: TimeUsed
-    until: float
+    deadline: Deadline
     overdue: bool = False
-    hindered: str | None = None
-    is_starved: bool = False
 
     def is_out_of_time(self, now: float) -> bool:
-        """Whether it is to be ended. If the clock has run out, but not its time, it gets what is left."""
-        if now < self.until or self.overdue:
-            return False
-        left = self.used.left(self.limit, [self.pids.fork])
-        if left > 0:
-            self.until = now + max(left, _LEAST)
-            return False
-        self.hindered = self.used.hindrance([self.pids.fork])
-        self.is_starved = now >= self.used.began + MOST * self.limit
-        return True
+        """Whether it is to be ended."""
+        return now >= self.deadline.until and not self.overdue and self.deadline.is_over(self.pids.fork)
 
 
 @dataclass
@@ -225,11 +208,8 @@ class ForkParent:
                 continue
             if pids is None:
                 return
-            limit, used = self._limit(self._number), TimeUsed.from_now()
-            child = Child(
-                mutant.id, self.pipe.forks, pids, os.pidfd_open(pids.fork), self._number, limit, used,
-                until=used.began + limit,
-            )  # fmt: skip
+            deadline = Deadline(self._limit(self._number), is_counted=True)
+            child = Child(mutant.id, self.pipe.forks, pids, os.pidfd_open(pids.fork), self._number, deadline)
             self._children[child.pidfd] = child
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
@@ -307,11 +287,11 @@ class ForkParent:
             if self._reap(self._wait()):
                 self._give_back()
 
-    def _limit(self, test: int) -> float:
-        """Seconds for a test, by its number; -1 before any."""
+    def _limit(self, test: int) -> Limit:
+        """What a fork may take for a test, by its number; -1 before any."""
         if test < 0:
             return self.forking.startup
-        return self.forking.walls.get(self._name_of(test), self.forking.wall)
+        return self.forking.limits.get(self._name_of(test), self.forking.limit)
 
     def _name_of(self, test: int) -> str:
         """The node id of a test, by its number: empty before any, the last one while the session ends."""
@@ -350,7 +330,7 @@ class ForkParent:
             poll.register(pidfd, select.POLLIN)
         if other is not None:
             poll.register(other, select.POLLIN)
-        until = min((child.until for child in self._children.values()), default=None)
+        until = min((child.deadline.until for child in self._children.values()), default=None)
         timeout = None if until is None else max(0.0, until - monotonic()) * 1e3 + 1.0
         return [descriptor for descriptor, _ in poll.poll(timeout)]
 
@@ -374,11 +354,9 @@ class ForkParent:
 
     def _note_progress(self, child: Child, now: float) -> None:
         """A child whose time seems to be up may have begun another test meanwhile."""
-        test = self._tests[self._slots[child.mutant]] if now >= child.until else child.test
+        test = self._tests[self._slots[child.mutant]] if now >= child.deadline.until else child.test
         if test != child.test:
-            child.test, child.used = test, TimeUsed.from_now([child.pids.fork])
-            child.limit = self._limit(test)
-            child.until = now + child.limit
+            child.test, child.deadline = test, Deadline(self._limit(test))
 
     def _bury(self, child: Child) -> None:
         """Tell how a child has ended."""
@@ -390,9 +368,9 @@ class ForkParent:
         is_told = code in (DECIDED, STOPPED) or (code >= 0 and self._finished[slot])
         died = None
         if not is_told or child.overdue:
-            test = self._name_of(self._tests[slot])
+            test, deadline = self._name_of(self._tests[slot]), child.deadline
             died = ForkDied(
-                child.mutant, test, code, overdue(child.limit, test) if child.overdue else None,
-                hindered=child.hindered, is_starved=child.is_starved,
+                child.mutant, test, code, deadline.overdue(test) if child.overdue else None,
+                hindered=deadline.hindered, is_starved=deadline.is_starved,
             )  # fmt: skip
         self.pipe.send(ForkEnded(child.fork, code, died))

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.model import events
 from mutabot.model.event_file import ANYBODY
-from mutabot.model.job import Budget, Job, read_job
+from mutabot.model.job import Job, read_job
 from mutabot.runtime import FOLDER as OURS
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.evidence import BudgetExceeded, Evidence, Meter, failure_in, is_due_to, leaves
+from mutabot.runtime.evidence import Evidence, Meter, TimeExceeded, failure_in, is_due_to, leaves
 from mutabot.runtime.processes.environment import STARTS, Now, carry, listen, starts_a_killer
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
@@ -53,7 +53,7 @@ class TextOnly:
         self.job, self.pipe = job, pipe
         self.text: SessionText | None = None
         self.test = ""
-        self.meter = Meter(Budget())
+        self.meter = Meter()
 
     def install(self) -> None:
         """Instrument the program from now on, and the mutant with it."""
@@ -62,7 +62,7 @@ class TextOnly:
     def start_test(self, test: str) -> None:
         """A test begins."""
         self.test = test
-        self.meter = Meter(self.job.budgets.get(test, Budget()))
+        self.meter = Meter()
         if self.text is not None:
             self.text.start_test(test)
 
@@ -146,6 +146,8 @@ class Member:
         for site in () if isinstance(session, TextOnly) else session.recorder.sites:
             self.file.send(site)
         self._told = session.evidence.copy()
+        if session.meter is not None:
+            session.meter.go_on_in_copy()
         self._attend()
         session.pipe, session.is_fork = self, False  # it tells its own sites, also below a fork
         if session.text is not None:
@@ -318,7 +320,7 @@ class Member:
         self.poll()
         culprits = self.session.evidence.culprits
         first = leaves(error)[0]
-        if isinstance(first, BudgetExceeded):
+        if isinstance(first, TimeExceeded):
             return
         self.file.send(
             events.Raised(
