@@ -99,10 +99,11 @@ class Live:
 
 
 def _stop() -> None:
-    """Like Ctrl-C, in the thread that Python tells of it."""
+    """Like Ctrl-C, in the thread that Python tells of it; where that is ignored, like SIGTERM."""
     main = threading.main_thread().ident
     assert main is not None
-    signal.pthread_kill(main, signal.SIGINT)
+    is_ignored = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    signal.pthread_kill(main, signal.SIGTERM if is_ignored else signal.SIGINT)
 
 
 class _Told:

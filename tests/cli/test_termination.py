@@ -13,6 +13,7 @@ import pytest
 
 from mutabot.cli.app import main, terminated_like_ctrl_c
 from mutabot.errors import ExitCode
+from mutabot.execution.interruption import interruptible, interruptions_kept
 from mutabot.journal.journal import JournalReader
 from tests.campaign.project import write_project
 
@@ -85,6 +86,19 @@ def test_it_is_ctrl_c_to_whoever_listens_and_gone_afterwards() -> None:
         signal.raise_signal(signal.SIGTERM)
     assert termination
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+def test_it_ends_what_waits_also_where_ctrl_c_is_ignored() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with terminated_like_ctrl_c(), pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        with terminated_like_ctrl_c(), interruptions_kept():
+            signal.raise_signal(signal.SIGTERM)
+            with pytest.raises(KeyboardInterrupt), interruptible():
+                pass
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_who_handles_or_ignores_it_already_goes_on_to_do_so() -> None:

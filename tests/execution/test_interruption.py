@@ -16,7 +16,14 @@ import pytest
 from mutabot.campaign.run import run_campaign
 from mutabot.execution import workers
 from mutabot.execution import workers as waiting
-from mutabot.execution.interruption import interruptible, interruptions_kept
+from mutabot.execution.interruption import (
+    Interruption,
+    OutOfTimeError,
+    interrupt,
+    interruptible,
+    interruptions_kept,
+    limited,
+)
 from mutabot.journal.journal import Journal
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 
@@ -87,6 +94,25 @@ def test_a_second_interruption_takes_effect_at_once() -> None:
         go_on()
 
     assert kept(work) == ["went on"]
+
+
+def test_where_ctrl_c_is_ignored_other_ends_of_a_campaign_are_kept_likewise() -> None:
+    passed.clear()
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with interruptions_kept():
+            press()
+            wait()
+            interrupt()
+            go_on()
+            with pytest.raises(Interruption):
+                wait()
+            with pytest.raises(OutOfTimeError), limited(0.0, lambda: 1.0), interruptible():
+                signal.pause()
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert passed == ["waited", "went on"]
 
 
 def test_an_error_is_not_hidden_by_an_interruption_that_was_kept() -> None:

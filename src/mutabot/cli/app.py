@@ -22,6 +22,7 @@ import typer
 from typer.core import TyperGroup
 
 from mutabot.errors import ExitCode, MutabotError, UsageError, shortened
+from mutabot.execution.interruption import interrupt
 from mutabot.extensions import brought, not_installed
 
 from .options import Version, with_options
@@ -123,7 +124,7 @@ def _command(name: str, function: Callable[..., object], help: str | None = None
 
 @contextmanager
 def terminated_like_ctrl_c() -> Iterator[list[int]]:
-    """Make SIGTERM do what Ctrl-C does, and give a list that tells whether one came.
+    """Make SIGTERM do what Ctrl-C does, also where that is ignored; give a list that tells whether one came.
 
     Does nothing outside the main thread, which alone receives signals, and where SIGTERM is handled or
     ignored already.
@@ -133,8 +134,7 @@ def terminated_like_ctrl_c() -> Iterator[list[int]]:
     def end(number: int, frame: FrameType | None) -> None:
         come.append(number)
         on_interrupt = signal.getsignal(signal.SIGINT)
-        if callable(on_interrupt):
-            on_interrupt(signal.SIGINT, frame)
+        (on_interrupt if callable(on_interrupt) else interrupt)(signal.SIGINT, frame)
 
     is_main = threading.current_thread() is threading.main_thread()
     if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:

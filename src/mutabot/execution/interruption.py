@@ -3,6 +3,9 @@
 Python raises KeyboardInterrupt between any two instructions, also between the opening of a descriptor or
 the start of a process and the moment from which on somebody looks after it. So the first Ctrl-C is kept for
 the next time that the campaign waits, which is at most a few seconds away. A second one is not.
+
+Ctrl-C may be ignored, as in what a script starts with ``nohup … &``. Other ways to end a campaign, and the
+end of its time, take effect all the same.
 """
 
 from __future__ import annotations
@@ -18,8 +21,12 @@ class OutOfTimeError(Exception):
     """The time of a campaign is up."""
 
 
+class Interruption(KeyboardInterrupt):
+    """A first Ctrl-C, which has come where the campaign waits: all that it has taken in is in order."""
+
+
 class _Keeper:
-    """The handler of SIGINT while a campaign runs.
+    """What interruptions come to while a campaign runs.
 
     Attributes:
         may_raise: whether an interruption is safe right now.
@@ -30,16 +37,19 @@ class _Keeper:
     def __init__(self) -> None:
         self.may_raise = self.is_kept = self.is_late = False
 
-    def __call__(self, number: int, frame: FrameType | None) -> None:
-        if self.may_raise or self.is_kept:
+    def interrupt(self) -> None:
+        """Somebody wants the campaign to end."""
+        if self.may_raise:
+            raise Interruption
+        if self.is_kept:
             raise KeyboardInterrupt
         self.is_kept = True
 
     def let_go(self) -> None:
-        """Raise KeyboardInterrupt if one is kept, and OutOfTimeError if the time is up."""
+        """Raise Interruption if one is kept, and OutOfTimeError if the time is up."""
         if self.is_kept:
             self.is_kept = False
-            raise KeyboardInterrupt
+            raise Interruption
         if self.is_late:
             self.is_late = False
             raise OutOfTimeError
@@ -51,23 +61,38 @@ class _Keeper:
         self.is_late = True
 
 
+_keeper: _Keeper | None = None
+
+
+def interrupt(number: int = signal.SIGINT, frame: FrameType | None = None) -> None:
+    """Do what Ctrl-C does, in the main thread: a handler of signals."""
+    if _keeper is None:
+        raise KeyboardInterrupt
+    _keeper.interrupt()
+
+
 @contextmanager
 def interruptions_kept() -> Iterator[None]:
     """Inside, Ctrl-C is kept until the campaign waits, or until the end of the block.
 
     Does nothing in other threads than the main one, which Python tells nothing of signals, and where
-    somebody else handles them already.
+    somebody else handles them already. Where Ctrl-C is ignored it stays so.
     """
+    global _keeper  # noqa: PLW0603  # a process has one handler of each signal
     is_main = threading.current_thread() is threading.main_thread()
-    if not is_main or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+    before = signal.getsignal(signal.SIGINT)
+    if _keeper is not None or not is_main or before not in (signal.default_int_handler, signal.SIG_IGN):
         yield
         return
-    keeper = _Keeper()
-    signal.signal(signal.SIGINT, keeper)
+    keeper = _keeper = _Keeper()
+    if before is signal.default_int_handler:
+        signal.signal(signal.SIGINT, interrupt)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        if before is signal.default_int_handler:
+            signal.signal(signal.SIGINT, before)
+        _keeper = None
     keeper.let_go()
 
 
@@ -81,8 +106,8 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
         until: when that is, by the clock.
         clock: the seconds by which ``until`` is meant.
     """
-    keeper = signal.getsignal(signal.SIGINT)
-    if not isinstance(keeper, _Keeper):
+    keeper = _keeper
+    if keeper is None:
         yield
         return
 
@@ -106,8 +131,8 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
 @contextmanager
 def interruptible() -> Iterator[None]:
     """Inside, Ctrl-C takes effect at once, and so does one that was kept."""
-    keeper = signal.getsignal(signal.SIGINT)
-    if not isinstance(keeper, _Keeper):
+    keeper = _keeper
+    if keeper is None:
         yield
         return
     keeper.may_raise = True
