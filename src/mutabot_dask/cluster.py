@@ -139,6 +139,10 @@ class Cluster:
         self._prepare()
         yield from Dispatch(self, self._ready_ground, waiting).events()
 
+    def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
+        """See ``Executor``: what runs on workers of the cluster is heard of when it has ended."""
+        return self.home.rest(is_awaited, seconds)
+
     def give_up(self, why: str) -> None:
         """Run all that is left at home."""
         self._is_given_up = True

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.campaign.request import Request
+from mutabot.execution.interruption import Interruption
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.families import CONTROL
 from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
@@ -32,6 +33,7 @@ from mutabot.model.events import (
     TestEnd,
     TestStart,
     TextsSeen,
+    Unforked,
 )
 from mutabot.model.job import Job
 from mutabot.model.mutant import Sighting
@@ -95,6 +97,7 @@ class Script:
         mutated: how a test ends as a mutant: fields of its ``TestEnd`` that are not those of a survivor.
         original: likewise as the original.
         control: likewise as a control; None for the end that it must have.
+        interrupts: whether somebody interrupts the campaign after an event.
         spread: as in ``Executor``.
         tasks: all tasks until now.
     """
@@ -102,6 +105,7 @@ class Script:
     mutated: Callable[[Run], End] = lambda run: {}
     original: Callable[[Run], End] = lambda run: {}
     control: Callable[[Run], End | None] = lambda run: None
+    interrupts: Callable[[Event], bool] = lambda event: False
     spread: int = 1
     tasks: list[Task] = field(default_factory=list)
 
@@ -131,6 +135,8 @@ class Scripted:
     suite: _Suite
     remarks: Sequence[str] = ()
     _times: Counter[object] = field(default_factory=Counter)
+    _under_way: Iterator[Result | tuple[Task, Event]] = field(default_factory=lambda: iter(()))
+    _is_interrupted: bool = False
 
     @property
     def spread(self) -> int:
@@ -143,6 +149,18 @@ class Scripted:
         return (event for event in self.events(tasks) if isinstance(event, Result))
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        self._under_way = self._told(tasks)
+        for event in self._under_way:
+            yield event
+            if isinstance(event, tuple) and self.script.interrupts(event[1]):
+                self._is_interrupted = True
+                raise Interruption
+
+    def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
+        while is_awaited() and (event := next(self._under_way, None)) is not None:
+            yield event
+
+    def _told(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         for task in tasks:
             self.script.tasks.append(task)
             result = Result(task, wall=0.1)
@@ -201,6 +219,11 @@ class Scripted:
             is_due = mutant.id in forked or self.suite.tests[fork_parent.test].hits(mutant)
             left_out = job.left_out(mutant.id)
             if mutant.id not in found or not is_due or fork_parent.test in left_out:
+                continue
+            if self._is_interrupted:
+                yield Unforked(fork_parent.test, (mutant.id,), "the campaign was interrupted")
+                del found[mutant.id]
+                forked.pop(mutant.id, None)
                 continue
             forked.setdefault(mutant.id, 0)
             run = replace(

@@ -32,7 +32,7 @@ from mutabot.frozen import frozen
 from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, EventReader
 from mutabot.model.events import Event, ForkEnded, Serving
 from mutabot.model.fold import fold_fork
-from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
+from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, STOP, Job, job_file, write_job
 from mutabot.model.keeper import FILE as KEEPER
 from mutabot.model.keeper import LEFT
 
@@ -83,6 +83,16 @@ class Home:
     def events(self, name: str) -> str:
         """Where the process of this name tells what it does."""
         return f"{self.processes}/{name}{SUFFIX}"
+
+    @property
+    def has_forks(self) -> bool:
+        """Whether the process has forks that it has not told the end of."""
+        return any(self.processes.glob(f"{SESSION}.*{SUFFIX}"))
+
+    def stop_forks(self) -> None:
+        """Let it end its forks and make no more."""
+        with contextlib.suppress(OSError):  # somebody has deleted the folder
+            (self.folder / STOP).touch()
 
     def log_text(self) -> str:
         """The last of what the process printed."""

@@ -8,16 +8,19 @@ are, and what their results mean, is the engines' business. A package brings ano
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from mutabot.frozen import frozen
 from mutabot.model import Span, events
 from mutabot.model.deadline import Limit
 from mutabot.model.event_file import UNWRITTEN
 from mutabot.model.job import Job
+
+if TYPE_CHECKING:
+    from mutabot.model.events import Event
 
 #: pytest's exit statuses after which a run of the suite says nothing about its tests
 ABNORMAL = {2: "it was interrupted", 3: "an internal error", 4: "a wrong command line or configuration"}
@@ -217,11 +220,19 @@ class Executor(Protocol):
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, events.Event]]:
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """The same, with each event as it comes.
 
         A task whose job forks is a fork parent: the executor gives it and its forks the tokens by which
         they share its places with the other tasks. A task that is ``alone`` has nothing beside it.
+        """
+
+    def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
+        """After an interruption of ``events``: what fork parents still tell, which end what they have forked.
+
+        It ends once they have told of all forks and nothing ``is_awaited`` any more, or when that takes much
+        longer than these ``seconds``. There is nothing where forks cannot be heard of before their parents
+        end.
         """
 
     def apart(self) -> AbstractContextManager[Executor]:

@@ -38,6 +38,8 @@ from mutabot.model.events import Acted, Event, TestEnd, TestStart, Untrusted
 from mutabot.model.fold import Children, acted_in
 
 _BYTE = b"t"
+#: after an interruption: how many times longer than expected it may take, and seconds beyond that
+_SLOWER, _PATIENCE = 2.0, 30.0
 #: bytes that a pipe holds at most
 _MOST_TOKENS = 1 << 20
 
@@ -182,6 +184,24 @@ class Workers:
                 return
             yield from self._wait(next_task)
 
+    def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
+        """See ``Executor.rest``."""
+        for worker in self._workers:
+            worker.stop_forks()
+        until = time.monotonic() + _SLOWER * seconds + _PATIENCE
+        has_told = False
+        while time.monotonic() < until and (is_awaited() or any(one.has_forks for one in self._workers)):
+            if not self._workers:
+                return
+            if not has_told:
+                has_told = True
+                about = f", in about {seconds:.0f} s" if seconds >= 1.0 else ""
+                self._tell(
+                    "interrupted: what forks have found counts once the original has passed their tests"
+                    f"{about}; Ctrl-C again ends at once"
+                )
+            yield from self._wait(None, LOOKS)
+
     def apart(self) -> Workers:
         """One more worker process, which shares nothing with these."""
         return Workers(self._root, self._arguments, jobs=1)
@@ -251,19 +271,23 @@ class Workers:
         self._servers.remove(server)
         self._note(server.close())
 
-    def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Event]]:
-        """Until something happens, or might: ``next_task`` has no place yet."""
-        timeout = self._patience()
+    def _wait(
+        self, next_task: Task | None, most: float | None = None
+    ) -> Iterator[Result | tuple[Task, Event]]:
+        """Until something happens, or might: ``next_task`` has no place yet. ``most``: seconds."""
+        timeout = min((one for one in (self._patience(), most) if one is not None), default=None)
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
         if is_for_token:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         if self.look is not None:
             self.look()
             timeout = LOOKS if timeout is None else min(timeout, LOOKS)
-        with interruptible():
-            ready = self._selector.select(timeout)
-        if is_for_token:
-            self._selector.unregister(self.pool.reading)
+        try:
+            with interruptible():
+                ready = self._selector.select(timeout)
+        finally:
+            if is_for_token:
+                self._selector.unregister(self.pool.reading)
         for key, _ in ready:
             if isinstance(key.data, ForkServerProcess):
                 key.data.listen()
@@ -313,6 +337,15 @@ class _Worker:
     def has_ended(self) -> bool:
         """Whether the process is gone."""
         return self.process.exit_code is not None
+
+    @property
+    def has_forks(self) -> bool:
+        """Whether it has forks that it has not told the end of."""
+        return self._home.has_forks
+
+    def stop_forks(self) -> None:
+        """Let it end its forks and make no more."""
+        self._home.stop_forks()
 
     def watch(self, selector: selectors.BaseSelector) -> None:
         selector.register(self.events.bell, selectors.EVENT_READ, self)

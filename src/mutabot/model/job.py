@@ -181,6 +181,10 @@ class Job:
         return frozenset(self.tests[min(numbers) :]).difference(self.tests[number] for number in numbers)
 
 
+#: in the folder of a fork parent's worker: as soon as it is there, forks are wanted no more
+STOP = "stop"
+
+
 def job_file(home: str | os.PathLike[str]) -> str:
     """Where the job of the worker with this folder is. A text: pathlib takes long to load."""
     return os.path.join(home, "job")

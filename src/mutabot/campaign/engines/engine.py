@@ -29,6 +29,7 @@ from mutabot.campaign.campaign import Campaign, MutantRun
 from mutabot.campaign.request import FORK, REPLAY
 from mutabot.campaign.verdict import Death, Run, judged, not_judged, not_run, run_of, without_tests
 from mutabot.errors import MutabotError, in_short
+from mutabot.execution.interruption import Interruption
 from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
@@ -302,11 +303,25 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
         {one.id: one for parent in parents.values() for one in parent.mutants}.values()
     )
     by_key = dict(enumerate(cut(list(parents.values()), campaign.executor.spread)))
-    for event in campaign.executor.events(parent.task(key, text) for key, parent in by_key.items()):
+    tasks = (parent.task(key, text) for key, parent in by_key.items())
+    try:
+        yield from _taken(campaign.executor.events(tasks), by_key)
+    except Interruption:
+        seconds = max((parent.seconds_awaited for parent in by_key.values()), default=0.0)
+        is_awaited = lambda: any(parent.is_awaited for parent in by_key.values())  # noqa: E731
+        yield from _taken(campaign.executor.rest(is_awaited, seconds), by_key)
+        raise
+
+
+def _taken(
+    told: Iterable[Result | tuple[Task, events.Event]], parents: Mapping[int, _ForkParent]
+) -> Iterator[Outcome]:
+    """The outcomes that come of what fork parents tell."""
+    for event in told:
         if isinstance(event, Result):
-            yield from by_key[event.task.key].finish(event)
+            yield from parents[event.task.key].finish(event)
         else:
-            yield from by_key[event[0].key].take(event[1])
+            yield from parents[event[0].key].take(event[1])
 
 
 def cut(parents: list[_ForkParent], places: int) -> list[_ForkParent]:
@@ -377,6 +392,21 @@ class _ForkParent:
         """What its own tests and its forks take at most, by those of the baseline."""
         own = self._baseline.seconds(self._round, self._tests)
         return own * (1 + len(self._open)) + _FORK * len(self._open)
+
+    @property
+    def is_awaited(self) -> bool:
+        """Whether it has yet to end a test that a fork which has ended depends on."""
+        return not self._is_off and bool(self._awaited())
+
+    @property
+    def seconds_awaited(self) -> float:
+        """What that takes, by the tests of the baseline."""
+        last = max(self._awaited(), default=-1)
+        return self._baseline.seconds(self._round, self._tests[len(self._own_ends) : last + 1])
+
+    def _awaited(self) -> list[int]:
+        """Numbers of the tests that forks wait for which have ended."""
+        return [number for number, mutants in self._waiting.items() if mutants & self._open.keys()]
 
     def parts(self, places: float) -> list[_ForkParent]:
         """Fork parents with a part of the mutants each. What equal tests reach is together."""

@@ -26,7 +26,7 @@ from time import monotonic  # tests may replace that of the module
 from mutabot.model import Call, Mutant, Span
 from mutabot.model.deadline import Deadline, Limit
 from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Unforked
-from mutabot.model.job import Forking
+from mutabot.model.job import STOP, Forking
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation import forkable, namespaces
 from mutabot.runtime.isolation.files import PrivateFiles
@@ -45,6 +45,9 @@ _TOKEN = b"t"
 #: where to fork for a mutant: a site with its operation and pattern, or a place of the program text
 Key = tuple[Span, str, str | None] | int
 _NODES = "its nodes would meet those of other mutants"
+_INTERRUPTED = "the campaign was interrupted"
+#: seconds between two looks whether it is, while this process waits
+_LOOKS = 0.5
 
 
 @dataclass(slots=True)
@@ -58,6 +61,7 @@ class Child:
         test: the number of the test that it was in when its time began.
         deadline: the time that it was given for that test.
         overdue: whether that was up.
+        is_unwanted: whether it was ended, since the campaign was interrupted.
     """
 
     mutant: str
@@ -67,6 +71,7 @@ class Child:
     test: int
     deadline: Deadline
     overdue: bool = False
+    is_unwanted: bool = False
 
     def is_out_of_time(self, now: float) -> bool:
         """Whether it is to be ended."""
@@ -100,7 +105,7 @@ class ForkParent:
 
     def __post_init__(self) -> None:
         self._test, self._number, self._held, self._pid = "", -1, 1, os.getpid()
-        self._overtaken = self._forking = self._copied = False
+        self._overtaken = self._forking = self._copied = self._stopped = False
         self._live: dict[Key, list[Mutant]] = {}
         self._gone: set[str] = set()
         self._children: dict[int, Child] = {}
@@ -123,6 +128,7 @@ class ForkParent:
         self._is_overtaken()  # also if no place is reached before
         self._test, self._number = test, self.tests.index(test)
         self._copied = False
+        self._is_stopped()
         due = set(self.forking.at_start.get(test, ())) - self._gone
         if due and self.has_nodes:
             self._gone |= due
@@ -186,7 +192,8 @@ class ForkParent:
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
             own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
-            reason = forkable.STARTED if self._is_overtaken() else self.files.forbids_fork()
+            reason = _INTERRUPTED if self._is_stopped() else None
+            reason = reason or (forkable.STARTED if self._is_overtaken() else self.files.forbids_fork())
             if (reason := reason or forkable.why_not(own, self._known)) is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
@@ -201,6 +208,9 @@ class ForkParent:
     def _fork_each(self, mutants: Sequence[Mutant]) -> None:
         began = monotonic()
         for mutant in mutants:
+            if self._stopped:
+                self.pipe.send(Unforked(self._test, (mutant.id,), _INTERRUPTED))
+                continue
             try:
                 pids = self._fork_one(mutant, began)
             except OSError as error:
@@ -283,9 +293,21 @@ class ForkParent:
     def finish(self) -> None:
         """All tests are over: wait for the children that still run, holding no token meanwhile."""
         self._give_back()
-        while self._children:
+        while not self._is_stopped() and self._children:
             if self._reap(self._wait()):
                 self._give_back()
+
+    def _is_stopped(self) -> bool:
+        """Whether the campaign was interrupted: then children that still run are ended, and no more begin."""
+        if not self._stopped and os.path.exists(os.path.join(self.files.home, STOP)):
+            self._stopped = True
+            for child in self._children.values():
+                child.is_unwanted = True
+                os.kill(child.pids.fork, signal.SIGKILL)
+            for child in self._children.values():
+                self._bury(child)
+            self._children.clear()
+        return self._stopped
 
     def _limit(self, test: int) -> Limit:
         """What a fork may take for a test, by its number; -1 before any."""
@@ -301,7 +323,7 @@ class ForkParent:
         """The parent's token went to the child: wait for another, from the pool or from a child's end."""
         reading = self.forking.tokens[0]
         while self.forking.serial or not self._take_free(reading):
-            if self._reap(self._wait(None if self.forking.serial else reading)):
+            if self._is_stopped() or self._reap(self._wait(None if self.forking.serial else reading)):
                 return
 
     def _take_free(self, reading: int) -> bool:
@@ -324,14 +346,14 @@ class ForkParent:
         self.pipe.send(TokensHeld(count))
 
     def _wait(self, other: int | None = None) -> list[int]:
-        """Sleep until a child ends, its time is up, or this ``other`` descriptor can be read."""
+        """Sleep until a child ends, its time may be up, or this ``other`` descriptor can be read."""
         poll = select.poll()
         for pidfd in self._children:
             poll.register(pidfd, select.POLLIN)
         if other is not None:
             poll.register(other, select.POLLIN)
-        until = min((child.deadline.until for child in self._children.values()), default=None)
-        timeout = None if until is None else max(0.0, until - monotonic()) * 1e3 + 1.0
+        until = min((child.deadline.until for child in self._children.values()), default=float("inf"))
+        timeout = min(max(0.0, until - monotonic()), _LOOKS) * 1e3 + 1.0
         return [descriptor for descriptor, _ in poll.poll(timeout)]
 
     def _reap(self, ready: list[int]) -> bool:
@@ -367,7 +389,9 @@ class ForkParent:
         # at the end of the session the exit code is the suite's own
         is_told = code in (DECIDED, STOPPED) or (code >= 0 and self._finished[slot])
         died = None
-        if not is_told or child.overdue:
+        if child.is_unwanted and not is_told:
+            self.pipe.send(Unforked(self._test, (child.mutant,), _INTERRUPTED))
+        elif not is_told or child.overdue:
             test, deadline = self._name_of(self._tests[slot]), child.deadline
             died = ForkDied(
                 child.mutant, test, code, deadline.overdue(test) if child.overdue else None,
