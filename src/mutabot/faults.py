@@ -77,14 +77,14 @@ class TextSeen:
         imported: the files that were imported.
         sightings: what was seen at places.
         reached: numbers of the places that each test reached; the test ``""`` stands for before any test.
-        elsewhere: the same in processes below the tests.
+        below: the same in processes below the tests, by the origin of these.
         refused: files that could not be instrumented, with the reason.
     """
 
     imported: frozenset[str] = frozenset()
     sightings: tuple[Sighting, ...] = ()
     reached: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
-    elsewhere: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    below: Mapping[str, Mapping[str, tuple[int, ...]]] = field(default_factory=dict)
     refused: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -136,6 +136,7 @@ class Planned:
         mutants: those it plants, and those it leaves out with the reason.
         texts: the program text with the alternatives that can run.
         reached: (round, place) to the tests that reach it; not for calls, which the core observes itself.
+        below: (round, place, test) to the origins of the processes below the tests in which that is.
         early: places that are reached before any test, or while a module is imported: what stands there holds
             for a whole process, and all tests judge it.
     """
@@ -143,6 +144,7 @@ class Planned:
     mutants: list[Planted] = field(default_factory=list)
     texts: tuple[ProgramText, ...] = ()
     reached: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
+    below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
     early: set[Place] = field(default_factory=set)
 
 

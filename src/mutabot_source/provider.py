@@ -88,15 +88,17 @@ class SourceFaults(FaultProvider):
 
 def _note_reached(planned: Planned, round: int, seen: TextSeen) -> None:
     places = {place.number: place for text in planned.texts for place in text.places}
-    told = [(seen.reached, True), (seen.elsewhere, False)]
-    for test, numbers, is_here in ((*one, is_here) for found, is_here in told for one in found.items()):
+    told = [(seen.reached, ""), *((found, origin) for origin, found in seen.below.items())]
+    for test, numbers, origin in ((*one, origin) for found, origin in told for one in found.items()):
         for place in (places[number] for number in numbers if number in places):
             where = Place(place.site, "")
             tests = planned.reached.setdefault((round, where), [])
             if test not in tests:
                 tests.append(test)
+            if origin:
+                planned.below.setdefault((round, where, test), set()).add(origin)
             # what a process below the tests evaluates holds for that process alone
-            if (place.at_import and is_here) or not test:
+            if (place.at_import and not origin) or not test:
                 planned.early.add(where)
 
 

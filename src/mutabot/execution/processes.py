@@ -29,7 +29,7 @@ from mutabot.errors import UsageError
 from mutabot.execution.interruption import interruptible
 from mutabot.execution.remains import remove_folder
 from mutabot.frozen import frozen
-from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, EventReader
+from mutabot.model.event_file import FOLDER, FORKS, SESSION, SUFFIX, EventReader
 from mutabot.model.events import Event, ForkEnded, Serving
 from mutabot.model.fold import fold_fork
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, STOP, Job, job_file, write_job
@@ -60,8 +60,8 @@ class Home:
         """A new folder in ``parent``, with the job in it; if that is gone, it is made again."""
         parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         home = cls(Path(tempfile.mkdtemp(dir=parent)))
-        write_job(home.folder, replace(job, key=home.key))
         home.processes.mkdir()
+        write_job(home.folder, replace(job, key=home.key))
         Path(home.events(SESSION)).touch(mode=0o600)
         return home
 
@@ -246,11 +246,14 @@ class EventStream:
 
     def _of_fork(self, name: str, ended: ForkEnded) -> list[Event]:
         """What a fork told that has ended; nothing if it cannot be relied on."""
-        reader = EventReader(self._home.events(name), self._home.key)
+        file = Path(self._home.folder, FORKS, name, FOLDER, name + SUFFIX)
+        if not file.exists():  # it had no folder of its own yet
+            file = Path(self._home.events(name))
+        reader = EventReader(str(file), self._home.key)
         events = reader.read(is_last=True)
         if reader.damage is not None:
             return []
-        Path(self._home.events(name)).unlink(missing_ok=True)
+        file.unlink(missing_ok=True)
         return self._with_forks(name, fold_fork(events, ended.exit_code, ended.died))
 
 
@@ -299,7 +302,6 @@ class ForkServerProcess:
         job: a job of the kind that it is to serve.
         root, arguments: as for every worker.
         folder: where its home is made.
-        descriptors: what copies inherit.
 
     Attributes:
         events: what it tells.
@@ -307,9 +309,7 @@ class ForkServerProcess:
         startup: seconds it took to start.
     """
 
-    def __init__(
-        self, job: Job, root: Path, arguments: Iterable[str], folder: Path, descriptors: tuple[int, ...]
-    ) -> None:
+    def __init__(self, job: Job, root: Path, arguments: Iterable[str], folder: Path) -> None:
         self._template = _template(job)
         self._started = time.monotonic()
         self.startup = 0.0
@@ -320,8 +320,7 @@ class ForkServerProcess:
         with theirs:
             self._home = Home.make(folder, replace(self._template, serving=theirs.fileno()))
             self.events = EventStream(self._home)
-            passed = (theirs.fileno(), *descriptors)
-            self.process = Spawned(root, arguments, self._home, self.events.writing, passed)
+            self.process = Spawned(root, arguments, self._home, self.events.writing, (theirs.fileno(),))
 
     def serves(self, job: Job) -> bool:
         """Whether a copy can do this job: all that counts before the first test is the same."""

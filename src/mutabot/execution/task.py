@@ -91,7 +91,7 @@ class Result:
         sites, ends, problems: what it reported.
         acted: tests in which its mutant did something; the empty one stands for before any test.
         reached: places of the program text by test, likewise.
-        reached_elsewhere: the same in processes below the tests.
+        reached_below: the same in processes below the tests, by their origin.
         called_at_import: the calls of operations before any test.
         seen: what a recording saw of the program text.
         not_instrumented: files whose mutants cannot run, with the reason.
@@ -117,7 +117,7 @@ class Result:
     problems: list[events.Problem] = field(default_factory=list)
     acted: list[str] = field(default_factory=list)
     reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
-    reached_elsewhere: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    reached_below: dict[str, dict[str, tuple[int, ...]]] = field(default_factory=dict)
     called_at_import: list[events.Called] = field(default_factory=list)
     seen: events.TextsSeen | None = None
     not_instrumented: dict[str, str] = field(default_factory=dict)
@@ -150,8 +150,8 @@ class Result:
                 self.acted.append(line.test)
             case events.Acted(in_call=bool(in_call)):
                 self.in_mutated_call = in_call
-            case events.PlacesReached() if line.elsewhere:
-                self.reached_elsewhere[line.test] = line.places
+            case events.PlacesReached() if line.below:
+                self.reached_below.setdefault(line.below, {})[line.test] = line.places
             case events.PlacesReached():
                 self.reached[line.test] = line.places
             case events.Called():

@@ -56,9 +56,9 @@ class TokenPool:
         self.give_back(size)
 
     @property
-    def descriptors(self) -> tuple[int, int]:
-        """Reading and writing end, for a fork parent."""
-        return self.reading, self._writing
+    def path(self) -> str:
+        """Where a fork parent can open it: it keeps no descriptor that its tests might count, or spoil."""
+        return f"/proc/{os.getpid()}/fd/{self.reading}"
 
     def take(self) -> bool:
         """Take a free token, if there is one."""
@@ -226,7 +226,7 @@ class Workers:
 
     def _start(self, task: Task) -> None:
         if task.job.forking is not None:
-            forking = replace(task.job.forking, tokens=self.pool.descriptors)
+            forking = replace(task.job.forking, tokens=self.pool.path)
             task = replace(task, job=replace(task.job, forking=forking))
         home = Home.make(self._folder, task.job)
         events = EventStream(home)
@@ -243,8 +243,7 @@ class Workers:
         copy = server.copy(home, writing) if server is not None else None
         if copy is not None:
             return copy
-        descriptors = self.pool.descriptors if task.is_fork_parent else ()
-        return Spawned(self._root, self._arguments, home, writing, descriptors)
+        return Spawned(self._root, self._arguments, home, writing)
 
     def _server_for(self, task: Task) -> ForkServerProcess | None:
         """The fork server for such a task; None if there can be none."""
@@ -253,7 +252,7 @@ class Workers:
             return found
         for idle in [server for server in self._servers if server.is_idle]:
             self._end_server(idle)  # what it was for is over
-        server = ForkServerProcess(task.job, self._root, self._arguments, self._folder, self.pool.descriptors)
+        server = ForkServerProcess(task.job, self._root, self._arguments, self._folder)
         self._servers.append(server)
         for descriptor in (server.events.bell, server.process.pidfd):  # with it, its copies end
             self._selector.register(descriptor, selectors.EVENT_READ, server)

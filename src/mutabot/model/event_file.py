@@ -128,6 +128,8 @@ class EventReader:
 
 #: this folder, in the home of the test process
 FOLDER = "processes"
+#: where forks of it have their homes, by their names: what is in ``FOLDER`` there, a fork finds in the home
+FORKS = "forks"
 #: environment variable that names this folder; Python processes that find it look for what they are to do
 VARIABLE = "MUTABOT_PROCESSES"
 #: file in it with what wakes a process: see ``runtime.processes.startup.sitecustomize``

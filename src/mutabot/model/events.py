@@ -17,6 +17,8 @@ from mutabot.model.mutant import Sighting, Span
 from mutabot.model.outcome import By, Check
 from mutabot.model.source_units import Executed
 
+#: origins of processes below the tests: a program that was started, or a copy of another process
+STARTED, FORKED = "started", "forked"
 #: hits per test that are reported with their values; a test is compared and planned from these
 TRACE_LIMIT = 5000
 
@@ -68,6 +70,8 @@ class TestEnd(Event):
             ``target#2.part``.
         unread: why a probe could not be read, by target.
         processes: processes below the tests that were there during it, by number, with a name for people.
+        below: indexes of the sites that processes below the tests called, by their origin.
+        hit_below: origins of the processes below the tests in which the mutant was hit.
         exclusive: by what it gets in the way of other processes, in words, or None.
         moments: probes along the way: after which call (from 1), parts that differ from the moment before,
             and whether these are all parts.
@@ -113,6 +117,8 @@ class TestEnd(Event):
     probes: Mapping[str, Any] = field(default_factory=dict)
     unread: Mapping[str, str] = field(default_factory=dict)
     processes: tuple[tuple[int, str], ...] = ()
+    below: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    hit_below: tuple[str, ...] = ()
     exclusive: str | None = None
     moments: tuple[Any, ...] = ()
     reading: float | None = None
@@ -202,12 +208,12 @@ class Acted(Event):
 class PlacesReached(Event):
     """Places of the program text that a test reached; those before any test, if ``test`` is empty.
 
-    ``elsewhere``: whether that was in processes below the tests.
+    ``below``: the origin of the processes below the tests in which that was; empty for the test process.
     """
 
     test: str
     places: tuple[int, ...]
-    elsewhere: bool = False
+    below: str = ""
 
 
 @frozen
@@ -403,6 +409,7 @@ class Began(Event):
         command: its command line.
         test: number of the test that was running.
         unable: why nothing in it can be seen; None if it can.
+        forked: whether it is a copy of a process of the campaign, and no program that was started.
     """
 
     pid: int
@@ -411,6 +418,7 @@ class Began(Event):
     time: float
     test: int = 0
     unable: str | None = None
+    forked: bool = False
 
 
 @frozen

@@ -58,6 +58,11 @@ class ChildRecord:
         arguments = [one for one in self.began.command[1:] if not one.startswith("-")]
         return os.path.basename(arguments[0]) if arguments else os.path.basename(self.began.command[0])
 
+    @property
+    def origin(self) -> str:
+        """How it came to be."""
+        return events.FORKED if self.began.forked else events.STARTED
+
     def take(self, event: events.Event) -> None:
         """Sort in one event; what is none of a test is nothing to it."""
         match event:
@@ -222,7 +227,7 @@ def fold(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> e
     if not records:
         return end
     end = _with_calls(end, records, known)
-    end = _with_deeds(end, [did for one in records for did in one.did])
+    end = _with_deeds(end, records)
     return _with_ends(end, records, known)
 
 
@@ -237,11 +242,16 @@ def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], known: Know
     trace = [*end.trace, *((site, call.written, call.read, call.answer) for site, call in called)]
     used = [one.used for one in records if one.used is not None]
     times = [end.simulated, *(one.simulated for one in used)]
+    below: dict[str, set[int]] = {}
+    for one in records:
+        sites = {known.index_of(one.sites[call.site]) for call in one.called}
+        below.setdefault(one.origin, set()).update(sites)
     noted = [(known.index_of(one.sites[each.site]), each.refused) for one in records for each in one.noted]
     return replace(
         end,
         refused_calls=(*end.refused_calls, *((site, number) for site, number in noted if number is not None)),
         live=tuple(sorted({*end.live, *(site for site, number in noted if number is None)})),
+        below={origin: tuple(sorted(sites)) for origin, sites in below.items() if sites},
         trace=tuple(trace[: events.TRACE_LIMIT]) if known.job.record else (),
         truncated=end.truncated or len(trace) > events.TRACE_LIMIT,
         operations=end.operations + max(len(called), sum(one.operations for one in used)),
@@ -250,8 +260,9 @@ def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], known: Know
     )
 
 
-def _with_deeds(end: events.TestEnd, did: list[events.Did]) -> events.TestEnd:
+def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.TestEnd:
     """What the mutant did in all processes together."""
+    did = [each for one in records for each in one.did]
     if not did:
         return end
     refused = [one for one in did if one.refused is not None]
@@ -261,6 +272,7 @@ def _with_deeds(end: events.TestEnd, did: list[events.Did]) -> events.TestEnd:
         end,
         hits=end.hits + sum(one.hits for one in did),
         acted=end.acted + sum(one.acted for one in did),
+        hit_below=tuple(sorted({one.origin for one in records if any(each.hits for each in one.did)})),
         away=added([end.away, *(one.away for one in did)]),
         example=next((one for one in examples if one is not None), None),
         failure=next((one for one in failures if one is not None), None),
@@ -284,6 +296,7 @@ def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known
         timeout=end.timeout or exceeded,
         hits=end.hits + len(died_at_work),
         acted=end.acted + len(died_at_work),
+        hit_below=tuple(sorted({*end.hit_below, *(one.origin for one in died_at_work)})),
     )
     for one in died_at_work:
         one.is_in_call = False

@@ -16,6 +16,7 @@ from typing import Any
 from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.deadline import Limit
+from mutabot.model.event_file import FOLDER
 from mutabot.model.mutant import Choice, Instrumentation, Mutant, Span
 from mutabot.model.operation import Vocabulary
 
@@ -59,7 +60,7 @@ class Forking:
 
     Attributes:
         mutants: the mutants that are alive in this round.
-        tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
+        tokens: where the pipe of the token pool can be opened; filled in by whoever runs the job.
         limits: the time that a fork may take for a test, by test.
         limit: the same for tests that are missing there.
         startup: the same until its first test begins.
@@ -71,7 +72,7 @@ class Forking:
     """
 
     mutants: tuple[Mutant, ...]
-    tokens: tuple[int, int] = (-1, -1)
+    tokens: str = ""
     limits: Mapping[str, Limit] = field(default_factory=dict)
     limit: Limit = Limit(600.0)
     startup: Limit = Limit(600.0)
@@ -186,8 +187,11 @@ STOP = "stop"
 
 
 def job_file(home: str | os.PathLike[str]) -> str:
-    """Where the job of the worker with this folder is. A text: pathlib takes long to load."""
-    return os.path.join(home, "job")
+    """Where the job of the worker with this folder is. A text: pathlib takes long to load.
+
+    It is where processes below the worker look for it: a fork has that folder to itself.
+    """
+    return os.path.join(home, FOLDER, "job")
 
 
 def write_job(home: str | os.PathLike[str], job: Job) -> None:

@@ -78,15 +78,24 @@ class EventFile:
             self._ring(self._bell)
 
     def go_on_apart(self) -> None:
-        """In a process that was just forked: go on with a file of its own.
+        """In a process that was just forked: go on with a file of its own, once there is something to tell.
 
         Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
         """
-        os.close(self._file)
+        nowhere = os.open(os.devnull, os.O_WRONLY | os.O_CLOEXEC)
+        os.dup2(nowhere, self._file, inheritable=False)
+        os.close(nowhere)
         self._bell = None  # what a fork tells is read once its parent tells that it has ended
         self.name = f"{self.name}.{self.forks}"
         self._last = self.forks = 0
+
+    def keep_number(self) -> None:
+        """After ``go_on_apart``, in a folder of its own: open the file where the parent's was."""
+        number = self._file
         self._open()
+        os.dup2(self._file, number, inheritable=False)
+        os.close(self._file)
+        self._file = number
 
     def close(self) -> None:
         """Let go of the file, and of the pipe."""

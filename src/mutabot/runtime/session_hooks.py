@@ -75,7 +75,7 @@ class SessionHooks:
     def from_files(cls, job_file: str, descriptor: int) -> SessionHooks:
         """Read the job, set the limits of the process and put the interception in place."""
         die_with_parent(pipe=descriptor)
-        home = os.path.dirname(job_file)
+        home = os.path.dirname(os.path.dirname(job_file))
         job = read_job(home)
         extensions.use(job.extensions)
         if job.memory is not None:
@@ -137,7 +137,7 @@ class SessionHooks:
             # nobody reads a fork's traceback, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
-        fork = ForkedRun(self.tests, self.session.passing.fork_parent, mutant, folder)
+        fork = ForkedRun(self.tests, self.session.passing.fork_parent, mutant, self._files.home)
         self.session.become(mutant, fork.choices)
 
     def _is_of_tests(self, path: str) -> bool:

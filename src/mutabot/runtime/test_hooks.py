@@ -6,7 +6,6 @@ decides.
 
 from __future__ import annotations
 
-import gc
 import os
 from collections.abc import Generator, Iterator, Mapping
 from dataclasses import replace
@@ -22,12 +21,12 @@ from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
 from mutabot.model.process_time import TimeUsed, ran_below
 from mutabot.runtime import seeds
-from mutabot.runtime.executed import STARTS, ExecutedUnits
+from mutabot.runtime.executed import ExecutedUnits
 from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.observation.checks import Looks
 from mutabot.runtime.observation.probes import Reading
 from mutabot.runtime.plugins import drop_idle_watchdog, watched, watched_by_faulthandler
-from mutabot.runtime.processes.environment import listen
+from mutabot.runtime.processes.environment import FORKINGS, STARTS, listen
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.seeds import node_id
@@ -44,23 +43,22 @@ class ForkedRun:
         tests: the hooks for each of its tests.
         parent: what has forked it.
         mutant: its mutant.
-        folder: its own folder.
+        home: the home of its parent, in which it finds its own processes.
 
     Attributes:
         choices: what its mutant is in the program text.
     """
 
-    def __init__(self, tests: TestHooks, parent: ForkParent, mutant: Mutant, folder: str) -> None:
+    def __init__(self, tests: TestHooks, parent: ForkParent, mutant: Mutant, home: str) -> None:
         session, tests.fork, tests.members = tests.session, self, None
         self.mutant = mutant
         self.choices = parent.forking.choices.get(mutant.id, ())
-        self._tests, self._session, self._parent, self._folder = tests, session, parent, folder
+        self._tests, self._session, self._parent, self._home = tests, session, parent, home
         self._pid = os.getpid()
         self._shared = session.meter.simulated if session.meter is not None else None
         self._is_early = not session.test
         self._has_acted = False
-        gc.freeze()  # what is never looked at stays shared with the parent
-        listen(STARTS, self._hear)
+        listen((*STARTS, *FORKINGS), self._hear)
 
     def start_test(self) -> None:
         """A test begins, its second at least."""
@@ -97,9 +95,9 @@ class ForkedRun:
     def _own_processes(self) -> Members:
         session, job = self._session, self._session.job
         below = job.below(self.mutant, tuple(self.choices))
-        write_job(self._folder, below)
+        write_job(self._home, below)
         session.job = replace(job, mutant=self.mutant, instrumentation=below.instrumentation)
-        members = Members(self._folder, session, has_acted=self._has_acted)
+        members = Members(self._home, session, has_acted=self._has_acted)
         members.start_test(session.test)
         watch_forks(members.folder, session)
         return members

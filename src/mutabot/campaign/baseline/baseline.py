@@ -247,6 +247,7 @@ class Baseline(Original):
         reaching: (round, place) to the tests that reach it, fastest first.
         observations: (round, test) to what is compared with a mutant's.
         unstable: tests excluded as flaky, with the reason, by (round, test).
+        below: (round, place, test) to the origins of the processes below the tests that reach the place.
         flaky_reaching: (round, place) to the tests that reach it but are excluded in this round.
         exits: per round, the exit code of the suite on the original.
         probe_intervals: after every how many commands probes are read along the way, by round and test.
@@ -272,6 +273,7 @@ class Baseline(Original):
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
     unread: dict[Place, bool] = field(default_factory=dict)
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
+    below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
     probe_intervals: Mapping[int, Mapping[str, int]] = field(default_factory=dict)
@@ -327,6 +329,8 @@ class Baseline(Original):
         self.faults = PlantedFaults.of(planned)
         for one in planned.values():
             self.early |= one.early
+            for key, origins in one.below.items():
+                self.below.setdefault(key, set()).update(origins)
             for (round, place), tests in one.reached.items():
                 self.reach(round, place, None if place in one.early else frozenset(tests))
 
@@ -337,6 +341,18 @@ class Baseline(Original):
         self.reaching[round, place] = sorted(here, key=lambda test: cost(self.ends[round, test]))
         if aside:
             self.flaky_reaching[round, place] = aside
+
+    def reach_below(self, round: int, place: Place, test: str, origin: str) -> None:
+        """A test reaches a place in a process below it of this origin."""
+        self.below.setdefault((round, place, test), set()).add(origin)
+
+    def is_missed(self, round: int, mutant: Mutant, end: TestEnd) -> bool:
+        """Whether processes below this test, which passed, ran as the original, for all that is known.
+
+        The test reaches the mutant in processes of an origin in which it was not hit.
+        """
+        reached = self.below.get((round, Place.of(mutant), end.test), set())
+        return end.outcome != "failed" and not reached <= set(end.hit_below)
 
     def seconds(self, round: int, tests: Iterable[str]) -> float:
         """What tests took, by the clock on the wall."""

@@ -211,7 +211,7 @@ def _read(
             imported=frozenset(first.seen.imported if first.seen else ()),
             sightings=tuple(first.seen.sightings if first.seen else ()),
             reached=first.reached,
-            elsewhere=first.reached_elsewhere,
+            below=first.reached_below,
             refused=first.not_instrumented,
         )
     refuse_failing(request, failing)
@@ -329,6 +329,9 @@ def _add_hits(
                 for place in {places[index] for index, *_ in end.trace}:
                     baseline.flaky_reaching.setdefault((round, place), []).append(end.test)
             continue
+        for origin, indexes in end.below.items():
+            for place in map(places.__getitem__, indexes):
+                baseline.reach_below(round, place, end.test, origin)
         for index, written, read, answer in end.trace:
             place = places[index]
             baseline.hits.setdefault(place, []).append(Hit(written, read, (round, end.test)))

@@ -54,6 +54,7 @@ _LEAST, _PARTS = 10, 16
 _WORTH, _FEWEST = 4, 2
 #: seconds that a fork takes at least
 _FORK = 0.01
+_MISSED = "its processes did not all get the mutant from a fork"
 #: the level at which zlib costs least
 _QUICKLY = 1
 
@@ -511,7 +512,7 @@ class _ForkParent:
             if is_whole and fork.own and fork.forked is None and fork.death is None:
                 fork.exit_code = self._baseline.exits[self._round]
                 fork.shared = sum(simulated) if simulated else None
-                yield self._judged(fork, len(self._tests))
+                yield from self._judged(fork, len(self._tests))
         self._leave(list(self._open))
 
     def _fork_ended(self, event: events.ForkTestEnd) -> Iterator[Outcome]:
@@ -557,22 +558,32 @@ class _ForkParent:
         # a survivor is compared with the original in all tests: those that the parent runs later, too
         last = forked if fork.is_decided or is_dead else len(self._tests) - 1
         if last < len(self._own_ends):
-            yield self._judged(fork, max(0, forked))
+            yield from self._judged(fork, max(0, forked))
         else:
             self._waiting.setdefault(last, set()).add(mutant)
 
-    def _judged(self, run: _ForkedRun, shared: int) -> Outcome:
-        """The outcome of a mutant that has so many tests from its parent."""
+    def _judged(self, run: _ForkedRun, shared: int) -> Iterator[Outcome]:
+        """The outcome of a mutant that has so many tests from its parent.
+
+        It is left to replay if a process that a test started did not get it.
+        """
         run.unpack()
+        missed = next((end.test for end in run.own.values() if self._is_missed(run.mutant, end)), None)
+        if missed is not None:
+            self._left.reasons.setdefault(missed, _MISSED)
+            self._leave([run.mutant.id])
+            return
         ends = {end.test: end for end in self._own_ends[:shared]} | run.own
         run.ends = [ends[test] for test in self._tests if test in ends]
         run.wall = sum(end.wall for end in run.ends)
         if run.exit_code is not None:
             text = not_run({*self._tests} - run.left_out, run.ends, run.exit_code)
             run.death = Death(text) if text is not None else run.death
-        outcome = judged(self._campaign, run)
         del self._open[run.mutant.id]
-        return outcome
+        yield judged(self._campaign, run)
+
+    def _is_missed(self, mutant: Mutant, end: events.TestEnd) -> bool:
+        return self._baseline.is_missed(self._round, mutant, end)
 
 
 def _death_of(event: events.ForkDied) -> Death:

@@ -20,6 +20,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
 
+from mutabot.model.event_file import FOLDER, FORKS
 from mutabot.runtime.isolation.forkable import descriptors, own_event_loops
 from mutabot.runtime.isolation.namespaces import asks_for_id, call, keeps_ids
 
@@ -29,8 +30,6 @@ _NO_MOUNTS = "this system allows no private mounts"
 _SHARED_MEMORY = "/dev/shm"
 #: where a process keeps what it prints, in its home
 LOG = "log.txt"
-#: where forks have their folders, there
-_FORKS = "forks"
 #: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
 #: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
 _LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
@@ -123,9 +122,12 @@ class PrivateFiles:
         ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
         cannot be kept apart.
         """
-        folder, log = os.path.join(self.home, _FORKS, name), os.stat(os.path.join(self.home, LOG))
-        os.makedirs(folder)
+        folder, log = os.path.join(self.home, FORKS, name), os.stat(os.path.join(self.home, LOG))
+        processes = os.path.join(folder, FOLDER)
+        os.makedirs(processes)
         self.go_on_apart(folder)
+        # by the name that its environment has: whatever it starts finds its own folder, and not the parent's
+        _mount(processes, os.path.join(self.home, FOLDER), None, _MS_BIND)
         isolate_files(log)  # what leads to the parent's log leads nowhere
         own_event_loops()
         return folder

@@ -19,7 +19,7 @@ import select
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from time import monotonic  # tests may replace that of the module
 
@@ -57,7 +57,7 @@ class Child:
     Attributes:
         mutant: id of its mutant.
         fork: its number among those that were forked here.
-        pids, pidfd: its process, and what keeps its namespace.
+        pids: its process, and what keeps its namespace.
         test: the number of the test that it was in when its time began.
         deadline: the time that it was given for that test.
         overdue: whether that was up.
@@ -67,7 +67,6 @@ class Child:
     mutant: str
     fork: int
     pids: namespaces.ForkedPids
-    pidfd: int
     test: int
     deadline: Deadline
     overdue: bool = False
@@ -219,8 +218,8 @@ class ForkParent:
             if pids is None:
                 return
             deadline = Deadline(self._limit(self._number), is_counted=True)
-            child = Child(mutant.id, self.pipe.forks, pids, os.pidfd_open(pids.fork), self._number, deadline)
-            self._children[child.pidfd] = child
+            child = Child(mutant.id, self.pipe.forks, pids, self._number, deadline)
+            self._children[pids.fork] = child
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
             with suppress(OSError):
@@ -262,10 +261,9 @@ class ForkParent:
         """Let go of what is the parent's, and become the mutant."""
         os.setsid()  # it leads its group and session, as a test process does
         self.pipe.go_on_apart()
-        for descriptor in (*self._children, *self.forking.tokens):
-            os.close(descriptor)
         try:
             folder = self.files.enter(self.pipe.name)
+            self.pipe.keep_number()
             namespaces.leave_out(monotonic() - began)
         except OSError as error:
             try:
@@ -321,14 +319,15 @@ class ForkParent:
 
     def _take_token(self) -> None:
         """The parent's token went to the child: wait for another, from the pool or from a child's end."""
-        reading = self.forking.tokens[0]
-        while self.forking.serial or not self._take_free(reading):
-            if self._is_stopped() or self._reap(self._wait(None if self.forking.serial else reading)):
-                return
+        with self._pool() as opened:
+            pool = None if self.forking.serial else opened  # then no other child may run meanwhile
+            while pool is None or not self._take_free(pool):
+                if self._is_stopped() or self._reap(self._wait(pool)):
+                    return
 
-    def _take_free(self, reading: int) -> bool:
+    def _take_free(self, pool: int) -> bool:
         try:
-            taken = bool(os.read(reading, 1))
+            taken = bool(os.read(pool, 1))
         except BlockingIOError:
             return False
         if taken:
@@ -338,23 +337,39 @@ class ForkParent:
     def _give_back(self) -> None:
         """Put one token back into the pool."""
         self._hold(self._held - 1)
-        with suppress(BlockingIOError):  # it is full, of what no parent has put there
-            os.write(self.forking.tokens[1], _TOKEN)
+        with self._pool() as pool, suppress(BlockingIOError):  # it is full, of what no parent has put there
+            if pool is not None:
+                os.write(pool, _TOKEN)
+
+    @contextmanager
+    def _pool(self) -> Iterator[int | None]:
+        """The pipe of the token pool, open for this moment: a test may look at what is open."""
+        try:
+            pool = os.open(self.forking.tokens, os.O_RDWR | os.O_NONBLOCK | os.O_CLOEXEC)
+        except OSError:  # the test gave up the right to: what ends is all that there is
+            yield None
+            return
+        try:
+            yield pool
+        finally:
+            os.close(pool)
 
     def _hold(self, count: int) -> None:
         self._held = count
         self.pipe.send(TokensHeld(count))
 
     def _wait(self, other: int | None = None) -> list[int]:
-        """Sleep until a child ends, its time may be up, or this ``other`` descriptor can be read."""
-        poll = select.poll()
-        for pidfd in self._children:
-            poll.register(pidfd, select.POLLIN)
-        if other is not None:
-            poll.register(other, select.POLLIN)
+        """Sleep until children end, which are returned, their time may be up, or ``other`` can be read."""
         until = min((child.deadline.until for child in self._children.values()), default=float("inf"))
         timeout = min(max(0.0, until - monotonic()), _LOOKS) * 1e3 + 1.0
-        return [descriptor for descriptor, _ in poll.poll(timeout)]
+        poll, children = select.poll(), {os.pidfd_open(pid): pid for pid in self._children}
+        try:
+            for descriptor in children if other is None else (*children, other):
+                poll.register(descriptor, select.POLLIN)
+            return [children[descriptor] for descriptor, _ in poll.poll(timeout) if descriptor in children]
+        finally:
+            for descriptor in children:
+                os.close(descriptor)
 
     def _reap(self, ready: list[int]) -> bool:
         """Look after children that ended or whose time is up. True if the parent now has a token to spare.
@@ -367,12 +382,9 @@ class ForkParent:
             if child.is_out_of_time(now):
                 child.overdue = True
                 os.kill(child.pids.fork, signal.SIGKILL)
-        for descriptor in ready:
-            ended = self._children.pop(descriptor, None)
-            if ended is not None:
-                self._bury(ended)
-                return True
-        return False
+        for pid in ready[:1]:
+            self._bury(self._children.pop(pid))
+        return bool(ready)
 
     def _note_progress(self, child: Child, now: float) -> None:
         """A child whose time seems to be up may have begun another test meanwhile."""
@@ -384,7 +396,6 @@ class ForkParent:
         """Tell how a child has ended."""
         _, status = os.waitpid(child.pids.fork, 0)
         namespaces.end_first(child.pids.first)
-        os.close(child.pidfd)
         slot, code = self._slots[child.mutant], os.waitstatus_to_exitcode(status)
         # at the end of the session the exit code is the suite's own
         is_told = code in (DECIDED, STOPPED) or (code >= 0 and self._finished[slot])

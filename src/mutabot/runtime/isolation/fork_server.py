@@ -120,6 +120,7 @@ class ForkServer:
         for pidfd in self._copies:
             os.close(pidfd)
         self.pipe.close()
+        gc.unfreeze()  # tests may ask what there is
         return True
 
     def _begin(self, home: str) -> str:

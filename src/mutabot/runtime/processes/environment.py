@@ -48,17 +48,62 @@ def _hear(event: str, arguments: tuple[Any, ...]) -> None:
 STARTUP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "startup")
 #: which argument of ``fork_exec`` is the environment, <Lib/subprocess.py>
 _ENVIRONMENT = 5
+#: audit events of the start of a program; the last is our own: ``multiprocessing`` makes none
+STARTS = ("os.system", "subprocess.Popen", "os.posix_spawn", "os.exec", "mutabot.fork_exec")
+#: those of the copy of a process
+FORKINGS = ("os.fork", "os.forkpty")
 _folder = ""
 
 
 def carry(folder: str) -> None:
     """Let every process that is started from now on find its way to the processes of this folder."""
     global _folder  # noqa: PLW0603  # a copy of a fork server has a folder of its own
-    os.environ["PYTHONPATH"] = with_startup(os.environ.get("PYTHONPATH"))
-    os.environ[VARIABLE] = folder
     if not _folder:
-        listen(("subprocess.Popen",), _patch)
+        _hook_starts()
     _folder = folder
+    _lead()
+
+
+def _lead() -> None:
+    """Put the way into this process's own environment, where tests may have changed it."""
+    environment = {"PYTHONPATH": with_startup(os.environ.get("PYTHONPATH")), VARIABLE: _folder}
+    for name, value in environment.items():
+        if os.environ.get(name) != value:
+            os.environ[name] = value
+
+
+def _hook_starts() -> None:
+    """Hear of every start, and complete the environment that a process is given.
+
+    ``subprocess`` and ``multiprocessing`` have their processes started by the same function.
+    """
+    import _posixsubprocess  # noqa: PLC0415  # of no use to a process that is not part of a campaign
+
+    start = _posixsubprocess.fork_exec
+
+    def fork_exec(*arguments: Any) -> Any:
+        sys.audit("mutabot.fork_exec", None, arguments[0], None)
+        environment = arguments[_ENVIRONMENT]
+        if environment is not None:
+            arguments = (*arguments[:_ENVIRONMENT], completed(environment), *arguments[_ENVIRONMENT + 1 :])
+        return start(*arguments)
+
+    _posixsubprocess.fork_exec = fork_exec
+    if "subprocess" in sys.modules:
+        _use(fork_exec)
+    listen(STARTS, lambda event, arguments: _about_to_start(event, fork_exec))
+
+
+def _about_to_start(event: str, fork_exec: Callable[..., Any]) -> None:
+    _lead()
+    if event == "subprocess.Popen":
+        _use(fork_exec)
+
+
+def _use(fork_exec: Callable[..., Any]) -> None:
+    module: Any = sys.modules["subprocess"]
+    module._fork_exec = fork_exec
+    module._USE_POSIX_SPAWN = False  # it goes another way with ``close_fds=False``; this one does the same
 
 
 def with_startup(path: str | None) -> str:
@@ -74,24 +119,6 @@ def completed(environment: Sequence[bytes]) -> list[bytes]:
     given[b"PYTHONPATH"] = os.fsencode(with_startup(os.fsdecode(path) if path is not None else None))
     given[os.fsencode(VARIABLE)] = os.fsencode(_folder)
     return [name + b"=" + value for name, value in given.items()]
-
-
-def _patch(event: str, arguments: tuple[Any, ...]) -> None:
-    """A process is about to be started, which the module has said before: the first one, most never do."""
-    module: Any = sys.modules["subprocess"]
-    start = module._fork_exec
-    if hasattr(start, "is_of_mutabot"):
-        return
-    module._USE_POSIX_SPAWN = False  # it goes another way with ``close_fds=False``; this one does the same
-
-    def fork_exec(*arguments: Any) -> Any:
-        environment = arguments[_ENVIRONMENT]
-        if environment is not None:
-            arguments = (*arguments[:_ENVIRONMENT], completed(environment), *arguments[_ENVIRONMENT + 1 :])
-        return start(*arguments)
-
-    fork_exec.is_of_mutabot = True  # type: ignore[attr-defined]  # a mark on it
-    module._fork_exec = fork_exec
 
 
 def write_wake(folder: str, join: str, key: str, names: Iterable[str], files: Iterable[str]) -> None:
@@ -186,8 +213,6 @@ _KILLERS = {
 #: programs that run a command that they are given
 _RUNNERS = {"sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "nice", "nohup", "setsid", "xargs"}
 _KILLER_IN_TEXT = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(_KILLERS))})(?![\w.-])")
-#: audit events of the start of a program, see ``starts_a_killer``
-STARTS = ("os.system", "subprocess.Popen", "os.posix_spawn", "os.exec")
 #: options of Python by which it leaves out the environment, or what is loaded at its start
 _APART = {"-I", "-E", "-S"}
 

@@ -123,7 +123,8 @@ class Member:
         name = f"{os.getpid()}-{int(now * 1e6)}"
         self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
         command = tuple(getattr(sys, "orig_argv", sys.argv))
-        self.file.send(events.Began(os.getpid(), os.getpgrp(), command, now, self._test))
+        is_forked = session is not None
+        self.file.send(events.Began(os.getpid(), os.getpgrp(), command, now, self._test, forked=is_forked))
         self.session = session or _session(job, self)
         self._targets: set[str] = set()
         self._told = Evidence()

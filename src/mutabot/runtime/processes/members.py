@@ -61,8 +61,9 @@ class Members:
         known = Known(job, index_of, self._acted, watch.codes, watch.signalled)
         end = self._with_recorded(fold(end, here, known), here, known)
         self._acted = self._acted or end.acted > 0
-        if places := {place for one in here for place in one.places}:
-            self._session.pipe.send(events.PlacesReached(end.test, tuple(sorted(places)), elsewhere=True))
+        for origin in (events.STARTED, events.FORKED):
+            if places := {place for one in here if one.origin == origin for place in one.places}:
+                self._session.pipe.send(events.PlacesReached(end.test, tuple(sorted(places)), origin))
         end = replace(end, processes=tuple((one.began.pid, one.name) for one in here))
         for one in here:
             one.forget()
