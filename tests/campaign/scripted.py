@@ -274,7 +274,8 @@ class _Test:
         functions: the functions of the program that it mentions.
         calls: what these call.
         place: where it ends, which is where it fails.
-        executed: what it executes: these functions, itself, and all of files that are no program.
+        executed: what it executes: these functions, itself, and all of files that are no program; it counts
+            for the tests after it, too.
     """
 
     functions: frozenset[str]

@@ -248,10 +248,13 @@ def _executed(run: Run, decided: TestEnd | None, baseline: Baseline, *, is_of_su
     """
     if run.death is not None or run.problem is not None or is_of_suite:
         return None
-    reaching = baseline.tests_reaching(run.round, run.mutant)
-    ends = [one for one in run.ends if one is decided or one.hits or one.test in reaching]
-    ends += [baseline.ends[run.round, one.test] for one in ends if (run.round, one.test) in baseline.ends]
-    return together(end.executed for end in ends)
+    reaching = set(baseline.tests_reaching(run.round, run.mutant))
+    asked = [n for n, one in enumerate(run.ends) if one is decided or one.hits or one.test in reaching]
+    # what these tell is what none before them has told
+    whole = max((n for n in asked if run.ends[n].hits or run.ends[n].outcome == "failed"), default=-1)
+    ends = [*run.ends[: whole + 1], *(run.ends[n] for n in asked if n > whole)]
+    original = baseline.executed[run.round].by(run.ends[n].test for n in asked)
+    return together([*(end.executed for end in ends), original])
 
 
 def _lacks_tests(run: Run, outcome: Outcome) -> bool:

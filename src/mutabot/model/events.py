@@ -81,9 +81,9 @@ class TestEnd(Event):
         more_checks: how many further ones were made.
         recording: what the world did, as ``evidence.recording.to_text`` writes it; None if that was not asked
             for.
-        executed: units of the project's files that were executed until the test ended, outside of tests or in
-            this one; of a mutant that this test neither reached nor failed, in this one alone. None if that
-            is not known.
+        executed: units of the project's files that were executed until the test ended, but for those that
+            tests before it have told of; of a mutant that this test neither reached nor failed, those of the
+            test alone. None if that is not known.
     """
 
     __test__ = False  # not a test class, whatever pytest may think of the name

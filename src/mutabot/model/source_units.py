@@ -51,6 +51,28 @@ def together(parts: Iterable[Executed | None]) -> Executed | None:
     return {file: tuple(sorted(lines)) for file, lines in found.items()}
 
 
+class ExecutedByTests:
+    """What was executed in a run of the suite, of which each test has told what is new.
+
+    What was executed before a test counts for it.
+
+    Args:
+        told: the tests in their order, and what each has told.
+    """
+
+    def __init__(self, told: Iterable[tuple[str, Executed | None]]) -> None:
+        self._numbers: dict[str, int] = {}
+        self._told: list[Executed | None] = []
+        for number, (test, executed) in enumerate(told):
+            self._numbers[test] = number
+            self._told.append(executed)
+
+    def by(self, tests: Iterable[str]) -> Executed | None:
+        """The units that count for these tests; None if those of one are not known."""
+        last = max((self._numbers[test] for test in tests if test in self._numbers), default=-1)
+        return together(self._told[: last + 1])
+
+
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 #: the first and last line and column of a node, or a line alone
 Extent = tuple[int, ...]

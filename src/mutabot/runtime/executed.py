@@ -3,7 +3,8 @@
 Files are compiled with one more statement at the beginning of each function, which sets a byte. That takes a
 tenth of the time that a trace function takes (14 ns a call instead of 165), and works alike in all versions
 of Python. What a test executes may leave something behind, in ways that no text shows: it counts for that
-test and for all tests after it. See ``model.source_units``.
+test and for all tests after it, so each test tells only what none before it has told. See
+``model.source_units``.
 """
 
 from __future__ import annotations
@@ -47,6 +48,7 @@ class ExecutedUnits(loading.SourceStep):
         self._ran = bytearray()
         self._places: list[_PLACES] = []
         self._common: set[_PLACES] = set()
+        self._untold: set[_PLACES] = set()
         self._test: set[_PLACES] = set()
         self._loaded: set[str] = set()
         self._in_call = False
@@ -63,7 +65,7 @@ class ExecutedUnits(loading.SourceStep):
             file = getattr(module, "__file__", None)
             name = self._name(file) if isinstance(file, str) else None
             if name is not None:
-                self._common.add((name, WHOLE))
+                self._keep({(name, WHOLE)})
         loading.add(self)
         loading.hook_pytest(self.wants, self.change)
         listen(("open", "import", "exec", *STARTS), self._hear)
@@ -77,10 +79,10 @@ class ExecutedUnits(loading.SourceStep):
         name = self._name(path)
         assert name is not None
         self._loaded.add(name)
-        self._common.add((name, MODULE))
+        self._keep({(name, MODULE)})
         # it compiles functions in a way of its own
         if b"numba" in source and _imports(ast.parse(source), "numba"):
-            self._common.add((name, WHOLE))
+            self._keep({(name, WHOLE)})
             return
         for _, node in functions_of(tree):
             number = len(self._places)
@@ -94,24 +96,32 @@ class ExecutedUnits(loading.SourceStep):
 
     def begin_call(self) -> None:
         """The fixtures of the test are set up."""
-        self._common |= self._take()
+        self._keep(self._take())
         self._in_call = True
 
     def end_call(self) -> None:
         """Its fixtures are taken down next. What the test did may matter to all tests after it."""
         if self._in_call:
             self._test |= self._take()
-            self._common |= self._test
+            self._keep(self._test)
             self._in_call = False
 
     def of_test(self, *, alone: bool = False) -> Executed:
-        """All that the running test depends on, as far as it has come; ``alone``: in its call phase."""
+        """What the running test depends on and no test has told of before; ``alone``: in its call phase."""
         self.end_call()
-        self._common |= self._take()
+        self._keep(self._take())
+        told = set(self._test if alone else self._untold)  # another thread may be at work
+        if not alone:
+            self._untold.difference_update(told)
         found: dict[str, set[int]] = {}
-        for file, line in self._test if alone else self._common | self._test:
+        for file, line in told:
             found.setdefault(file, set()).add(line)
         return {file: tuple(sorted(lines)) for file, lines in found.items()}
+
+    def _keep(self, found: set[_PLACES]) -> None:
+        """This counts for all tests from now on."""
+        self._untold.update(found - self._common)
+        self._common.update(found)
 
     def _take(self) -> set[_PLACES]:
         """The functions that were executed since this was last asked."""
@@ -139,15 +149,18 @@ class ExecutedUnits(loading.SourceStep):
             if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):
                 name = None if _is_by_us() else self._name(os.fsdecode(path))
                 if name is not None and not (name.endswith(".py") and _is_import()):
-                    (self._test if self._in_call else self._common).add((name, WHOLE))
+                    if self._in_call:
+                        self._test.add((name, WHOLE))
+                    else:
+                        self._keep({(name, WHOLE)})
         elif event == "import" and arguments[0] in _SPAWNERS:
-            self._common.add((ALL_FILES, WHOLE))
+            self._keep({(ALL_FILES, WHOLE)})
         elif event == "exec" and isinstance(arguments[0], CodeType):
             name = self._name(arguments[0].co_filename)
             if name is not None and name not in self._loaded:
-                self._common.add((name, WHOLE))
+                self._keep({(name, WHOLE)})
         elif event in STARTS and not (_is_by_us() or _is_foreign(event, arguments) or self._is_of_library()):
-            self._common.add((ALL_FILES, WHOLE))
+            self._keep({(ALL_FILES, WHOLE)})
 
     def _is_of_library(self) -> bool:
         """Whether an installed package does it while it is imported, as ``glfw`` does to know a version."""

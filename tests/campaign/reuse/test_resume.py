@@ -147,13 +147,16 @@ def test_a_fresh_campaign_runs_everything(project: Project) -> None:
 
 def test_a_changed_function_runs_what_can_reach_it_again_and_a_data_file_everything(project: Project) -> None:
     first = project.run()
-    project.edit("mission.py", lambda text: text.replace("arm.move_by(0.2)", "arm.move_by(0.1)"))
-    left = of("left", first)
-    assert project.run() == left
-    kept = len(first) - len(left)
+    project.edit("mission.py", lambda text: text.replace("arm.move_by(0.3)", "arm.move_by(0.1)"))
+    right = of("right", first)
+    assert project.run() == right
+    kept = len(first) - len(right)
     assert project.note == (
-        f"reused {kept} of {len(first)} outcomes; {len(left)} run again: left() in mission.py changed"
+        f"reused {kept} of {len(first)} outcomes; {len(right)} run again: right() in mission.py changed"
     )
+    project.edit("mission.py", lambda text: text.replace("arm.move_by(0.2)", "arm.move_by(0.1)"))
+    assert project.run() == first  # what a test executes counts for all tests after it
+    assert project.note.endswith("run again: left() in mission.py changed")
     project.edit("robot.py", lambda text: text.replace("self.x = x", "self.x = 0.0"))
     assert project.run() == first
     assert project.note.endswith("run again: Arm.__init__() in robot.py changed")
@@ -241,8 +244,10 @@ def test_what_a_test_has_noticed_that_does_not_reach_it_depends_on_all_tests(
     assert project.run() == set()
     project.edit("tests/test_right.py", ASSERTS_MORE)
     assert project.run() == of("right", first) | noticed
+    (project.folder / "tests" / "test_then.py").write_text("def test_then():\n    pass\n")
+    assert project.run() == set()  # after all that have decided
     (project.folder / "tests" / "test_more.py").write_text("def test_more():\n    pass\n")
-    assert project.run() == noticed
+    assert project.run() == of("right", first) | noticed
     assert "which tests there are changed" in project.note
 
 
@@ -324,11 +329,11 @@ def test_a_narrow_run_shows_its_mutants_beside_all_others(project: Project, fres
 
 def test_results_of_earlier_runs_are_marked_where_something_has_changed(project: Project) -> None:
     project.run()
-    project.edit("tests/test_mission.py", ASSERTS_MORE)
-    narrow = project.run(only=("1",))
+    project.edit("tests/test_right.py", ASSERTS_MORE)
+    narrow = project.run(only=("5",))
     outdated = {one.mutant.id for one in project.all_results().mutants if one.outdated}
     earlier = {one.mutant.id for one in project.all_results().earlier}
-    assert {mutant for mutant, _ in of("left", {(mutant, 0) for mutant in earlier})} == outdated
+    assert {mutant for mutant, _ in of("right", {(mutant, 0) for mutant in earlier})} == outdated
     assert outdated < earlier
     assert not outdated & {mutant for mutant, _ in narrow}
     project.edit("scene.json")

@@ -26,6 +26,7 @@ from mutabot.model.answer import is_plain
 from mutabot.model.events import Remark, SiteSeen, TestEnd
 from mutabot.model.job import Idle, InProcess, RefusedAt
 from mutabot.model.mutant import Choice, Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
+from mutabot.model.source_units import ExecutedByTests
 from mutabot.operators.command import Identity
 
 if TYPE_CHECKING:
@@ -242,6 +243,7 @@ class Baseline(Original):
         tests: per round, the tests that ended alike in all repetitions and let the suite pass, in its order.
             A test that was skipped or failed as expected belongs to them: a mutant can make it fail.
         ends: the report of each (round, test), from the first repetition.
+        executed: what was executed in this, by round.
         hits: recorded calls by place, in the order in which places were first reached.
         answers: what these calls returned.
         reaching: (round, place) to the tests that reach it, fastest first.
@@ -269,6 +271,7 @@ class Baseline(Original):
     """
 
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
+    executed: dict[int, ExecutedByTests] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
     unread: dict[Place, bool] = field(default_factory=dict)

@@ -26,6 +26,7 @@ from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIA
 from mutabot.model.deadline import Limit
 from mutabot.model.events import Remark, TestEnd
 from mutabot.model.outcome import first_line
+from mutabot.model.source_units import ExecutedByTests
 from mutabot.operators import load_all
 
 from .baseline import Baseline, Hit, RecordedAnswers, Sources, observation, refused_of
@@ -289,12 +290,13 @@ def _add_round(
             good.append(test)
             seen = [end, *(other for other in others if other is not None)]
             wall, cpu = max(one.wall for one in seen), max(one.cpu for one in seen)
-            baseline.ends[round, test] = replace(end, wall=wall, cpu=cpu, recording=None)
+            baseline.ends[round, test] = replace(end, wall=wall, cpu=cpu, recording=None, executed=None)
             baseline.observations[round, test] = observation(end, places[0])
             for again, there in zip(others, places[1:], strict=True):
                 if again is not None:
                     baseline.compare_runs(round, again, observation(again, there), request.vocabulary)
     baseline.tests.append(good)
+    baseline.executed[round] = ExecutedByTests((end.test, end.executed) for end in repetitions[0].ends)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
     # without the tests that are set aside nothing fails

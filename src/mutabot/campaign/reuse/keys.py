@@ -308,9 +308,9 @@ class Dependencies:
 
     def executed_by(self, mutant: Mutant, round: int) -> Executed | None:
         """What tests execute of the original that reach a mutant, and what no test does: a mutant might."""
-        ends = {test: end.executed for (where, test), end in self._baseline.ends.items() if where == round}
+        executed = self._baseline.executed[round]
         if round not in self._idle:
-            everywhere = together(ends.values()) or {}
+            everywhere = executed.by(self._baseline.suite(round)) or {}
             files = [self.tree.file(name) for name in self.tree.digests if not is_test_file(name)]
             self._idle[round] = {
                 file.name: tuple({*file.lines_of(file.said)}.difference(everywhere.get(file.name, ())))
@@ -318,7 +318,7 @@ class Dependencies:
                 if file is not None
             }
         tests = self._baseline.tests_reaching(round, mutant)
-        return together([*(ends[test] for test in tests), self._idle[round]])
+        return together([executed.by(tests), self._idle[round]])
 
     def _once(self, made: Callable[[], list[str]], *of: object) -> list[str]:
         """What is made of these objects, made once. They are kept: no other may get the place of one."""
@@ -346,8 +346,7 @@ class Dependencies:
         self, before: Mapping[str, set[str] | None], tests: Iterable[str], round: int
     ) -> list[str]:
         """Units that tests execute now and did not before: they may hide what was executed."""
-        ends = self._baseline.ends
-        executed = together(ends[round, test].executed for test in tests if (round, test) in ends)
+        executed = self._baseline.executed[round].by(tests)
         if executed is None or ALL_FILES in executed:
             return ["its tests start processes now"]
         found = []
