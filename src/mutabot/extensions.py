@@ -40,6 +40,11 @@ _OF_OWN_PACKAGES = {
 }
 #: kinds of parts that processes of the tests need
 _OF_PROCESSES = ("operators", "middlewares", "environments", "futures")
+#: kinds of parts that are code or data of a package
+_REFERRING = (
+    *_OF_PROCESSES, "vocabularies", "executors", "templates", "tables", "commands", "formats", "sections",
+    "simulations", "faults",
+)  # fmt: skip
 #: those that are modules of the packages themselves
 _OWN = ("operators", "middlewares", "environments")
 
@@ -215,6 +220,17 @@ def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, ExtensionPart]
 def versions() -> tuple[str, ...]:
     """Distributions whose versions decide how tests end, by the packages that say so."""
     return tuple(dict.fromkeys(name for _, extension in _declared() for name in extension.versions))
+
+
+def references(owner: str) -> tuple[str, ...]:
+    """All references of a distribution's extensions, by its name; only the controller can tell."""
+    found = (extension for name, extension in _declared() if name.lower() == owner)
+    return tuple(
+        part if isinstance(part, str) else part.reference
+        for extension in found
+        for kind in _REFERRING
+        for part in getattr(extension, kind).values()
+    )
 
 
 def _part(name: str, declared: str | Described, owner: str) -> ExtensionPart:

@@ -7,18 +7,22 @@ each process of the tests when the first of them begins. What it raises is an er
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from importlib import import_module
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Mutant
 from mutabot.model.job import InProcess
 from mutabot.operators.command import FatalFault
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.evidence import Evidence, everything
 from mutabot.runtime.observation.probes import opaque
+from mutabot.runtime.origin import Origin
+
+if TYPE_CHECKING:
+    from mutabot.runtime.interception.trace import Locator
 
 
 class ProcessFault(ABC):
@@ -31,12 +35,14 @@ class ProcessFault(ABC):
         data: what its provider has told it.
         evidence: what it did in the running test.
         on_act: told when it changes something for the first time in a test.
+        meant: what it has let the program meet.
     """
 
     def __init__(self, mutant: Mutant, data: Any) -> None:
         self.mutant, self.data = mutant, data
         self.evidence = Evidence()
         self.on_act: Callable[[], None] = lambda: None
+        self.meant: list[BaseException] = []
 
     @abstractmethod
     def start_test(self, test: str, random: Random) -> None:
@@ -57,6 +63,14 @@ class ProcessFault(ABC):
         if self.evidence.acted == 1:
             self.evidence.example = (_plain(before), _plain(after))
             self.on_act()
+
+    def raising(self, error: BaseException) -> BaseException:
+        """Say that the program is to meet this exception: ``raise self.raising(TimeoutError("no answer"))``.
+
+        Any other that this fault's code raises is an error of the mutant.
+        """
+        self.meant.append(error)
+        return error
 
 
 class ProcessIdentity(ProcessFault):
@@ -103,7 +117,10 @@ class PlacedFault:
     @property
     def evidence(self) -> Evidence:
         """What it did in the running test."""
-        found = self._fault.evidence if self._fault is not None else Evidence()
+        found = Evidence()
+        if self._fault is not None:
+            with self._told(self._fault.mutant, "asked what it did"):
+                found = _checked(self._fault.evidence)
         return found if self._failure is None else replace(found, failure=self._failure)
 
     def start_test(self, test: str, random_of: Callable[[Mutant], Random]) -> None:
@@ -116,7 +133,7 @@ class PlacedFault:
                 fault.start_test(test, random_of(self._mutant))
 
     def end_test(self) -> None:
-        """The test and its fixtures are over."""
+        """The test and its fixtures are over; what the fault did is asked after this."""
         if self._fault is not None:
             with self._told(self._fault.mutant, "taken away"):
                 self._fault.end_test()
@@ -126,10 +143,21 @@ class PlacedFault:
         """A provider may fail in any way: that is an error of its mutant, and says nothing of the tests."""
         try:
             yield
-        except FatalFault as error:
-            self.fatal = error
-        except Exception as error:
-            self._failure = f"{mutant.operator} cannot be {what}: {type(error).__name__}: {error}"
+        except BaseException as error:
+            if isinstance(error, FatalFault) and isinstance(self._fault, ProcessFatal):
+                self.fatal = error
+                return
+            self._failure = self._failure or f"{mutant.operator} cannot be {what}: {_words(error)}"
+
+    def failure_in(self, error: BaseException, robots: Collection[str], locator: Locator) -> str | None:
+        """How its own code failed, if that is where an exception comes from that a test or process met."""
+        fault = self._fault
+        if fault is None or isinstance(fault, ProcessFatal):
+            return None
+        origin, meant = Origin(type(fault).__module__, robots, locator), {*map(id, fault.meant)}
+        own = (one for one in everything(error) if id(one) not in meant and origin.is_own(one))
+        found = next(own, None)
+        return f"{fault.mutant.operator} fails at work: {_words(found)}" if found is not None else None
 
     def _made(self, mutant: Mutant, how: InProcess) -> ProcessFault:
         """The fault, which is made when the first test begins."""
@@ -139,6 +167,16 @@ class PlacedFault:
             raise TypeError(f"{how.reference} is no mutabot.runtime.process_fault.ProcessFault")
         fault.on_act = lambda: self.on_act(mutant.id)
         return fault
+
+
+def _checked(evidence: Any) -> Evidence:
+    if not isinstance(evidence, Evidence) or {type(evidence.hits), type(evidence.acted)} != {int}:
+        raise TypeError(f"its evidence is {type(evidence).__name__}, not as ProcessFault keeps it")
+    return evidence
+
+
+def _words(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"
 
 
 def _plain(value: Any) -> Any:

@@ -313,7 +313,6 @@ class Session:
     def end_test(self) -> None:
         """The test and its fixtures are over."""
         self.passing.meter = None
-        self.placed.end_test()
         if self.text is not None:
             if self.passing.fork_parent is not None:
                 self.passing.fork_parent.tell_undiverged(self.text.alternatives.hits)
@@ -386,6 +385,12 @@ class Session:
         if one not in self.noted and self.on_noted is not None:
             self.on_noted(one)
         self.noted[one] = None
+
+    def failure_in(self, error: BaseException) -> str | None:
+        """How the mutant's own code failed, if that is where an exception comes from; None if it is not."""
+        operations = self.job.vocabulary.operations
+        robots = {one.target.partition(":")[0] for one in operations if one.named is None}
+        return self.placed.failure_in(error, robots, self.locator)
 
     def _refusals(self, operation: Operation) -> frozenset[str]:
         return frozenset((*operation.refusals, *self.job.vocabulary.refusals))

@@ -167,6 +167,7 @@ class TestHooks:
             return (yield)
         self._start(item, test)
         result = yield
+        session.placed.end_test()
         end = self._test_end(test)
         if self.members is not None:
             end = self.members.merged(end)
@@ -266,7 +267,8 @@ class TestHooks:
             return None
         session = self.session
         known = (session.locator, session.job.vocabulary, session.evidence)
-        return classify(call.excinfo.value, node_id(item), str(item.path), *known)
+        end = classify(call.excinfo.value, node_id(item), str(item.path), *known)
+        return replace(end, failure=end.failure or session.failure_in(call.excinfo.value))
 
     def _test_end(self, test: str) -> TestEnd:
         if self._outcome == FAILED and self._logged is False:

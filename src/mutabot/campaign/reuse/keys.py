@@ -30,6 +30,7 @@ from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
 from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, digest, is_test_file, together
 
+from .packages import code_of_packages
 from .snapshot import _HASH, State, _digest_of, counts_by_name, digest_of, read
 
 if TYPE_CHECKING:
@@ -173,6 +174,10 @@ class Dependencies:
             **{f"role of {name}": role for name in self.files if (role := role_of(name, request))},
             **_vocabulary_parts(request.vocabulary),
             **versions(),
+            **{
+                f"code of {name}": _HASH + _digest(files)
+                for name, files in code_of_packages(request.root).items()
+            },
         }
         self._common = self._stored(self.common)
         self._operations = {

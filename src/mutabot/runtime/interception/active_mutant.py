@@ -8,10 +8,11 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cache, partial
 from random import Random
+from traceback import walk_tb
 from typing import Any
 
 from mutabot.errors import OperatorError, PathError
-from mutabot.model import Call, Moment, Mutant, Operation, Path, Proceed, Reply, Span
+from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Path, Proceed, Reply, Span
 from mutabot.model.answer import restore
 from mutabot.model.enumeration import is_member, member_of
 from mutabot.model.job import Idle, RefusedAt
@@ -205,13 +206,27 @@ class ActiveMutant:
         """
         self.usual = usual
         self.evidence = self.early.copy()
+        self._test = (round, test)
+        self._moment = moment
+        self._forget()
+        try:
+            self._make_ready(seed)
+        except Exception as error:  # the operator's code may fail in any way: here no program meets it
+            self._fails(error, " cannot be made ready")
+
+    def _make_ready(self, seed: int) -> None:
+        self._middleware: Middleware = _not_yet
+        self._does_nothing, self._idle, self.copies = False, None, False
         self.rule = operator(self.mutant.operator)
         self.copies = Need.COPIES in self.rule.needs
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
         self._idle = Idle.of(self.mutant.idle) if Need.IDLE in self.rule.needs else None
-        self._test = (round, test)
-        self._moment = moment
-        self._forget()
+        self._does_nothing = self.rule.does_nothing
+
+    def _fails(self, error: BaseException, how: str = "") -> None:
+        """Note that neither the robot nor the program, but the operator or the vocabulary is at fault."""
+        text = f"operator {self.mutant.operator}{how}: {type(error).__name__}: {error}"
+        self.evidence.failure = self.evidence.failure or text
 
     def is_here(self, site: Place, call: Call) -> bool:
         """Whether a call at this place is the mutant's, by its operation and text command."""
@@ -231,7 +246,7 @@ class ActiveMutant:
         call = replace(made.call, payload=made.call.payload.copied()) if self.copies else made.call
         is_due = self._moment is None or self._moment.holds(made.number, self.time())
         passage = CallRecord(replace(call, is_refusal=partial(is_refusal, names=self.refusals)))
-        mutated = _MutatedCall(self, adapter, made, passage, does_nothing=is_due and self.rule.does_nothing)
+        mutated = _MutatedCall(self, adapter, made, passage, does_nothing=is_due and self._does_nothing)
         self._commands, self._told, self._is_passed = 0, 0, False
         middleware = _one_is_due if self._due else self._middleware if is_due else _not_yet
         try:
@@ -251,9 +266,8 @@ class ActiveMutant:
                 self.note(passage)
             if isinstance(error, FatalFault):
                 self._count_act()
-            elif mutated.raised is None and self.evidence.failure is None:
-                # neither the robot nor the program: the operator or the vocabulary is at fault
-                self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
+            elif mutated.is_own(error):
+                self._fails(error)
             raise
         return await handed(), last
 
@@ -403,7 +417,7 @@ class _MutatedCall:
 
     Attributes:
         does_nothing: whether the operator is to let the robot do nothing.
-        raised: what the robot raised.
+        raised: what the robot raised, all of it.
         answer: what it returned last, and whether it has.
         kept: the same, or the copy that the operator saw.
         is_live: whether that is the robot's own memory.
@@ -414,7 +428,7 @@ class _MutatedCall:
     made: SiteCall
     passage: CallRecord
     does_nothing: bool
-    raised: BaseException | None = None
+    raised: list[BaseException] = field(default_factory=list)
     answer: Any = None
     is_answered: bool = False
     kept: Any = None
@@ -434,9 +448,10 @@ class _MutatedCall:
         try:
             result = await self._perform(call)
         except BaseException as error:
-            self.raised = error.error if isinstance(error, Carried) else error
-            if is_changed and is_refusal(self.raised, mutant.refusals) and not self._is_usual:
-                mutant.evidence.refusals = with_refusal(mutant.evidence.refusals, self.raised)
+            raised = error.error if isinstance(error, Carried) else error
+            self.raised.append(raised)
+            if is_changed and is_refusal(raised, mutant.refusals) and not self._is_usual:
+                mutant.evidence.refusals = with_refusal(mutant.evidence.refusals, raised)
             raise
         finally:
             if is_changed:
@@ -449,6 +464,16 @@ class _MutatedCall:
         reply = replace(reply, payload=copied(reply.payload)) if mutant.copies else reply
         self.answer, self.is_answered, self.kept = result, True, reply.payload
         return reply
+
+    def is_own(self, error: BaseException) -> bool:
+        """Whether the operator's own code raised an exception: neither the robot nor who ends the call."""
+        error = error.error if isinstance(error, Carried) else error
+        if any(one is error for one in self.raised):
+            return False
+        if isinstance(error, Exception):
+            return True
+        *_, (frame, _) = walk_tb(error.__traceback__)  # others may end a call: pytest, an event loop
+        return frame.f_globals.get("__name__") == type(self.mutant.rule).__module__
 
     async def _perform(self, call: Call) -> Any:
         action = partial(self.adapter.perform, call, self.passage.call)

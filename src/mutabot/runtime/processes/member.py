@@ -185,13 +185,19 @@ class Member:
     def turn(self) -> None:
         """Look whether another test has begun."""
         if self._now.number != self._test:
-            self.session.look_back(at_all=True)
+            self._take_away()
             self.poll()
             self._use()
             self._test = self._now.number
             self._told, self._exceeded = Evidence(), False
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
+
+    def _take_away(self) -> None:
+        """The test is over for the mutant."""
+        self.session.look_back(at_all=True)
+        if not isinstance(self.session, TextOnly):
+            self.session.placed.end_test()
 
     def send(self, line: events.Event) -> None:
         """What the session tells: written down, as far as it is news."""
@@ -266,12 +272,15 @@ class Member:
             self._places |= new
             self.file.send(events.PlacesReached(self.session.test, tuple(sorted(new))))
 
+    def _own_failure(self, error: BaseException) -> str | None:
+        return None if isinstance(self.session, TextOnly) else self.session.failure_in(error)
+
     def end(self) -> None:
         """The process ends: tell what is left to tell."""
         if self._is_over or _member is not self:
             return
         self._is_over = True
-        self.session.look_back(at_all=True)
+        self._take_away()
         self.poll()
         self._use()
         if self.session.text is not None:
@@ -327,7 +336,7 @@ class Member:
             events.Raised(
                 f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
                 is_refusal=bool(culprits) and is_due_to(error, culprits),
-                failure=failure_in(error, self.session.job.vocabulary.failures),
+                failure=failure_in(error, self.session.job.vocabulary.failures) or self._own_failure(error),
                 in_thread=in_thread,
             )
         )
