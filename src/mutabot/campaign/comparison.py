@@ -266,7 +266,7 @@ def _on_the_way(
     """
     before, after = _readings(original.moments or ()), _readings(mutant.moments or ())
     same = _same_calls(original, mutant)
-    common = [call for call in before if call in after and call <= same]
+    common = [call for call in before if before[call] and call in after and call <= same]
     worst, line = 0.0, ""
     for call in common:
         if before[call] == after[call]:

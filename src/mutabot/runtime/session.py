@@ -333,18 +333,27 @@ class Session:
         meter, self.passing.meter = self.meter, None  # probes are no operations of the program's
         try:
             with Untracked(self.returns):
-                return take(self._probes(along=along), self.instances)
+                return self._along() if along else take(self.job.vocabulary.probes, self.instances)
         finally:
             self.passing.meter = meter
 
-    def _probes(self, *, along: bool) -> tuple[Probe, ...]:
-        """The probes; along the way without those in program files, in which mutants may be waited for."""
+    def _along(self) -> Reading:
+        """Read the probes along the way: the program's own code, where one stands in it, as the original.
+
+        A mutant may be waited for there, and is counted where it acts. While other threads run the program,
+        nothing of its text can be set aside.
+        """
         probes = self.job.vocabulary.probes
-        if not along or self.returns is None:
-            return probes
-        modules = {probe: sys.modules.get(probe.target.partition(":")[0]) for probe in probes}
-        files = {probe: getattr(module, "__file__", None) or "" for probe, module in modules.items()}
-        return tuple(probe for probe in probes if not self.returns.wants(files[probe]))
+        if self.text is None or self.text.sightings is not None or not any(map(self._is_of_program, probes)):
+            return take(probes, self.instances)
+        if threading.active_count() > 1:
+            return take(tuple(one for one in probes if not self._is_of_program(one)), self.instances)
+        with self.text.alternatives.paused():
+            return take(probes, self.instances)
+
+    def _is_of_program(self, probe: Probe) -> bool:
+        file = getattr(sys.modules.get(probe.target.partition(":")[0]), "__file__", None) or ""
+        return self.returns is not None and self.returns.wants(file)
 
     def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
         """All tests are over: wait for forks, tell what was seen, and check the vocabulary if asked to.

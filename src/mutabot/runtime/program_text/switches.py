@@ -17,6 +17,7 @@ import sys
 import threading
 import types
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from typing import Any, NoReturn
 
@@ -163,6 +164,16 @@ class Alternatives:
         What cannot be foreseen is told when it is reached; negative indexes always are.
         """
         self._set(live)
+
+    @contextmanager
+    def paused(self) -> Iterator[None]:
+        """Let all places be the original's meanwhile, and count none of them; for one thread alone."""
+        on = self.switches[1:]
+        self.switches[1:] = [False] * len(on)
+        try:
+            yield
+        finally:
+            self.switches[1:] = on
 
     def reached(self, switch: Switch, frame: types.FrameType) -> bool:
         """A place that is on is evaluated; whether an alternative stands for it."""
