@@ -11,12 +11,10 @@ import functools
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextvars import Context
 from typing import Any
 
 from mutabot.model import Operation
 from mutabot.model.operation import Form
-from mutabot.runtime.interception.dispatcher import is_under_way
 from mutabot.runtime.processes.member import note_node
 from mutabot.runtime.targets.target import Finding, Names, anew, deliver, wait_for
 
@@ -123,9 +121,6 @@ class _Topics:
         return handler(publish, publisher, (made,), {}, node.where())
 
     def _receive(self, original: Any, topic: Any, message: Any, callback: Any, more: Any) -> None:
-        if is_under_way():  # a latched message, in the midst of setting the subscription up
-            Context().run(self._receive, original, topic, message, callback, more)
-            return
         self._messages.heard(topic.resolved_name, message)
         is_ours = isinstance(getattr(callback, "__self__", None), _waiter())
         handler = None

@@ -24,8 +24,7 @@ from mutabot.model import Role, Span
 from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.path import class_name
 from mutabot.runtime.interception.adapter import is_mock
-from mutabot.runtime.interception.dispatcher import Untracked, is_under_way
-from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.interception.trace import Locator, border
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
 from mutabot.runtime.targets.target import NOWHERE, Handler, Messages, Where
@@ -73,6 +72,12 @@ _MOST_USES = 300
 _LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
 
 
+@border
+def _carried_out(wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    """Make a use; what that uses in turn is its own doing, as in a campaign."""
+    return wrapped(*args, **kwargs)
+
+
 class NamesSeen(Messages):
     """All that the program and the tests do under names.
 
@@ -94,7 +99,7 @@ class NamesSeen(Messages):
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
         """What looks at a use; None where something is set up, which is noted at once."""
         self._passed()
-        if form in SETTING_UP and not is_under_way():
+        if form in SETTING_UP:
             self._use(form, name, self._locator.locate(sys._getframe(1)), False)
         if form not in _LOOKED_AT:
             return None
@@ -106,8 +111,6 @@ class NamesSeen(Messages):
             kwargs: dict[str, Any],
             where: Where = NOWHERE,
         ) -> Any:
-            if is_under_way():
-                return wrapped(*args, **kwargs)
             code, locator = where.code, self._locator
             place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
             use = self._use(form, name, place, code is not None)
@@ -115,8 +118,7 @@ class NamesSeen(Messages):
                 self._look(use.written, args[0])
             if inspect.iscoroutinefunction(wrapped):
                 return self._awaited(use, wrapped(*args, **kwargs))
-            with Untracked(None):  # only the outermost counts, as in a campaign
-                result = wrapped(*args, **kwargs)
+            result = _carried_out(wrapped, args, kwargs)
             self._answer(use, result)
             return result
 

@@ -45,6 +45,10 @@ ROBOT = """
 
     def see():
         return 0.5
+
+    def do(function):
+        function()
+        LOG.append("done")
 """
 VOCABULARY = """
     refusals = ["robot:Refused"]
@@ -66,6 +70,9 @@ VOCABULARY = """
     arguments.width = { kind = "opening", unit = "mm", range = [0, 85] }
 
     [[operation]]
+    call = "robot:do"
+
+    [[operation]]
     call = "robot:see"
     result = { kind = "distance", unit = "m", missing = "robot:NoImage" }
 """
@@ -85,6 +92,13 @@ def done(make_stage: Make, lines: str, operator: str, quantity: str | None = Non
 def test_a_deferred_command_is_made_after_the_next_one_and_not_after_a_reading(make_stage: Make) -> None:
     log, evidence = done(make_stage, "robot.move(1)\nrobot.see()\nrobot.move(2)\nrobot.move(3)", "swap-next")
     assert log == ["move 2", "move 1", "move 3"]
+    assert (evidence.hits, evidence.acted) == (1, 1)
+
+
+def test_a_command_in_a_callback_is_not_made_at_the_end_of_what_called_back(make_stage: Make) -> None:
+    lines = "robot.do(lambda: robot.move(1))\nrobot.move(2)\nrobot.move(3)"
+    log, evidence = done(make_stage, lines, "swap-next")
+    assert log == ["done", "move 2", "move 1", "move 3"]
     assert (evidence.hits, evidence.acted) == (1, 1)
 
 

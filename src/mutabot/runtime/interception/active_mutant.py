@@ -192,8 +192,7 @@ class ActiveMutant:
         """Forget what is of one test."""
         self.watched: tuple[Refused, ...] = ()
         self._handed: HandedCopies | None = None
-        self._due: list[tuple[_MutatedCall, Call]] = []
-        self._next: list[tuple[_MutatedCall, Call]] = []
+        self._due: list[tuple[int, _MutatedCall, Call]] = []
 
     def start(self, seed: int, round: int, test: str, moment: Moment | None, usual: frozenset[int]) -> None:
         """Begin a new test; the mutant's randomness follows from ``seed`` alone.
@@ -242,7 +241,7 @@ class ActiveMutant:
         robot's last answer.
         """
         self.look_back()
-        self.evidence.hits += 1
+        hit = self.evidence.hits = self.evidence.hits + 1
         call = replace(made.call, payload=made.call.payload.copied()) if self.copies else made.call
         is_due = self._moment is None or self._moment.holds(made.number, self.time())
         passage = CallRecord(replace(call, is_refusal=partial(is_refusal, names=self.refusals)))
@@ -256,7 +255,7 @@ class ActiveMutant:
             if reply.more:
                 reply = passage.received = call_faults.heard_of(passage.call, reply)
             self.note(passage)
-            self._next += [(mutated, _held(one)) for one in passage.deferred]
+            self._due += [(hit, mutated, _held(one)) for one in passage.deferred]
             last = passage.answered[-1] if passage.answered else None
             if reply.comes_as_usual:
                 return mutated.result(last, reply), last
@@ -271,17 +270,15 @@ class ActiveMutant:
             raise
         return await handed(), last
 
-    async def catch_up(self, is_async: bool) -> None:
+    async def catch_up(self, is_async: bool, hits: int) -> None:
         """Make the calls that were deferred until after a command of the program's, which is over.
 
-        One that must be awaited waits for a command that is awaited as well. Raises what the robot raises.
+        One that must be awaited waits for a command that is awaited as well, and one from within the command
+        for the next: ``hits`` had been when it began. Raises what the robot raises.
         """
-        if not self._due and not self._next:
-            return
-        due = [one for one in self._due if is_async or not one[0].made.is_async]
-        self._due = [one for one in self._due if one not in due] + self._next
-        self._next = []
-        for mutated, call in due:
+        due = [one for one in self._due if one[0] <= hits and (is_async or not one[1].made.is_async)]
+        self._due = [one for one in self._due if one not in due]
+        for _, mutated, call in due:
             late = replace(mutated, passage=CallRecord(mutated.passage.call, [call], is_late=True))
             late.does_nothing = False
             try:

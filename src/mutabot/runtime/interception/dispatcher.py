@@ -11,11 +11,11 @@ from __future__ import annotations
 import inspect
 import sys
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from types import CodeType, FrameType, FunctionType, MethodType
+from types import FrameType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any, cast
 
 import wrapt
@@ -27,9 +27,9 @@ from mutabot.model.quantity import Value
 from mutabot.operators.passage import Carried, run
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
-from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
+from mutabot.runtime.interception.adapter import Adapter, Invocation, SiteCall, is_mock
 from mutabot.runtime.interception.live import is_live
-from mutabot.runtime.interception.trace import Locator, Recorder
+from mutabot.runtime.interception.trace import Locator, Recorder, border, caller_of
 from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where
@@ -38,9 +38,16 @@ if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
     from mutabot.runtime.program_text.returns import Returns
 
-#: whether an operation is already under way here: only the outermost is a site
-_under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
-is_under_way = _under_way.get
+#: what runs in this context: the program, what an operation does or has begun, or what is nobody's
+_PROGRAM, _OPERATION, _UNTRACKED = 0, 1, 2
+_runs: ContextVar[int] = ContextVar("mutabot_runs", default=_PROGRAM)
+#: what a call gives that is none of those that an operation describes
+_ALONE = object()
+
+
+def is_untracked() -> bool:
+    """Whether calls of operations are none of the program's here: see ``Untracked``."""
+    return _runs.get() == _UNTRACKED
 
 
 class Untracked:
@@ -58,12 +65,12 @@ class Untracked:
         self._returns = returns
 
     def __enter__(self) -> None:
-        self._token = _under_way.set(True)
+        self._token = _runs.set(_UNTRACKED)
         if self._returns is not None:
             self._was, self._returns.is_on = self._returns.is_on, False
 
     def __exit__(self, *error: object) -> None:
-        _under_way.reset(self._token)
+        _runs.reset(self._token)
         if self._returns is not None:
             self._returns.is_on = self._was
 
@@ -120,12 +127,15 @@ class Dispatcher:
                 return wrapped(*args, **kwargs)
             if instance is not None and self.instances.is_watching:
                 self.instances.used(instance)
-            if _under_way.get():
+            runs = _runs.get()
+            if runs == _UNTRACKED:
+                return wrapped(*args, **kwargs)
+            frame = sys._getframe(1)
+            site = where.site or self._site(frame, where, adapter, runs == _OPERATION)
+            if runs and site is None:
                 return wrapped(*args, **kwargs)
             if is_counted and not where.is_again:
                 self.meter.operations += 1
-            frame = sys._getframe(1)
-            site = where.site or self._site(frame, where, adapter)
             if site is None:
                 return wrapped(*args, **kwargs)
             is_direct = self.recorder.answers is not None and self._is_direct(frame, where)
@@ -135,19 +145,29 @@ class Dispatcher:
             invocation = Invocation(wrapped, instance, args, kwargs, where, caller)
             on_its_way = self.dispatch(adapter, site, invocation, is_async, is_direct)
             if is_async:
-                return on_its_way
-            return run(on_its_way, operator=self.mutant.mutant.operator if self.mutant is not None else "")
+                return _or_alone(on_its_way, invocation) if adapter.operation.is_partial else on_its_way
+            operator = self.mutant.mutant.operator if self.mutant is not None else ""
+            result = run(on_its_way, operator=operator)
+            return wrapped(*args, **kwargs) if result is _ALONE else result
 
         return handle
 
-    def _site(self, frame: FrameType, where: Where, adapter: Adapter) -> Place | None:
+    def _site(self, frame: FrameType, where: Where, adapter: Adapter, in_operation: bool) -> Place | None:
         node, code, locator = where.node, where.code, self.locator
-        site = locator.locate(frame) if code is None else locator.locate_definition(code)
+        if code is None:
+            site = locator.locate(frame, in_operation=in_operation)
+        else:
+            site = locator.locate_definition(code)
         if site is not None and node is not None and any(fnmatchcase(node, one) for one in self.oracle_nodes):
             return site[0], Role.ORACLE
-        if site is None and code is None:  # in a thread, where no frame tells it
-            site = where.handed or self.given.get(adapter)
+        if site is None and code is None:  # in a thread, or in an operation: no frame tells it
+            site = where.handed or self._given(frame, adapter, in_operation)
         return site
+
+    def _given(self, frame: FrameType, adapter: Adapter, in_operation: bool) -> Place | None:
+        """Where a function of the robot was handed on. An operation that names it calls it by itself."""
+        is_named = adapter.operation.qualname.rpartition(".")[2] in frame.f_code.co_names
+        return None if in_operation and is_named else self.given.get(adapter)
 
     def _is_direct(self, frame: FrameType | None, where: Where) -> bool:
         """Whether the program itself makes the call, rather than a library that it calls."""
@@ -158,6 +178,7 @@ class Dispatcher:
             frame = frame.f_back
         return frame is not None and self.locator.locate_definition(frame.f_code) is not None
 
+    @border
     async def dispatch(
         self, adapter: Adapter, site: Place, invocation: Invocation, is_async: bool, is_direct: bool
     ) -> Any:
@@ -169,19 +190,19 @@ class Dispatcher:
             invocation: the call as Python made it.
             is_async: whether what the operation returns is to be awaited.
             is_direct: whether the call that stands there is that of the operation itself.
+
+        Returns what the program receives, or ``_ALONE`` if nothing is to stand around the call.
         """
         __tracebackhide__ = True
-        token = _under_way.set(True)
+        token = _runs.set(_OPERATION)
         reply: Reply | None = None
-        clock = self.recorder.clock
+        clock, around = self.recorder.clock, self.recorder.began
         began = self.recorder.began = clock() if clock is not None else None
         try:
             # 1. The adapter reads which command it is, and the values it writes.
             call = adapter.to_call(invocation)
             if call.pattern is None and adapter.operation.is_partial:  # none of the calls that are meant
-                _under_way.reset(token)
-                token = _under_way.set(False)
-                return await self._leave_alone(invocation, is_async)
+                return _ALONE
             key = (site[0], call.operation.target, call.pattern.text if call.pattern is not None else None)
             self.calls[key] += 1
             made = SiteCall(site, call, self.calls[key], is_async, is_direct)
@@ -192,6 +213,7 @@ class Dispatcher:
                     self.fork_parent.fork_at(site[0], call, made.number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = self.mutant
+                hits = mutant.evidence.hits if mutant is not None else 0
                 if mutant is not None and mutant.is_here(site, call):
                     result, reply = await mutant.apply(adapter, made)
                 else:
@@ -200,26 +222,18 @@ class Dispatcher:
                     reply = await self._perform(adapter, made)
                     result = reply.payload
                 if mutant is not None and call.is_command and site[1] is Role.PROGRAM:
-                    await mutant.catch_up(is_async)
+                    await mutant.catch_up(is_async, hits)
                 # 4. The program receives the result.
                 return result
             finally:
                 # 5. Whatever came of it is noted.
                 self._note(made, reply, began)
+                self.recorder.began = around
         finally:
             try:  # noqa: SIM105  # quicker than a context manager, at every call
-                _under_way.reset(token)
+                _runs.reset(token)
             except ValueError:  # a coroutine that was given up is closed from elsewhere
                 pass
-
-    async def _leave_alone(self, invocation: Invocation, is_async: bool) -> Any:
-        """Make a call as if there were no handler around it."""
-        __tracebackhide__ = True
-        try:
-            result = invocation.wrapped(*invocation.args, **invocation.kwargs)
-            return await result if is_async else result
-        except StopIteration as error:
-            raise Carried(error) from None
 
     async def _perform(self, adapter: Adapter, made: SiteCall) -> Reply:
         """Let the robot do what the program says."""
@@ -251,6 +265,13 @@ class Dispatcher:
             self.on_end(made.call, reply.values if reply is not None else {})
 
 
+async def _or_alone(on_its_way: Coroutine[Any, Any, Any], invocation: Invocation) -> Any:
+    """Await a call on its way, or make it as if there were no handler around it."""
+    __tracebackhide__ = True
+    result = await on_its_way
+    return await invocation.wrapped(*invocation.args, **invocation.kwargs) if result is _ALONE else result
+
+
 def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
     """A method that is called through its class, bound: its arguments are then those of any other call."""
     if instance is None or not isinstance(wrapped, wrapt.PartialCallableObjectProxy):
@@ -271,55 +292,3 @@ def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
         return True
     coroutines = sys.modules.get("asyncio.coroutines")
     return coroutines is not None and bool(coroutines.iscoroutinefunction(wrapped))
-
-
-def _call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
-    return wrapped(*args, **kwargs)
-
-
-async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
-    return await wrapped(*args, **kwargs)
-
-
-#: callers by code, instruction and whether they await; the code is kept, so that no other can get its address
-_callers: dict[tuple[int, int, bool], tuple[Caller, CodeType, dict[str, Any]]] = {}
-
-
-def caller_of(frame: FrameType, is_async: bool) -> Caller:
-    """Return what makes a call as if this frame did, where it stands now.
-
-    Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function
-    was called. Between the program and an operation there are frames of ours; the last of them has the
-    program's file, line, function and global names.
-    """
-    code = frame.f_code
-    key = (id(code), frame.f_lasti, is_async)
-    known = _callers.get(key)
-    if known is None or known[2] is not frame.f_globals:
-        made = _made(code, frame.f_lasti, frame.f_globals, is_async)
-        known = _callers[key] = (made, code, frame.f_globals)
-    return known[0]
-
-
-def _made(code: CodeType, instruction: int, names: dict[str, Any], is_async: bool) -> Caller:
-    line = list(code.co_positions())[instruction // 2][0] or code.co_firstlineno
-    own = (_async_call if is_async else _call).__code__
-    own = own.replace(
-        co_name=code.co_name,
-        co_qualname=code.co_qualname,
-        co_filename=code.co_filename,
-        co_firstlineno=line,
-        co_linetable=_all_in_line(len(own.co_code) // 2),
-    )
-    return FunctionType(own, names, code.co_name, (True,))
-
-
-def _all_in_line(units: int) -> bytes:
-    """Return a table of places that gives the first line to all of a code, and no columns.
-
-    An entry covers up to eight code units. The format: CPython, Objects/locations.md (3.11 to 3.13). To
-    compile a tree takes ten times as long, and every fork calls from places where nothing has called before.
-    """
-    no_columns, same_line = 13, 0
-    sizes = (min(8, units - first) for first in range(0, units, 8))
-    return b"".join(bytes([1 << 7 | no_columns << 3 | size - 1, same_line]) for size in sizes)

@@ -9,8 +9,8 @@ import os
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from types import CodeType, FrameType
-from typing import TYPE_CHECKING, Any
+from types import CodeType, FrameType, FunctionType
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.front_end import SourcePosition, front_ends
@@ -20,13 +20,17 @@ from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
 from mutabot.runtime import real_path
-from mutabot.runtime.interception.adapter import SiteCall, call_context
+from mutabot.runtime.interception.adapter import Caller, SiteCall, call_context
 
 if TYPE_CHECKING:
     from mutabot.runtime.targets.target import Place
 
+F = TypeVar("F")
+
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
+#: modules whose frames run the tasks of an event loop
+_LOOPS = frozenset({"asyncio.events", "asyncio.base_events", "asyncio.runners", "trio._core._run"})
 #: of the calls of a trace, how many are recorded with their times
 _TOLD = 2000
 
@@ -176,6 +180,29 @@ def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: one.tolist() if hasattr(type(one), "tolist") else one for name, one in found.items()}
 
 
+#: code whose frames carry an operation out, by identity: that of equal functions is equal
+_borders: dict[int, CodeType] = {}
+
+
+def border(function: F) -> F:
+    """Note that what this function calls is the doing of an operation, not of the program."""
+    code = cast("FunctionType", function).__code__
+    _borders[id(code)] = code
+    return function
+
+
+def is_border(code: CodeType) -> bool:
+    """Whether frames of this code carry an operation out."""
+    return id(code) in _borders
+
+
+def _is_within_border(frame: FrameType | None) -> bool:
+    """Whether an operation has led to a frame."""
+    while frame is not None and id(frame.f_code) not in _borders:
+        frame = frame.f_back
+    return frame is not None
+
+
 class Locator:
     """Finds the nearest frame that lies in the configured program or oracle paths.
 
@@ -200,17 +227,24 @@ class Locator:
         # every other frame is Python's: asking its front end for each would cost each call
         self._interpreted = [one for one in front_ends() if one is not PYTHON]
 
-    def locate(self, frame: FrameType | None) -> Place | None:
-        """Span and role of the call that is running in ``frame`` or the nearest frame around it."""
-        interpreted = self._interpreted
+    def locate(self, frame: FrameType | None, *, in_operation: bool = False) -> Place | None:
+        """Span and role of the call that is running in ``frame`` or the nearest frame around it.
+
+        None if an operation makes the call: its frame is nearer. ``in_operation``: whether this context is
+        that of an operation, which may have begun a task of its own. What runs the loop is no part of it.
+        """
+        interpreted, around_loop = self._interpreted, False
         while frame is not None:
-            if interpreted:
-                found = self._in_interpreter(frame)
-                if found is not None:
-                    return found
-            role = self.role(frame.f_code.co_filename)
+            code = frame.f_code
+            if id(code) in _borders:
+                return None
+            found = self._in_interpreter(frame) if interpreted else None
+            role = self.role(code.co_filename) if found is None else None
             if role is not None:
-                return self._span(frame), role
+                found = (self._span(frame), role)
+            if found is not None:
+                return found if not around_loop or _is_within_border(frame) else None
+            around_loop = around_loop or (in_operation and frame.f_globals.get("__name__") in _LOOPS)
             frame = frame.f_back
         return None
 
@@ -253,3 +287,55 @@ class Locator:
 
     def _span_at(self, filename: str, position: SourcePosition) -> Span:
         return Span(self.relative(filename), *position.extent, position.function)
+
+
+def _call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
+    return wrapped(*args, **kwargs)
+
+
+async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
+    return await wrapped(*args, **kwargs)
+
+
+#: callers by code, instruction and whether they await; the code is kept, so that no other can get its address
+_callers: dict[tuple[int, int, bool], tuple[Caller, CodeType, dict[str, Any]]] = {}
+
+
+def caller_of(frame: FrameType, is_async: bool) -> Caller:
+    """Return what makes a call as if this frame did, where it stands now.
+
+    Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function
+    was called. Between the program and an operation there are frames of ours; the last of them has the
+    program's file, line, function and global names.
+    """
+    code = frame.f_code
+    key = (id(code), frame.f_lasti, is_async)
+    known = _callers.get(key)
+    if known is None or known[2] is not frame.f_globals:
+        made = _made(code, frame.f_lasti, frame.f_globals, is_async)
+        known = _callers[key] = (made, code, frame.f_globals)
+    return known[0]
+
+
+def _made(code: CodeType, instruction: int, names: dict[str, Any], is_async: bool) -> Caller:
+    line = list(code.co_positions())[instruction // 2][0] or code.co_firstlineno
+    own = (_async_call if is_async else _call).__code__
+    own = own.replace(
+        co_name=code.co_name,
+        co_qualname=code.co_qualname,
+        co_filename=code.co_filename,
+        co_firstlineno=line,
+        co_linetable=_all_in_line(len(own.co_code) // 2),
+    )
+    return border(FunctionType(own, names, code.co_name, (True,)))
+
+
+def _all_in_line(units: int) -> bytes:
+    """Return a table of places that gives the first line to all of a code, and no columns.
+
+    An entry covers up to eight code units. The format: CPython, Objects/locations.md (3.11 to 3.13). To
+    compile a tree takes ten times as long, and every fork calls from places where nothing has called before.
+    """
+    no_columns, same_line = 13, 0
+    sizes = (min(8, units - first) for first in range(0, units, 8))
+    return b"".join(bytes([1 << 7 | no_columns << 3 | size - 1, same_line]) for size in sizes)

@@ -46,8 +46,8 @@ from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
-from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_under_way
-from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
+from mutabot.runtime.interception.trace import Locator, is_border
 from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Place, Where, named_class
@@ -97,7 +97,7 @@ class StandIns:
                 said.append(f"in its place stands {', '.join(shown)}")
             if target in self._elsewhere:
                 which = _count(len(self._elsewhere[target]), "test")
-                where = "handed on in several places and called in a thread"
+                where = "handed on in several places and called in a thread or by an operation"
                 said.append(f"{where} in {which}: such calls are not mutated")
             if said:
                 yield operation, Finding("call", "; ".join(said), is_remark=True)
@@ -482,9 +482,11 @@ class Handing:
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
         is_written = bool(args) and is_mock(mock, "PropertyMock")
-        if is_under_way() or is_written or (mark is None and name not in self._standing.by_name):
+        if is_written or (mark is None and name not in self._standing.by_name):
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
+        if is_untracked() or (caller is not None and is_border(caller.f_code)):  # the operation itself
+            return original(mock, *args, **kwargs)
         if mark is not None:
             one, receiver, place = mark
         else:
