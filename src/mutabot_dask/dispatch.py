@@ -1,7 +1,8 @@
 """Who runs what, and what becomes of it: units to workers, one at a time each, and their answers back.
 
 A worker that dies, hangs or goes away with a unit is not the mutant's fault: the unit goes to another, at
-most three times.
+most three times. It goes to one that it has failed at only where there is no other; one at which units fail
+one after the other gets none any more.
 """
 
 from __future__ import annotations
@@ -9,8 +10,9 @@ from __future__ import annotations
 import queue
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import count
 from secrets import token_hex
 from typing import TYPE_CHECKING
 
@@ -31,6 +33,8 @@ TRIES = 4
 _PERIOD = 0.2
 #: seconds for a worker's own work around a unit, at most
 _GRACE = 300.0
+#: seconds in which a worker that has come may get ready for what was lost elsewhere
+_COMING = 60.0
 #: seconds without any worker until that is told, and until nobody waits any more
 _TOLD, _PATIENCE = 5.0, 600.0
 
@@ -48,6 +52,8 @@ class _Trial:
         answer, lines: the last answer, if there was one, and what its process reported.
         unit: what the worker that runs it was given.
         until: when (``time.monotonic``) it must have ended, whatever it does.
+        number: tells it from others.
+        lost_at: when it was lost last.
     """
 
     task: Task
@@ -57,6 +63,8 @@ class _Trial:
     lines: list[Event] = field(default_factory=list)
     unit: WorkUnit | None = None
     until: float = 0.0
+    number: int = field(default_factory=count(1).__next__)
+    lost_at: float = 0.0
 
 
 class Dispatch:
@@ -102,24 +110,36 @@ class Dispatch:
 
     def _assign(self) -> None:
         busy = {worker for worker, _ in self._running.values()}
-        idle = [worker for worker in self._cluster.roster.fit if worker not in busy]
-        while idle and (trial := self._due()) is not None:
-            worker = next((one for one in idle if one not in trial.avoided), idle[0])
-            idle.remove(worker)
+        fit = self._cluster.roster.fit
+        for worker in (one for one in fit if one not in busy):
+            trial = self._due(worker, fit)
+            if trial is None:
+                continue
             trial.unit = WorkUnit(self._ground, trial.task, token_hex(16))
             trial.until = time.monotonic() + longest(trial.task)
             number = self._cluster.link.ask(worker, far.run_unit, trial.unit.data())
             self._running[number] = worker, trial
 
-    def _due(self) -> _Trial | None:
-        """The next to run: what was lost once at once, what was lost more often when all else has begun.
+    def _due(self, worker: str, fit: Collection[str]) -> _Trial | None:
+        """The next for a worker: what was lost once at once, what was lost more often when all has begun.
 
         Losses come together, as where a cluster is taken away piece by piece: later tries are better later.
+        What was lost at this worker waits for another, if there is one.
         """
-        if self._again and (self._next is None or len(self._again[0].faults) < 2):
-            return self._again.popleft()
+        trial = next((one for one in self._again if self._may_run(one, worker, fit)), None)
+        if trial is not None and (self._next is None or len(trial.faults) < 2):
+            self._again.remove(trial)
+            return trial
         trial, self._next = self._next, None if self._next is None else self._taken()
         return trial
+
+    def _may_run(self, trial: _Trial, worker: str, fit: Collection[str]) -> bool:
+        """Whether a lost trial may go to a worker: to one that it was lost at if there will be no other."""
+        if worker not in trial.avoided:
+            return True
+        is_coming = time.monotonic() < trial.lost_at + _COMING
+        others = {*fit, *(self._cluster.roster.usable if is_coming else ())} - trial.avoided
+        return not others
 
     def _wait(self) -> None:
         roster, link = self._cluster.roster, self._cluster.link
@@ -161,6 +181,7 @@ class Dispatch:
                 self._cluster.roster.refuse(worker, answer.fault)
             self._lost(trial, worker, shown(answer.fault))
             return
+        self._cluster.roster.has_run(worker)
         self._settle(trial, answer, lines)
 
     def _misfit(self, trial: _Trial, worker: str, why: str) -> None:
@@ -187,6 +208,8 @@ class Dispatch:
     def _lost(self, trial: _Trial, worker: str, why: str) -> None:
         trial.faults.append(f"{why} ({worker})")
         trial.avoided.add(worker)
+        trial.lost_at = time.monotonic()
+        self._cluster.roster.has_failed(worker, trial.number, trial.avoided, why)
         if len(trial.faults) < TRIES:
             self._again.append(trial)
             self._again = deque(sorted(self._again, key=lambda one: len(one.faults)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 from . import far
@@ -13,6 +13,8 @@ from .unit import Introduction, Misfit
 
 #: how often a worker may fail to say who it is, or to take the project
 _FAILURES = 3
+#: units that may fail at a worker one after the other
+_FAILED_UNITS = 2
 #: differences that are named, and workers that are told of
 _SHOWN, _TOLD = 5, 10
 
@@ -28,6 +30,9 @@ class _Worker:
         is_known: whether it runs with the same.
         is_fit: whether units can be given to it.
         refused: why it is not used, or None.
+        failed: the units that it has failed since it last ran one.
+        is_proven: whether it has run any.
+        is_left_out: whether it is not used because of these units.
     """
 
     asked: set[int] = field(default_factory=set)
@@ -36,6 +41,9 @@ class _Worker:
     is_known: bool = False
     is_fit: bool = False
     refused: str | None = None
+    failed: set[int] = field(default_factory=set)
+    is_proven: bool = False
+    is_left_out: bool = False
 
 
 @dataclass
@@ -136,6 +144,38 @@ class Roster:
         if worker is not None and worker.refused is None:
             worker.refused, worker.is_fit = why, False
             self._tell_once(shown(f"worker {address} is not used: {why}"))
+
+    def has_run(self, address: str) -> None:
+        """A worker has run a unit."""
+        worker = self._workers.get(address)
+        if worker is not None:
+            worker.is_proven = True
+            worker.failed.clear()
+
+    def has_failed(self, address: str, unit: int, tried: Collection[str], why: str) -> None:
+        """A unit, by its number, failed at a worker. One at which two fail in a row is left out.
+
+        What fails at two workers that have run others says nothing of them.
+
+        Args:
+            tried: all workers at which it failed.
+        """
+        worker = self._workers.get(address)
+        proven = [one for one in tried if one in self._workers and self._workers[one].is_proven]
+        if len(proven) > 1:
+            self._acquit(unit)
+        elif worker is not None:
+            worker.failed.add(unit)
+            if len(worker.failed) >= _FAILED_UNITS and worker.refused is None:
+                worker.is_left_out = True
+                self.refuse(address, f"{len(worker.failed)} units failed there one after the other: {why}")
+
+    def _acquit(self, unit: int) -> None:
+        for address, worker in self._workers.items():
+            worker.failed.discard(unit)
+            if worker.is_left_out and len(worker.failed) < _FAILED_UNITS:
+                worker.is_left_out, worker.refused, worker.is_fit = False, None, True
+                self.tell(f"worker {address} is used again: what failed there fails elsewhere, too")
 
     def dismiss(self) -> None:
         """The campaign is over: workers need to keep nothing of it."""
