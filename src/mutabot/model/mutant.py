@@ -11,6 +11,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import field, replace
 from enum import StrEnum
+from functools import lru_cache
 from typing import Any
 
 from mutabot.errors import shortened
@@ -332,11 +333,29 @@ def _is_at(mutant: Mutant, file: str, lines: range) -> bool:
 
 
 def is_like(pattern: str, text: str) -> bool:
-    """Whether a text fits a pattern, in which ``*`` and ``?`` are wild and brackets are just brackets."""
-    parts = re.split(r"([*?])", pattern)
-    wild = {"*": ".*", "?": "."}
-    expression = "".join(wild.get(part, re.escape(part)) for part in parts)
-    return pattern == text or re.fullmatch(expression, text) is not None
+    """Whether a text fits a pattern, in which ``*`` and ``?`` are wild and brackets are just brackets.
+
+    What stands between stars is looked for once, from left to right: no pattern takes long.
+    """
+    first, *between = pattern.split("*")
+    if not between:
+        return pattern == text or _fixed(pattern).fullmatch(text) is not None
+    last = between.pop()
+    at, end = len(first), len(text) - len(last)
+    if at > end or not _fixed(first).match(text) or not _fixed(last).fullmatch(text, end):
+        return pattern == text
+    for part in filter(None, between):
+        found = _fixed(part).search(text, at, end)
+        if found is None:
+            return pattern == text
+        at = found.end()
+    return True
+
+
+@lru_cache(maxsize=1024)
+def _fixed(part: str) -> re.Pattern[str]:
+    """A part of a pattern without stars."""
+    return re.compile("".join("." if sign == "?" else re.escape(sign) for sign in part), re.DOTALL)
 
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes), as in ``ast``

@@ -100,6 +100,38 @@ def test_brackets_in_ids_are_just_brackets() -> None:
     assert not is_like("a.py:[ab]", "a.py:a")
 
 
+@pytest.mark.parametrize(
+    ("pattern", "text", "fits"),
+    [
+        ("*", "", True),
+        ("**", "a", True),
+        ("a*", "a", True),
+        ("a*a", "a", False),
+        ("a*b*c", "a-b-b-c", True),
+        ("a*b*c", "a-c-b", False),
+        ("?*?", "ab", True),
+        ("?*?", "a", False),
+        ("*?b?*", "xabc", True),
+        ("*?b?*", "bxb", False),
+        ("a*b", "a\nb", True),
+        ("*.py", "a.py", True),
+        ("*.py", "a_py", False),
+        ("a?c", "abc", True),
+        ("a?c", "ac", False),
+    ],
+)
+def test_stars_stand_for_any_text_and_question_marks_for_one_sign(
+    pattern: str, text: str, fits: bool
+) -> None:
+    assert is_like(pattern, text) is fits
+
+
+@pytest.mark.parametrize("pattern", ["*" * 3000 + "x", "*a" * 3000 + "*b", "?*" * 3000 + "x", "*?a" * 1000])
+def test_no_pattern_takes_long(pattern: str) -> None:
+    """One that tries all ways to share a text among its stars never ends."""
+    assert not is_like(pattern, "a" * 1000)
+
+
 OPERATORS = [
     *(("robot", name) for name in registry.names()),
     *((rule.family, rule.name) for one in brought_providers() for rule in one.rules()),
