@@ -17,7 +17,7 @@ import mutabot
 from mutabot.campaign import run as campaign
 from mutabot.cli.app import app, main
 from mutabot.cli.request import request_of
-from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
+from mutabot.errors import BaselineError, ControlError, ExitCode, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 from results import samples
 from tests.processor_time import used
@@ -469,6 +469,26 @@ def test_a_pipe_that_closes_early_is_no_error(fake: Campaign, command: str) -> N
     assert (done.returncode, done.stderr) == (0, "")
     assert len(done.stdout.splitlines()) == 1
     assert not (fake.project / ".mutabot" / "crash.txt").exists()
+
+
+@pytest.mark.parametrize("command", ["results", "results --json", "report --format csv", "--help"])
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_full_standard_output_is_no_internal_error(fake: Campaign, command: str, unbuffered: str) -> None:
+    main(["run"])
+    shown = f"{sys.executable} -m mutabot {command} > /dev/full"
+    variables = {**os.environ, "PYTHONUNBUFFERED": unbuffered}
+    done = subprocess.run(["bash", "-c", shown], capture_output=True, text=True, check=False, env=variables)
+    assert done.returncode == ExitCode.USAGE
+    assert "mutabot: standard output cannot be written: No space left on device" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (fake.project / ".mutabot" / "crash.txt").exists()
+
+
+def test_remarks_that_cannot_be_written_end_nothing(fake: Campaign) -> None:
+    main(["run"])
+    for command, code in (("results", ExitCode.FINE), ("nonsense", ExitCode.USAGE)):
+        shown = f"{sys.executable} -m mutabot {command} 2> /dev/full"
+        assert subprocess.run(["bash", "-c", shown], capture_output=True, check=False).returncode == code
 
 
 @pytest.mark.parametrize("command", [[], ["run"], ["show"]])

@@ -13,7 +13,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 from typing import Annotated, Any
@@ -26,6 +26,7 @@ from mutabot.execution.interruption import interrupt
 from mutabot.extensions import brought, not_installed
 
 from .options import Version, with_options
+from .streams import guarded_streams
 
 #: characters of a message about the command line
 _LONGEST = 400
@@ -176,17 +177,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a character gets "?", not an error
             stream.reconfigure(errors="replace")
     arguments = sys.argv[1:] if arguments is None else arguments
-    with terminated_like_ctrl_c() as terminated:
+    with guarded_streams() as output, terminated_like_ctrl_c() as terminated:
         code = _code_of(arguments)
-    if code == ExitCode.INTERRUPTED:
-        how = "ended by SIGTERM" if terminated else "interrupted"
-        typer.echo(f"{how}; `mutabot results` shows the results so far", err=True)
+        if output.fault is not None and code == ExitCode.FINE:  # the parser has passed over it
+            typer.echo(f"mutabot: standard output cannot be written: {output.fault}", err=True)
+            code = ExitCode.USAGE
+        if code == ExitCode.INTERRUPTED:
+            how = "ended by SIGTERM" if terminated else "interrupted"
+            typer.echo(f"{how}; `mutabot results` shows the results so far", err=True)
     return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and terminated else code
 
 
 def _code_of(arguments: Sequence[str]) -> int:
     try:
         code = app(list(arguments), prog_name="mutabot", standalone_mode=False)
+        with suppress(BrokenPipeError):
+            sys.stdout.flush()
     except (KeyboardInterrupt, typer.Abort):
         return ExitCode.INTERRUPTED
     except MutabotError as error:

@@ -9,6 +9,7 @@ from typing import Any
 
 import typer
 
+from mutabot.cli.streams import output_failed
 from mutabot.report.document import data_of, document, dumps
 from mutabot.report.terminal.campaign import print_results, print_summary
 from mutabot.report.terminal.console import Bar, Lines, leave_pipe, make_console, make_progress
@@ -28,6 +29,8 @@ def print_bytes(data: bytes) -> None:
         sys.stdout.buffer.flush()
     except BrokenPipeError:
         leave_pipe()
+    except OSError as error:
+        output_failed(error)
 
 
 def tell(lines: Iterable[str]) -> None:
