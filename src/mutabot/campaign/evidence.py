@@ -127,6 +127,10 @@ def recorded(request: Request, progress: Progress) -> Iterator[CampaignEvidence 
     limit = request.configuration.evidence
     with Recordings.to_write(request.journal_path, limit) as recordings:
         evidence = CampaignEvidence(recordings)
+        if recordings.removed:
+            progress.note(
+                f"{recordings.path} was {recordings.removed}: it is made anew, and what was recorded is gone"
+            )
         try:
             yield evidence
         finally:

@@ -129,7 +129,7 @@ def at_work(home: Path) -> Iterator[None]:
 
 
 #: what SQLite keeps beside a file, and reads
-_BESIDE = ("", "-wal", "-shm", "-journal")
+BESIDE = ("", "-wal", "-shm", "-journal")
 
 
 def refuse_tracked(journal: Path) -> None:
@@ -153,7 +153,7 @@ def _tracked_at(path: Path, journal: Path) -> list[str]:
         folder = folder.parent
     else:
         files = (path, recordings_path(path), previous_of(path), recordings_path(previous_of(path)))
-        names = [file.name + end for file in files for end in _BESIDE]
+        names = [file.name + end for file in files for end in BESIDE]
         names.append(f"{path.stem}-suggestions.json")
     if repository_of(folder) is None or not any(os.path.lexists(folder / name) for name in names):
         return []

@@ -6,14 +6,19 @@ room, and reports read one without the others. Of a mutant only what differs fro
 
 from __future__ import annotations
 
+import os
+import shutil
 import sqlite3
+import stat
 from collections.abc import Iterable
 from enum import IntEnum
 from pathlib import Path
 from typing import Any, Self
 
+from mutabot.errors import JournalError
+
 from .database import connect, connect_to_read, loaded
-from .files import recordings_path
+from .files import BESIDE, HOME, recordings_path
 from .journal import guarded
 
 _TABLE = """
@@ -41,36 +46,71 @@ class Recordings:
         path: the file.
         used: bytes of all recordings together.
         dropped: how many made room for others, or found none.
+        removed: what lay in the place of the file and had to go, in words; empty if nothing did.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection, limit: int = 0) -> None:
         self.path, self._connection, self._limit = path, connection, limit
         self.used = self.dropped = 0
+        self.removed = ""
 
     @classmethod
     def to_write(cls, journal: Path, limit: int) -> Recordings:
-        """Those of this journal, to add to; the file is made if there is none.
+        """Those of this journal, to add to; the file is made if there is none, or something else is in
+        its place in Mutabot's own folder.
 
         Args:
             limit: bytes that all recordings together may take.
         """
-        path = recordings_path(journal)
+        path, is_ours = recordings_path(journal), journal.parent.name == HOME
         with guarded(path):
-            found = cls(path, connect(path), limit)
+            removed = _what_is_there(path)
+            if removed and not is_ours:
+                raise JournalError(f"{path} is {removed}, where recordings are to be written; remove it")
+            if removed:
+                _remove(path)
+            try:
+                found = cls._opened(path, limit)
+            except sqlite3.DatabaseError as error:
+                if not (is_ours and _is_foreign(error)):
+                    raise
+                removed = "a file of something else, or damaged"
+                _remove(path)
+                found = cls._opened(path, limit)
+        found.removed = removed
+        return found
+
+    @classmethod
+    def _opened(cls, path: Path, limit: int) -> Self:
+        found = cls(path, connect(path), limit)
+        try:
             found._connection.execute("PRAGMA auto_vacuum = INCREMENTAL")
             found._connection.execute(_TABLE)
-            found.used = found._total()
+            rows = found._connection.execute("SELECT coalesce(sum(size), 0) FROM recording").fetchall()
+            found.used = int(rows[0][0])
+        except BaseException:
+            found.close()
+            raise
         return found
 
     @classmethod
     def to_read(cls, journal: Path, *, copied: bool = False) -> Recordings | None:
         """Those of this journal; None if there are none. ``copied``: as they are now, whatever comes."""
         path = recordings_path(journal)
-        if not path.is_file():
+        if not os.path.lexists(path):
             return None
+        hint = f"remove it, and what is recorded from now on is kept: rm -r {path}"
+        there = _what_is_there(path)
+        if there:
+            raise JournalError(f"{path} holds no recordings: it is {there}; {hint}")
         with guarded(path):
-            found = connect_to_read(path)
-            return cls(path, loaded(found) if copied else found)
+            try:
+                found = connect_to_read(path)
+                return cls(path, loaded(found) if copied else found)
+            except sqlite3.DatabaseError as error:
+                if not _is_foreign(error):
+                    raise
+                raise JournalError(f"{path} holds no recordings ({error}); {hint}") from error
 
     def __enter__(self) -> Self:
         return self
@@ -167,3 +207,31 @@ class Recordings:
     def _rows(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         with guarded(self.path):
             return self._connection.execute(statement, values).fetchall()
+
+
+_KINDS = {stat.S_IFLNK: "a link", stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe"}
+
+
+def _what_is_there(path: Path) -> str:
+    """What stands in the place of the file, or of one beside it, that is no plain file; empty if nothing."""
+    for suffix in BESIDE:
+        name = path.with_name(path.name + suffix)
+        kind = stat.S_IFMT(name.lstat().st_mode) if os.path.lexists(name) else stat.S_IFREG
+        if kind != stat.S_IFREG:
+            return _KINDS.get(kind, "no plain file")
+    return ""
+
+
+def _remove(path: Path) -> None:
+    """Make room for the file; of a link the link alone."""
+    for suffix in BESIDE:
+        name = path.with_name(path.name + suffix)
+        if name.is_dir() and not name.is_symlink():
+            shutil.rmtree(name)
+        else:
+            name.unlink(missing_ok=True)
+
+
+def _is_foreign(error: sqlite3.DatabaseError) -> bool:
+    """Whether a file is none of SQLite's, or damaged, or has other tables."""
+    return any(words in str(error) for words in ("not a database", "malformed", "no such column"))
