@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -63,6 +64,23 @@ def test_an_older_report_is_replaced(tmp_path: Path) -> None:
     assert not (report / "data" / "mutants" / "99.js").exists()
     assert (report / REPORT_MARK).is_file()
     assert (report / "clip.mp4").read_bytes() == b"mine"
+
+
+def test_links_in_an_older_report_are_replaced_and_not_followed(tmp_path: Path) -> None:
+    journal, stored = reports.campaign(tmp_path)
+    report, mine = tmp_path / "report", tmp_path / "mine"
+    reports.write(report, journal, stored)
+    mine.mkdir()
+    (mine / "notes.txt").write_text("mine")
+    for name in ("index.html", REPORT_MARK):
+        (report / name).unlink()
+        (report / name).symlink_to(mine / "notes.txt")
+    for name in ("data", "assets"):
+        shutil.rmtree(report / name)
+        (report / name).symlink_to(mine)
+    reports.write(report, journal, stored)
+    assert [(one.name, one.read_text()) for one in mine.iterdir()] == [("notes.txt", "mine")]
+    assert not any(one.is_symlink() for one in report.rglob("*"))
 
 
 def test_recordings_that_have_no_room_are_counted_and_pages_say_so(tmp_path: Path) -> None:

@@ -153,9 +153,10 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
     check_folder(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / REPORT_MARK).write_text(_MARK_TEXT, encoding="utf-8")
-        for name in (_ASSETS, _DATA):
-            shutil.rmtree(folder / name, ignore_errors=True)
+        for name in (REPORT_MARK, _PAGE, _ASSETS, _DATA):
+            _remove(folder / name)
+            if name == REPORT_MARK:
+                (folder / name).write_text(_MARK_TEXT, encoding="utf-8")
         for path in (folder / _ASSETS, *(folder / _DATA / name for name in ("mutants", "originals"))):
             path.mkdir(parents=True)
         without = _write_data(folder / _DATA, contents, limit)
@@ -166,6 +167,14 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
         raise UsageError(f"the report {folder} cannot be written: {error.strerror}") from error
     size = sum(one.stat().st_size for one in folder.rglob("*") if one.is_file())
     return Written(folder / _PAGE, size, without)
+
+
+def _remove(path: Path) -> None:
+    """Make room for a part of the report; of a link the link alone, since it leads out of the folder."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _write_data(folder: Path, contents: Contents, limit: int) -> int:
