@@ -156,7 +156,7 @@ def run_mission(cell: Cell, program: Callable[[], None]) -> tuple[float, float]:
         motions[0] += time.process_time() - start
         return now
 
-    cell.simulation.tick = tick
+    cell.simulation.tick = tick  # type: ignore[method-assign]
     return taken(program), motions[0]
 
 

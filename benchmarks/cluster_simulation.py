@@ -25,7 +25,7 @@ import math
 import random
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -194,7 +194,7 @@ def simulate(costs: Costs, way: Way, workers: int, mutants: int = MUTANTS) -> Ru
     def due() -> Unit | None:
         return again.pop() if again else next(waiting, None)
 
-    def worker() -> Iterator[simpy.Event]:
+    def worker() -> Generator[simpy.Event, Any, Any]:
         yield world.timeout(BEGIN + BUNDLE)
         run.begun += BEGIN + BUNDLE
         while (unit := due()) is not None:

@@ -18,6 +18,7 @@ import tempfile
 import time
 from array import array
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,7 @@ from mutabot.evidence.recording import (
 )
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
+from mutabot.journal.records import BaselineTest
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.events import TestEnd
 from mutabot.model.outcome import Apart, Diverged
@@ -140,7 +142,8 @@ def build(folder: Path, count: int, rounds: int) -> Path:
     with Journal.create(path, meta=meta) as journal, Recordings.to_write(path, KEPT) as kept:
         for round in range(rounds):
             for test in tests:
-                journal.add_test(round, 0, TestEnd(test, "passed", wall=0.5, simulated=LENGTH))
+                end = TestEnd(test, "passed", wall=0.5, simulated=LENGTH)
+                journal.add_tests([BaselineTest.of(round, 0, end)])
             for test in tests[:3]:
                 kept.add(ORIGINAL, round, test, Rank.ORIGINAL, to_bytes(recording(0, None)))
         journal.set_plan(planned, (), sources={f"cell/part_{file}.py": lines for file in range(FILES)})
@@ -193,14 +196,14 @@ def _diverged(test: str, chance: random.Random) -> Diverged:
     )
     slipped = f"box slipped from gripper at {chance.uniform(1, 9):.1f} s, 40 mm above table"
     story = f"{slipped}; box ended 0.31 m from where it ends in the original"
-    return Diverged(test, 2.0, "box is not where it is in the original", story, apart, (), 2.0)
+    return Diverged(test, 2.0, "box is not where it is in the original", story, apart, 2.0)
 
 
 def write(journal: Path, folder: Path) -> tuple[Written, float, float]:
     """The report, the seconds that it took by the clock, and those of the processor."""
     began, used = time.perf_counter(), time.process_time()
     campaign = portable(mutabot.open(journal))
-    with StoredEvidence(journal) as evidence:
+    with closing(StoredEvidence(journal)) as evidence:
         written = write_folder(folder, Contents(campaign, "made up", evidence, str))
     return written, time.perf_counter() - began, time.process_time() - used
 

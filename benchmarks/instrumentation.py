@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import ast
 import builtins
-import sys
 import tempfile
 import time
 import timeit
@@ -143,4 +142,4 @@ def _seconds(run: Callable[[int], Any], size: int) -> float:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -58,7 +58,7 @@ def main() -> None:
 def _calls(folder: Path) -> None:
     job = Job(str(folder), ("bench_program.py",), (), load(["robot.toml"], folder), 1, 0)
     locator = Locator(job.root, job.program, job.oracle)
-    session = Session(job, Nowhere(), locator)  # type: ignore[arg-type]  # it has the one method that is used
+    session = Session(job, Nowhere(), locator)
     session.install()
     import bench_elsewhere  # noqa: PLC0415  # made above
     import bench_program  # noqa: PLC0415

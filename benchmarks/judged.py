@@ -90,7 +90,7 @@ def main() -> int:
             print(f"{name}: not judged, since this Python has no {NEEDED[name]}")
             continue
         if name in projects:
-            families = ("robot", "conventional") if given.conventional else ("robot",)
+            families: tuple[str, ...] = ("robot", *(("conventional",) if given.conventional else ()))
             only = {"conventional": given.conventional} if given.conventional else None
             families += ("catalogue",) if name in CATALOGUE else ()
             folder, limit = projects[name], 30.0

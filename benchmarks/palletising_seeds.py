@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import sys
 
-from pick_and_place_seeds import EXAMPLE, main
+from pick_and_place_seeds import EXAMPLE, main, numbers_of
 
 if __name__ == "__main__":
-    numbers = [int(text) for text in sys.argv[1:3]]
-    sys.exit(main(*numbers, *(100, 0)[len(numbers) :], example=EXAMPLE.parent / "palletising"))
+    sys.exit(main(*numbers_of(sys.argv, 100), example=EXAMPLE.parent / "palletising"))

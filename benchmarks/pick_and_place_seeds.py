@@ -55,6 +55,12 @@ def _message(report: pytest.TestReport) -> str:
     return " ".join(crash.message.split()) if crash is not None else str(report.longrepr)
 
 
+def numbers_of(words: list[str], count: int) -> tuple[int, int]:
+    """How many seeds a command line asks for, and the first of them."""
+    given = [int(word) for word in words[1:3]]
+    return (given or [count])[0], (given[1:] or [0])[0]
+
+
 def main(count: int, first: int, example: Path = EXAMPLE) -> int:
     """Run `count` seeds; the exit code is 0 if every test passes with every seed."""
     os.chdir(example)
@@ -72,5 +78,4 @@ def main(count: int, first: int, example: Path = EXAMPLE) -> int:
 
 
 if __name__ == "__main__":
-    numbers = [int(text) for text in sys.argv[1:3]]
-    sys.exit(main(*numbers, *(200, 0)[len(numbers) :]))
+    sys.exit(main(*numbers_of(sys.argv, 200)))

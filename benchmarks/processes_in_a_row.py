@@ -21,6 +21,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
@@ -94,7 +95,7 @@ def processes_below(folder: Path) -> list[str]:
 
 def unused(names: set[str]) -> list[str]:
     """Those of these files in shared memory that no process has mapped or opened."""
-    used = set()
+    used: set[str] = set()
     for process in Path("/proc").iterdir():
         if process.name.isdigit():
             try:
@@ -135,7 +136,8 @@ def run(example: str, given: argparse.Namespace) -> list[str]:
         shutil.copytree(
             ROOT / "examples" / example, folder, ignore=shutil.ignore_patterns(".mutabot", "__pycache__")
         )
-        files, first = digest(folder), {}
+        files = digest(folder)
+        first: dict[str, Any] = {}
         for number in range(1, given.count + 1):
             shared, logs, began = entries(SHARED), entries(LOGS), time.monotonic()
             found = ends(request_for(folder / below, given))

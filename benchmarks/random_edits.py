@@ -525,13 +525,14 @@ def replaced(text: str, node: Any, new: str) -> str:
     first, last = node.lineno - 1, node.end_lineno - 1
     before = b"".join(lines[:first]) + lines[first][: node.col_offset]
     after = lines[last][node.end_col_offset :] + b"".join(lines[last + 1 :])
-    return (before + new.encode() + after).decode()
+    whole: bytes = before + new.encode() + after
+    return whole.decode()
 
 
 def other_number(text: str, chance: random.Random, scale: float = 0.02) -> str:
     """A number in some function is a little different."""
     found = [
-        one
+        (one, one.value)
         for function in functions(text)
         for statement in function.body
         for one in ast.walk(statement)
@@ -541,9 +542,9 @@ def other_number(text: str, chance: random.Random, scale: float = 0.02) -> str:
     ]
     if not found:
         raise NotPossibleError
-    node = chance.choice(found)
-    value = node.value * (1 + scale * chance.choice((-1, 1)))
-    new = repr(round(value, 6)) if isinstance(node.value, float) else str(node.value + chance.choice((-1, 1)))
+    node, value = chance.choice(found)
+    other = value * (1 + scale * chance.choice((-1, 1)))
+    new = repr(round(other, 6)) if isinstance(value, float) else str(value + chance.choice((-1, 1)))
     return replaced(text, node, new)
 
 

@@ -15,6 +15,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist, median
+from typing import Any
 
 import numpy as np
 
@@ -48,12 +49,12 @@ class Shape:
     median: float = 0.0
 
 
-def spread(deviation: float) -> Callable[[np.random.Generator, int], np.ndarray]:
+def spread(deviation: float) -> Callable[[np.random.Generator, int], Any]:
     """Log-normal thresholds."""
     return lambda random, rounds: deviation * random.standard_normal(rounds)
 
 
-def two_kinds(random: np.random.Generator, rounds: int) -> np.ndarray:
+def two_kinds(random: np.random.Generator, rounds: int) -> Any:
     """Three rounds of ten are of another kind, with thresholds four times as large."""
     return spread(0.05)(random, rounds) + math.log10(4.0) * (random.random(rounds) < 0.3)
 

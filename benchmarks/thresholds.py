@@ -22,7 +22,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from itertools import pairwise
 from math import comb
@@ -80,7 +80,9 @@ def rows_of(request: Request, *, whole: bool = False) -> tuple[Rows, float]:
     ``whole``: run every magnitude of a ladder in every round, instead of searching.
     """
     began = time.monotonic()
-    splits = patch("mutabot.campaign.schedule.split_ladders", lambda mutants: (mutants, {}))
+    splits: AbstractContextManager[object] = patch(
+        "mutabot.campaign.schedule.split_ladders", lambda mutants: (mutants, {})
+    )
     with splits if whole else nullcontext():
         path = run_campaign(request, Silent())
     seconds = time.monotonic() - began
@@ -126,7 +128,7 @@ def seeds(given: argparse.Namespace, place: Path) -> bool:
                 total += 1
                 held += _holds(own, others)
     promised = 1 - 2 * 0.5**given.rounds
-    fewer = sum(
+    fewer: float = sum(
         comb(total, count) * promised**count * (1 - promised) ** (total - count) for count in range(held + 1)
     )
     share = f"{held / total:.0%}; promised {promised:.0%}, which gives so few or fewer in {fewer:.0%}"
@@ -155,12 +157,12 @@ def published(given: argparse.Namespace, place: Path) -> bool:
         outcomes = [one for one in journal.outcomes() if one.example and seen(one).is_valid]
     colours = {}  # of the box of each round, by where its y was read at the end
     for one in outcomes:
-        if (
-            mutants[one.mutant].site.span.function == "box_end_position"
-            and mutants[one.mutant].quantity == ".y"
-        ):
-            colours[one.round] = min(TARGETS, key=lambda name: abs(TARGETS[name].y - one.example[0]))
+        assert one.example is not None  # those without one are left out
+        read, mutant = one.example[0], mutants[one.mutant]
+        if mutant.site.span.function == "box_end_position" and mutant.quantity == ".y":
+            colours[one.round] = min(TARGETS, key=lambda name: abs(TARGETS[name].y - read))
     for one in outcomes:
+        assert one.example is not None
         mutant = mutants[one.mutant]
         axis, occasion = (mutant.quantity or "")[-1], mutant.site.span.function
         spot, limit = {

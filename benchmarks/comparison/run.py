@@ -21,6 +21,7 @@ from pathlib import Path
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.cli.options import Running
 from mutabot.cli.request import request_of
 from mutabot.families import GRADED
 from mutabot.faults import known_families
@@ -47,21 +48,21 @@ def main() -> int:
     parser.add_argument("--seed", type=int)
     parser.add_argument("--sample", help="10%% or a number, as for `mutabot run`")
     given = parser.parse_args()
-    options = {"family": given.family or COMPARED, "rounds": given.rounds, "seed": given.seed}
+    options = Running(
+        family=given.family or [*COMPARED], rounds=given.rounds, seed=given.seed, sample=given.sample
+    )
     with tempfile.TemporaryDirectory() as folder:
-        checked = _campaign(given.project, Path(folder, "checked"), given.sample, options)
-        unchecked = _campaign(given.project, Path(folder, "unchecked"), given.sample, options, checks=False)
+        checked = _campaign(given.project, Path(folder, "checked"), options)
+        unchecked = _campaign(given.project, Path(folder, "unchecked"), options, checks=False)
     print(dumps(comparison_data(compare_families(checked, unchecked))))
     return 0
 
 
-def _campaign(
-    project: Path, copy: Path, sample: str | None, options: dict[str, object], *, checks: bool = True
-) -> Results:
+def _campaign(project: Path, copy: Path, options: Running, *, checks: bool = True) -> Results:
     """What a campaign on a copy of the project finds."""
     shutil.copytree(project, copy, ignore=shutil.ignore_patterns(HOME, "__pycache__"))
-    request = request_of(copy, sample=sample, configured_selection=False, **options)
-    request = replace(request, every_test=checks, order=1)
+    request = request_of(copy, configured_selection=False, **options)
+    request = replace(request, every_test=checks)
     if not checks:
         request, variables = switched_off(request)
         os.environ.update(variables)

@@ -1,0 +1,110 @@
+"""A benchmark that does not run is a defect: each script runs in a short form."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SCRIPTS = ROOT / "benchmarks"
+MUTABOT = str(Path(sys.executable).with_name("mutabot"))
+#: a short form of each script: its arguments
+SHORT: dict[str, list[str]] = {
+    "campaigns_in_a_row": ["--count", "1"],
+    "cell_physics": ["limits"],
+    "cell_speed": ["1"],
+    "cluster_faults": ["--workers", "1", "--schedulers", "0", "--rounds", "1", "--where", "local"],
+    "cluster_simulation": ["--mutants", "1000"],
+    "confirmation": ["scales"],
+    "controller": ["--mutants", "1000", "--sample", "2"],
+    "differential": ["--examples", "scales", "--sample", "2"],
+    "drafts": ["mujoco"],
+    "engines": ["--examples", "scales", "--sample", "2"],
+    "evidence": ["--pairs", "1", "--rounds", "1", "--example", "scales", "--selection", ""],
+    "flaky_campaigns": ["--count", "1", "--chance", "10"],
+    "html_report": ["--mutants", "20", "--rounds", "1", "--repeats", "1"],
+    "instrumentation": [],
+    "interception": [],
+    "interval_coverage": ["--campaigns", "10"],
+    "judged": ["fluent_api", "--conventional", "0"],
+    "kill_and_resume": ["--kills", "1"],
+    "own_checks": ["--fresh", "--sample", "2", "-j", "1"],
+    "paper_scores": ["."],
+    "paper_seeds": ["1"],
+    "pick_and_place_seeds": ["1"],
+    "processes_in_a_row": ["--count", "1", "--examples", "scales"],
+    "published_campaign": [MUTABOT, "1"],
+    "same_results": ["witness", "witness"],
+    "sample_coverage": ["--campaigns", "10"],
+    "since_edits": ["--edits", "1", "--projects", "scales", "--rounds", "1"],
+    "stdlib_corpus": ["colorsys"],
+    "suggested_checks": ["--seeds", "1", "scales"],
+    "suite_length": ["--lengths", "50"],
+    "ten_thousand": ["--mutants", "4000"],
+    "threshold_coverage": ["--campaigns", "10"],
+    "thresholds": ["published", "--rounds", "1"],
+    "tracking_seeds": ["1"],
+    "witness": ["witness", "fluent_api"],
+}
+#: scripts that measure speed or count draws: a short form says that they run, and its figures nothing
+LOOSE = {"controller", "html_report", "interval_coverage", "sample_coverage", "suite_length", "ten_thousand",
+         "threshold_coverage"}  # fmt: skip
+#: what a short form cannot bring
+ELSEWHERE = {
+    "equal_runs": "needs ROS 2: tests/packages/ros runs it",
+    "foreign_programs": "installs simulators: `make foreign`",
+    "palletising_seeds": "is `pick_and_place_seeds` on another example, and takes a minute",
+    "plain_projects": "installs other tools and their projects",
+    "rclpy_tests": "needs a checkout of rclpy",
+    "random_edits": "is a module of `since_edits`",
+}
+#: examples in whose folders some scripts work
+IN_EXAMPLE = {"own_checks": "scales", "paper_scores": "paper"}
+
+
+def test_every_script_has_a_short_form() -> None:
+    assert {path.stem for path in SCRIPTS.glob("*.py")} == SHORT.keys() | ELSEWHERE.keys()
+
+
+@pytest.fixture
+def folder(tmp_path: Path, request: pytest.FixtureRequest) -> Path:
+    """Where the script works: a copy of an example with a campaign, or an empty folder."""
+    name = request.node.callspec.params["name"]
+    if name not in IN_EXAMPLE:
+        (tmp_path / "witness").mkdir()
+        return tmp_path
+    copy = tmp_path / IN_EXAMPLE[name]
+    shutil.copytree(ROOT / "examples" / copy.name, copy, ignore=shutil.ignore_patterns(".mutabot"))
+    if name == "paper_scores":
+        words = ["run", "--only", "@published.txt", "--sample", "2", "--rounds", "1"]
+        subprocess.run([MUTABOT, *words], cwd=copy, env=_environment(), check=True, capture_output=True)
+    return copy
+
+
+def _environment() -> dict[str, str]:
+    """Ours, with the plug-ins that the tests of examples need."""
+    return {name: value for name, value in os.environ.items() if name != "PYTEST_DISABLE_PLUGIN_AUTOLOAD"}
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("name", SHORT)
+def test_a_script_runs_in_a_short_form(name: str, folder: Path) -> None:
+    if name in ("cell_physics", "cell_speed") and find_spec("mujoco") is None:
+        pytest.skip("needs MuJoCo")
+    done = subprocess.run(
+        [sys.executable, str(SCRIPTS / f"{name}.py"), *SHORT[name]],
+        cwd=folder,
+        env=_environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "Traceback" not in done.stderr, done.stderr[-3000:]
+    assert done.returncode in ((0, 1) if name in LOOSE else (0,)), (done.stdout + done.stderr)[-3000:]
+    assert done.stdout.strip()
