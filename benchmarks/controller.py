@@ -135,6 +135,10 @@ class Player:
         """The same without lines."""
         return (one for one in self.events(tasks) if isinstance(one, Result))
 
+    def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
+        """Nothing is left to wait for: what was written down has been told."""
+        return iter(())
+
     def apart(self) -> AbstractContextManager[Executor]:
         """Nothing here needs one."""
         raise NotImplementedError
