@@ -100,6 +100,10 @@ class Recorder:
         """The same without lines."""
         return (one for one in self.events(tasks) if isinstance(one, Result))
 
+    def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
+        """What the other one says after an interruption: nobody interrupts what is recorded."""
+        return self.inner.rest(is_awaited, seconds)
+
     def apart(self) -> AbstractContextManager[Executor]:
         """That of the other one."""
         return self.inner.apart()
