@@ -273,6 +273,30 @@ def test_a_mutant_without_an_answer_is_left_out_with_the_reason(
     )
 
 
+@pytest.mark.parametrize("line", ["arm.start(0.5)", "await arm.start(0.5)"])
+def test_a_statement_by_itself_needs_no_answer_to_be_left_out(tmp_path: Path, line: str) -> None:
+    is_async = line.startswith("await")
+    mission = f"{'async ' if is_async else ''}def run(arm):\n    {line}\n"
+    made = "mock.AsyncMock" if is_async else "mock.MagicMock"
+    run = "asyncio.run(mission.run(arm))" if is_async else "mission.run(arm)"
+    tests = f"""
+        import asyncio
+        from unittest import mock
+
+        import mission, robot
+
+        def test_it():
+            arm = mock.Mock(spec=robot.Arm)
+            arm.start = {made}()
+            {run}
+            arm.start.assert_called_once_with(0.5)
+    """
+    folder = project(tmp_path, mission, tests, operation("start"))
+    plan, left_out = plan_only(request_for(folder), Quiet())
+    assert "skip" in {one.operator for one in plan}
+    assert left_out == []
+
+
 USES_HANDLE = "def run(arm):\n    return arm.start(0.5)\n"
 TEST_OF_HANDLE = """
     import mission, robot

@@ -107,3 +107,62 @@ def test_a_mock_in_the_place_of_a_property_is_read_by_the_mutant(tmp_path: Path)
     found = run(write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary))
     (negated,) = [one for one in found.values() if one.mutant.endswith("negate")]
     assert (negated.verdict, negated.hits) == (Verdict.KILLED, 1)
+
+
+TURN = """
+    class Arm:
+        def turn(self, roll):
+            self.roll = roll
+"""
+TO = """
+    [[operation]]
+    call = "robot:Arm.turn"
+    arguments.roll = { kind = "rotation", axis = "x", unit = "deg", mode = "to" }
+"""
+MOCK = """
+    from unittest.mock import Mock
+
+    import mission
+    from robot import Arm
+
+    def test_it():
+        arm = Mock(spec=Arm)
+        mission.run(arm)
+        arm.turn.assert_called_once_with(180.0)
+"""
+FAKE = """
+    import mission
+    from robot import Arm
+
+    class Fake(Arm):
+        def turn(self, roll):
+            self.rolls = [roll]
+
+    def test_it():
+        arm = Fake()
+        mission.run(arm)
+        assert arm.rolls == [180.0]
+"""
+REAL = """
+    import mission
+    from robot import Arm
+
+    def test_it():
+        mission.run(Arm())
+"""
+
+
+@pytest.mark.parametrize("tests", [MOCK, FAKE], ids=["a mock", "a fake"])
+def test_half_a_turn_the_other_way_is_a_fault_to_a_test_that_compares_numbers(
+    tmp_path: Path, tests: str
+) -> None:
+    mission = "def run(arm):\n    arm.turn(180.0)\n"
+    found = run(write_project(tmp_path, mission, tests, robot=TURN, vocabulary=TO))
+    (turned,) = [one for one in found.values() if one.mutant.endswith("reverse")]
+    assert (turned.verdict, turned.example) == (Verdict.KILLED, (180.0, -180.0))
+
+
+def test_half_a_turn_the_other_way_is_the_same_to_a_robot(tmp_path: Path) -> None:
+    mission = "def run(arm):\n    arm.turn(180.0)\n"
+    found = run(write_project(tmp_path, mission, REAL, robot=TURN, vocabulary=TO))
+    assert not [one for one in found.values() if one.mutant.endswith("reverse")]

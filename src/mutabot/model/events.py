@@ -155,7 +155,8 @@ class SiteSeen(Event):
     """A site was reached for the first time in this session; traces refer to it by ``index``.
 
     ``direct`` is whether the call that stands there is that of the operation itself, rather than of something
-    that leads to it; only the baseline finds out.
+    that leads to it, ``stands_in`` whether a mock or a fake of the project got the call; only the baseline
+    finds out.
     """
 
     index: int
@@ -164,6 +165,7 @@ class SiteSeen(Event):
     pattern: str | None
     oracle: bool
     direct: bool = False
+    stands_in: bool = False
 
 
 @frozen

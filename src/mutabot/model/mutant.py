@@ -216,6 +216,7 @@ class Mutant:
         direction: which way a fault with sizes goes: ``+``, ``-``, or empty if it goes one way only.
         moment: at which of its calls it acts; None for all of them.
         provider: name of the provider that made it (``mutabot.faults``).
+        by_number: whether any other number is a change, also one that means the same to a robot.
     """
 
     number: int
@@ -234,6 +235,7 @@ class Mutant:
     moment: Moment | None = None
     has_sizes: bool = False
     provider: str = CALLS
+    by_number: bool = False
 
     @property
     def id(self) -> str:

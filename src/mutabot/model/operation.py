@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import StrEnum
 from fnmatch import fnmatchcase
 from typing import Any
@@ -258,6 +259,17 @@ class Operation:
     named: Named | None = None
     refused: tuple[Refused, ...] = ()
     is_partial: bool = False
+
+    def by_numbers(self) -> Operation:
+        """The same where no robot is told, but something that tests compare with numbers."""
+
+        def compared(arguments: tuple[Quantity, ...]) -> tuple[Quantity, ...]:
+            return tuple(
+                replace(one, by_number=one.is_whole or one.full_turn is not None) for one in arguments
+            )
+
+        patterns = tuple(replace(one, arguments=compared(one.arguments)) for one in self.patterns)
+        return replace(self, arguments=compared(self.arguments), patterns=patterns)
 
     @property
     def module(self) -> str:

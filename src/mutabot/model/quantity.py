@@ -173,6 +173,8 @@ class Quantity:
             (``module:Name``); None if the vocabulary does not say.
         tcp: the part of the tool centre point's offset that lies along this axis, in its unit; None if the
             vocabulary does not say.
+        by_number: whether values differ that mean the same to a robot, such as 180 and −180 degrees: where no
+            robot gets them, but something that tests compare with numbers.
     """
 
     name: str
@@ -192,6 +194,7 @@ class Quantity:
     ladder_unit: str | None = None
     missing: str | None = None
     tcp: float | None = None
+    by_number: bool = False
 
     def get(self, start: Any) -> Value:
         """Its value in what its path starts at: the seconds of a stamp, the numbers of an orientation.
@@ -398,7 +401,7 @@ def is_same(quantity: Quantity, one: Value, other: Value) -> bool:
     """
     if one is other:
         return True
-    if quantity.is_whole:
+    if quantity.is_whole and not quantity.by_number:
         before, after = quantity.orientation(one), quantity.orientation(other)
         if before is not None and after is not None:
             return distance(before, after) < SAME_ORIENTATION
@@ -468,7 +471,7 @@ def _turn_of_target(quantity: Quantity) -> float | None:
     so does whatever has a range of more than one turn: it winds.
     """
     turn = quantity.full_turn
-    if turn is None or quantity.kind is not Kind.ROTATION or quantity.mode is not Mode.TO:
+    if turn is None or quantity.by_number or (quantity.kind, quantity.mode) != (Kind.ROTATION, Mode.TO):
         return None
     limits = quantity.range or quantity.clip
     winds = limits is not None and limits[1] - limits[0] > turn * (1.0 + 1e-6)

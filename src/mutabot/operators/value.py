@@ -179,7 +179,7 @@ def turned(
     if before is None:
         return None
     after = change(before)
-    if distance(before, after) < least:
+    if distance(before, after) < least and not quantity.by_number:
         return value
     parts = iter(quantity.numbers(after))
     return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0

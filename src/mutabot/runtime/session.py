@@ -104,7 +104,7 @@ class Session:
             if operation.kind == "messages":
                 self._heeded().wrap(operation.target, handler)
             elif operation.kind is None:
-                self.callables.wrap(operation.target, handler)
+                self.callables.wrap(operation.target, handler, is_set=bool(operation.described))
         self._see_calls()
         waits = [vocabulary.wait.target] if vocabulary.wait is not None else []
         self.instances.watch(map(owner_of, (*waits, *(probe.target for probe in vocabulary.probes))))
@@ -211,6 +211,7 @@ class Session:
         if mutant.id in self.job.faults:
             self.placed.place(mutant, self.job.faults[mutant.id])
         elif operation is not None:
+            operation = operation.by_numbers() if mutant.by_number else operation
             refusals = self._refusals(operation)
             on_act = partial(self._acted, mutant.id)
             told = (on_act, self._in_mutated_call, self._time.now_if_known)
@@ -389,7 +390,7 @@ class Session:
 
     def _note(self, made: SiteCall, *, is_refused: bool = False) -> None:
         """A call of the original was refused by the robot, or returned the robot's own memory."""
-        index = self.recorder.index_of(replace(seen_by(made), direct=False))
+        index = self.recorder.index_of(replace(seen_by(made), direct=False, stands_in=False))
         one = Noted(index, made.number if is_refused else None)
         if one not in self.noted and self.on_noted is not None:
             self.on_noted(one)

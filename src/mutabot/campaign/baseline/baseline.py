@@ -267,6 +267,7 @@ class Baseline(Original):
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there acts in all tests.
         unread: whether nobody uses what the calls of a place return.
+        stand_ins: places at which a mock or a fake of the project gets calls.
         shares_files: whether runs see each other's files.
     """
 
@@ -275,6 +276,7 @@ class Baseline(Original):
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
     unread: dict[Place, bool] = field(default_factory=dict)
+    stand_ins: set[Place] = field(default_factory=set)
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)

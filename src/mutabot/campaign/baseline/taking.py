@@ -324,6 +324,8 @@ def _add_hits(
         place = places[seen.index]
         is_unused = seen.direct and sources.is_among(seen.span, unused_calls)
         baseline.unread[place] = is_unused and baseline.unread.get(place, True)
+        if seen.stands_in:
+            baseline.stand_ins.add(place)
     reaching: dict[Place, set[str]] = {}
     for end in result.ends:
         if end.test not in good:

@@ -158,6 +158,7 @@ def _at_places(
         operation = vocabulary.operation(place.operation)
         if operation is None:
             continue
+        operation = operation.by_numbers() if place in baseline.stand_ins else operation
         is_shared = operations_at[place.site] > 1
         for subject, rule in _subjects(operators, operation, place):
             mutant = _distinct(_mutant(rule, subject, place, provider), taken)
@@ -179,8 +180,8 @@ def _at_places(
                 try:
                     answers = _answers(baseline, place, of_any=Need.ERROR in rule.needs)
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
-                except NoAnswerError as error:
-                    reason = str(error)
+                except NoAnswerError as error:  # of a statement by itself nobody needs one
+                    reason = None if baseline.unread.get(place, False) else str(error)
             yield Planted(mutant, reason, (0, index, ranks[rule.name]))
 
 
@@ -233,6 +234,7 @@ def _mutant(rule: Operator, subject: Subject, place: Place, provider: str) -> Mu
         direction=subject.direction,
         has_sizes=rule.has_sizes,
         provider=provider,
+        by_number=subject.quantity is not None and subject.quantity.by_number,
     )
 
 

@@ -244,6 +244,10 @@ class ActiveMutant:
         hit = self.evidence.hits = self.evidence.hits + 1
         call = replace(made.call, payload=made.call.payload.copied()) if self.copies else made.call
         is_due = self._moment is None or self._moment.holds(made.number, self.time())
+        if self.mutant.by_number:
+            call = replace(
+                call, operation=self.operation, pattern=self.operation.pattern(self.mutant.pattern)
+            )
         passage = CallRecord(replace(call, is_refusal=partial(is_refusal, names=self.refusals)))
         mutated = _MutatedCall(self, adapter, made, passage, does_nothing=is_due and self._does_nothing)
         self._commands, self._told, self._is_passed = 0, 0, False

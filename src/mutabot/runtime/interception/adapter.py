@@ -145,6 +145,7 @@ class SiteCall:
         number: of the call among those of its site in this test, from 1.
         is_async: whether what the operation returns is to be awaited.
         is_direct: whether the program itself makes the call, rather than a library that it calls.
+        stands_in: whether something else than the robot gets the call, in the baseline.
     """
 
     site: Place
@@ -152,6 +153,7 @@ class SiteCall:
     number: int
     is_async: bool = False
     is_direct: bool = False
+    stands_in: bool = False
 
 
 @dataclass(eq=False)
@@ -311,7 +313,7 @@ class Adapter:
         if call is original:
             return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
-        meant = call.pattern if call.pattern is not None else self.operation
+        meant = call.pattern if call.pattern is not None else call.operation
         opposite = meant.opposite if call.reversed and not is_text else None
         wrapped = self._other(opposite, invocation) if opposite is not None else invocation.wrapped
         changed = changes(meant.arguments, original.values, call.values)

@@ -205,7 +205,8 @@ class Dispatcher:
                 return _ALONE
             key = (site[0], call.operation.target, call.pattern.text if call.pattern is not None else None)
             self.calls[key] += 1
-            made = SiteCall(site, call, self.calls[key], is_async, is_direct)
+            stands_in = invocation.where.stands_in and self.recorder.answers is not None
+            made = SiteCall(site, call, self.calls[key], is_async, is_direct, stands_in)
             try:
                 # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
                 #    original; a fork comes back from here as its mutant.

@@ -115,7 +115,9 @@ def seen_by(made: SiteCall) -> SiteSeen:
     """Return the site of a call, whose index is not known."""
     (span, role), call = made.site, made.call
     pattern = call.pattern.text if call.pattern is not None else None
-    return SiteSeen(-1, span, call.operation.target, pattern, role is Role.ORACLE, made.is_direct)
+    return SiteSeen(
+        -1, span, call.operation.target, pattern, role is Role.ORACLE, made.is_direct, made.stands_in
+    )
 
 
 @dataclass(slots=True)

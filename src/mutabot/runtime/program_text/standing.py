@@ -180,6 +180,7 @@ class Standing:
                 site.left_alone[type(receiver), own] = self._guards(site, frame)
             return found
         where = {"site": self.place(site, frame), "is_awaited": site.is_awaited, "frame": frame}
+        where["stands_in"] = self.stands_in(found)
         return partial(self.call, one, where, found, receiver)
 
     def _guards(self, site: CallSite, frame: FrameType) -> Guards:
@@ -213,6 +214,14 @@ class Standing:
         if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
             instance, found, args = args[0], partial(found, args[0]), args[1:]
         return one.handler(found, instance, args, kwargs, Where(receiver=given, signature=signature, **where))
+
+    def stands_in(self, found: Any) -> bool:
+        """Whether something is a mock, or a function of the project that is no operation: a fake."""
+        function = found.__func__ if isinstance(found, MethodType) else found
+        if mock_of(function) is not None:
+            return True
+        path = function.__code__.co_filename if isinstance(function, FunctionType) else ""
+        return bool(path) and not {"..", "site-packages"} & set(self.locator.relative(path).split("/"))
 
     def place(self, site: CallSite, frame: FrameType) -> Place:
         """Where a site stands."""
@@ -316,6 +325,8 @@ class Standing:
     def _signature_of(self, one: Adapter) -> Signature | None:
         """What the arguments are, as the operation itself tells; None if it does not, or is not found yet."""
         original = self.callables.found.get(one.operation.target)
+        if isinstance(original, property):
+            original = original.fset if one.operation.described else original.fget
         if one not in self._signatures and original is not None:
             found = signature_of(getattr(original, "__func__", original))
             is_method = self._owner(one) is not None and not isinstance(original, staticmethod)
@@ -458,7 +469,7 @@ class Handing:
         args, kwargs = given
         if receiver is NOTHING and instance is not None:  # it was made a method, or is one
             receiver, found = instance, wrapped
-        where = {"handed": place, "frame": sys._getframe(1)}
+        where = {"handed": place, "frame": sys._getframe(1), "stands_in": self._standing.stands_in(found)}
         return self._standing.call(one, where, found, receiver, *args, **kwargs)
 
     def _watch(self, mock: ModuleType) -> None:
@@ -481,8 +492,7 @@ class Handing:
         own = vars(mock)
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
-        is_written = bool(args) and is_mock(mock, "PropertyMock")
-        if is_written or (mark is None and name not in self._standing.by_name):
+        if mark is None and name not in self._standing.by_name:
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if is_untracked() or (caller is not None and is_border(caller.f_code)):  # the operation itself
@@ -494,11 +504,13 @@ class Handing:
             one, receiver, place = None, NOTHING if parent is None else parent, None
             if caller is not None and self._standing.locator.role(caller.f_code.co_filename) is not None:
                 one = self._standing.named(name, mock, receiver, caller)
-        if one is None:
+        is_property = is_mock(mock, "PropertyMock")
+        if one is None or (is_property and bool(args) is not bool(one.operation.described)):
             return original(mock, *args, **kwargs)
         if place is None and mark is not None and self._standing.noted is not None:
             self._standing.noted.note_elsewhere(one.operation, self._standing.locator.locate(caller))
-        where = {"handed": place, "frame": caller, "is_awaited": is_coroutine_function(mock)}
+        is_awaited = is_coroutine_function(mock)
+        where = {"handed": place, "frame": caller, "is_awaited": is_awaited, "stands_in": True}
         return self._standing.call(one, where, partial(original, mock), receiver, *args, **kwargs)
 
 

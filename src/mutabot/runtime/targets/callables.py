@@ -24,7 +24,8 @@ from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Tell
 if TYPE_CHECKING:
     from mutabot.model import Operation
 
-_ONLY_READ = "only its reading is seen; describe the method that its setter calls"
+_SET = "is a property: its arguments are those of assignments, which return nothing; describe one of the two"
+_NOT_SET = "is a property that cannot be set; describe its result"
 
 
 def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
@@ -37,9 +38,13 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
     callable = getattr(original, "__func__", original)
     described = operation.described
     if isinstance(original, property | functools.cached_property):
-        for key in described.values():
-            yield Finding(key, f"{operation.target} is a property: {_ONLY_READ}")
-        return
+        callable = getattr(original, "fset", None)
+        if callable is None or not described:
+            for key in described.values():
+                yield Finding(key, f"{operation.target} {_NOT_SET}")
+            return
+        if operation.result:
+            yield Finding("result", f"{operation.target} {_SET}")
     signature = signature_of(callable)
     if operation.signature is not None:
         signature = parse_signature(operation.signature)
@@ -87,8 +92,14 @@ class Callables:
         self.found: dict[str, Any] = {}
         self.owners: dict[str, type] = {}
 
-    def wrap(self, target: str, handler: Handler) -> None:
-        """Wrap a callable now, or as soon as its module is imported."""
+    def wrap(self, target: str, handler: Handler, *, is_set: bool = False) -> None:
+        """Wrap a callable now, or as soon as its module is imported.
+
+        Args:
+            target: the callable.
+            handler: what stands around it.
+            is_set: whether of a property the assignments are meant, rather than the readings.
+        """
         module_name, _, qualname = target.partition(":")
         self.pending.add(target)
         late = module_name in sys.modules
@@ -96,7 +107,7 @@ class Callables:
         def imported(module: ModuleType) -> None:
             self.pending.discard(target)
             try:
-                self._install(target, module, qualname, handler, late=late)
+                self._install(target, module, qualname, handler, late=late, is_set=is_set)
             except NotFoundError as error:
                 self._tell(target, Finding("call", str(error), error.name, error.known))
             except NotCallableError as error:
@@ -129,10 +140,10 @@ class Callables:
         return look_at(operation, original) if original is not None else iter(())
 
     def _install(
-        self, target: str, module: ModuleType, qualname: str, handler: Handler, *, late: bool
+        self, target: str, module: ModuleType, qualname: str, handler: Handler, *, late: bool, is_set: bool
     ) -> None:
         owner, name, original = resolve(module, qualname)
-        wrapper = _wrapper(owner, name, original, handler)
+        wrapper = _wrapper(owner, name, original, handler, is_set=is_set)
         try:
             setattr(owner, name, wrapper)
         except (AttributeError, TypeError) as error:
@@ -154,13 +165,15 @@ def not_imported(module: str, error: Exception, key: str = "call") -> Finding:
     return Finding(key, f"module {module!r} cannot be imported: {error!r}", module)
 
 
-def _wrapper(owner: Any, name: str, original: Any, handler: Handler) -> Any:
+def _wrapper(owner: Any, name: str, original: Any, handler: Handler, *, is_set: bool) -> Any:
     if isinstance(original, property):
+        if is_set and original.fset is not None:
+            return original.setter(wrapt.FunctionWrapper(original.fset, _of_property(handler)))
         if original.fget is None:
             raise NotCallableError("it is a property that cannot be read")
-        return original.getter(wrapt.FunctionWrapper(original.fget, _as_getter(handler)))
+        return original.getter(wrapt.FunctionWrapper(original.fget, _of_property(handler)))
     if isinstance(original, functools.cached_property):
-        cached = functools.cached_property(wrapt.FunctionWrapper(original.func, _as_getter(handler)))
+        cached = functools.cached_property(wrapt.FunctionWrapper(original.func, _of_property(handler)))
         cached.__set_name__(owner, name)
         return cached
     if isinstance(original, type):
@@ -170,13 +183,16 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler) -> Any:
     return wrapt.FunctionWrapper(original, handler)
 
 
-def _as_getter(handler: Handler) -> Handler:
-    """A property's getter is called as a plain function of the instance; handlers expect a bound method."""
+def _of_property(handler: Handler) -> Handler:
+    """What a property calls are plain functions of the instance; handlers expect bound methods."""
 
-    def get(wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-        return handler(functools.partial(wrapped, *args), args[0], (), {})
+    def call(
+        wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> Any:
+        __tracebackhide__ = True
+        return handler(functools.partial(wrapped, args[0]), args[0], args[1:], {})
 
-    return get
+    return call
 
 
 def _rebind(original: Any, wrapper: Any) -> None:

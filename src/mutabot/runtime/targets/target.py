@@ -119,6 +119,7 @@ class Where:
         is_awaited: whether what the call gives is awaited there.
         signature: by which its arguments are read, where it is not the operation's.
         frame: that makes the call; None if it is the next one.
+        stands_in: whether what is called is a mock, or a fake of the project.
     """
 
     code: CodeType | None = None
@@ -131,6 +132,7 @@ class Where:
     is_awaited: bool = False
     frame: FrameType | None = None
     signature: Signature | None = None
+    stands_in: bool = False
 
 
 #: the frames above tell all
