@@ -38,6 +38,8 @@ from statistics import linear_regression, mean
 from textwrap import dedent
 from typing import Any
 
+from mutabot.journal.database import connect_to_read
+
 MOVES = 34  # per test
 MUTANTS_PER_MOVE = 3  # skip, repeat, reverse
 TESTS_PER_FILE = 25
@@ -180,8 +182,7 @@ class Campaign:
             return int(connection.execute("SELECT count(*) FROM outcome WHERE reused").fetchone()[0])
 
     def _journal(self) -> sqlite3.Connection:
-        path = self.folder / ".mutabot" / "journal.sqlite"
-        return sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)
+        return connect_to_read(self.folder / ".mutabot" / "journal.sqlite")
 
     def _look(self, pid: int, clock: float) -> Sample:
         connection = self._journal()

@@ -6,8 +6,9 @@ import json
 import os
 import shutil
 import sqlite3
+import stat
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ import pytest
 from mutabot.errors import JournalError
 from mutabot.journal.files import is_written
 from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.recordings import Rank, Recordings
 from mutabot.model import By, Outcome, Verdict
 from results import samples
 
@@ -152,8 +154,6 @@ def test_a_journal_that_is_deleted_or_replaced_is_written_again(
 def test_a_journal_that_another_program_holds_locked_is_written_nevertheless(path: Path) -> None:
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
-        journal.outcomes()
-        journal._file.execute("PRAGMA busy_timeout = 10")
         with closing(sqlite3.connect(path)) as other:
             other.execute("BEGIN IMMEDIATE")
             journal.add_outcome(SURVIVED)
@@ -161,7 +161,61 @@ def test_a_journal_that_another_program_holds_locked_is_written_nevertheless(pat
             with JournalReader.open(path) as reader:
                 assert reader.outcomes() == [KILLED, SURVIVED]
         journal.finish("complete")
-        assert journal.lost == ["was locked by something else"]
+    with JournalReader.open(path) as reader:
+        assert reader.outcomes() == [KILLED, SURVIVED]
+
+
+#: what a program under test can do to any file that it finds
+DEEDS: dict[str, Callable[[Path], object]] = {
+    "emptied": lambda file: os.truncate(file, 0),
+    "shortened": lambda file: os.truncate(file, 100),
+    "huge": lambda file: os.truncate(file, 1 << 40),
+    "deleted": Path.unlink,
+    "moved": lambda file: file.rename(file.with_name("elsewhere")),
+    "closed": lambda file: file.chmod(0),
+    "a pipe": lambda file: (file.unlink(), os.mkfifo(file)),
+    "a folder": lambda file: (file.unlink(), file.mkdir(), (file / "more").touch()),
+    "a link": lambda file: (file.unlink(), file.symlink_to("/dev/zero")),
+    "a socket": lambda file: (file.unlink(), os.mknod(file, 0o600 | stat.S_IFSOCK)),
+}
+
+
+@pytest.mark.parametrize("deed", DEEDS.values(), ids=DEEDS)
+@pytest.mark.parametrize("suffix", ["", "-wal", ".lock", None])
+def test_whatever_becomes_of_its_files_ends_no_campaign_and_costs_no_outcome(
+    path: Path, deed: Callable[[Path], object], suffix: str | None
+) -> None:
+    with Journal.create(path, meta={}) as journal:
+        journal.add_outcome(KILLED)
+        files = sorted(path.parent.iterdir())
+        for file in files if suffix is None else [path.with_name(path.name + suffix)]:
+            deed(file)
+        with suppress(JournalError), JournalReader.open(path) as reader:
+            assert reader.outcomes() in ([], [KILLED])
+        is_written(path)
+        journal.add_outcome(SURVIVED)
+        assert is_written(path)
+        with JournalReader.open(path) as reader:
+            assert reader.outcomes() == [KILLED, SURVIVED]
+        for file in files:
+            if file.is_file():
+                deed(file)
+        journal.finish("complete")
+        assert is_written(path)
+    with JournalReader.open(path) as reader:
+        assert reader.outcomes() == [KILLED, SURVIVED]
+        assert reader.finished == "complete"
+
+
+def test_no_file_of_a_journal_is_mapped_into_memory(path: Path) -> None:
+    with Journal.create(path, meta={}) as journal, Recordings.to_write(path, 1 << 20) as recordings:
+        journal.add_outcome(KILLED)
+        recordings.add("m", 0, "t", Rank.OTHER, b"data")
+        with JournalReader.open(path) as reader:
+            assert reader.outcomes() == [KILLED]
+        mapped = Path("/proc/self/maps").read_text("utf-8")
+        assert str(path.parent) not in mapped
+        assert sorted(one.name for one in path.parent.iterdir() if "-shm" in one.name) == []
 
 
 def test_readers_change_nothing(path: Path) -> None:

@@ -15,7 +15,6 @@ import secrets
 import select
 import signal
 import socket
-import stat
 import subprocess
 import sys
 import tempfile
@@ -31,12 +30,14 @@ from mutabot.execution.remains import remove_folder
 from mutabot.frozen import frozen
 from mutabot.model.event_file import FOLDER, FORKS, SESSION, SUFFIX, EventReader
 from mutabot.model.events import Event, ForkEnded, Serving
+from mutabot.model.files import open_file, read_file
 from mutabot.model.fold import fold_fork
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, STOP, Job, job_file, write_job
 from mutabot.model.keeper import FILE as KEEPER
 from mutabot.model.keeper import LEFT
 
-_LOG_BYTES = 4000
+#: bytes that are read of what a process printed, and of the list of what it left running
+_LOG_BYTES, _LEFT_BYTES = 4000, 1 << 20
 #: seconds that a keeper may take to end all it looks after
 _PATIENCE = 15.0
 #: bytes that must be free on the disk for a process to print what it prints
@@ -97,14 +98,11 @@ class Home:
     def log_text(self) -> str:
         """The last of what the process printed."""
         try:
-            descriptor = os.open(self.log_file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+            descriptor = open_file(self.log_file, os.O_RDONLY)
         except OSError:
             return ""
         with os.fdopen(descriptor, "rb") as file:
-            status = os.fstat(descriptor)
-            if not stat.S_ISREG(status.st_mode):
-                return ""
-            file.seek(max(0, status.st_size - _LOG_BYTES))
+            file.seek(max(0, os.fstat(descriptor).st_size - _LOG_BYTES))
             return file.read(_LOG_BYTES).decode("utf-8", "replace")
 
     @property
@@ -171,7 +169,7 @@ class Spawned:
     def left(self) -> list[str] | None:
         """What it had left running when it ended, and was ended; None if the keeper did not see to that."""
         try:
-            return self._left.read_text("utf-8", "replace").splitlines()
+            return read_file(self._left, _LEFT_BYTES).decode("utf-8", "replace").splitlines()
         except OSError:
             return None
 

@@ -17,6 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from mutabot.model.event_file import VARIABLE
+from mutabot.model.files import read_file
 from mutabot.model.keeper import name_of
 
 #: looks, each after the last one's finds were killed, until nothing is found
@@ -64,7 +65,7 @@ def end_abandoned(home: Path) -> int:
     ended = 0
     for owner in home.glob(f"*/{OWNER}"):
         try:
-            pid, began = owner.read_text("ascii").split()
+            pid, began = read_file(owner, 100).decode("ascii").split()
         except (OSError, ValueError):  # another campaign is about to write it, or to remove it
             continue
         if _began(int(pid)) == began:

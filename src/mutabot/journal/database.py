@@ -4,21 +4,26 @@ Most tables hold one object a row, as the JSON of its ``data``; the columns besi
 
 A file may come from anybody. A view or a trigger in it would be evaluated with each question: only the tables
 of this version may be there.
+
+While it is written, programs under test can do anything to it. A shared index of the log would be mapped into
+memory, and whoever shortens it would end the process. So the writer keeps its index to itself, and readers
+take a copy. It takes no lock that others could hold: ``files.WriterLock`` keeps other writers out.
 """
 
 from __future__ import annotations
 
-import shutil
+import os
 import sqlite3
-from contextlib import closing
+from contextlib import closing, suppress
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from mutabot.errors import JournalError
+from mutabot.model.files import copy_file, read_file
 
-from .files import previous_of
+from .files import clear, previous_of
 
 SCHEMA_VERSION = 9
 
@@ -43,8 +48,12 @@ CREATE TABLE text (digest TEXT PRIMARY KEY, data BLOB NOT NULL);
 """
 #: the rows that hold the last outcome of each mutant and round
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
-#: what a database consists of while somebody has it open
-_SUFFIXES = ("", "-wal", "-shm")
+#: what a database consists of while somebody has it open, and what may lie beside it
+_SUFFIXES = ("", "-wal", "-shm", "-journal")
+#: the index of the log is the connection's own
+_ALONE = "locking_mode = EXCLUSIVE"
+#: bytes with which a log begins, which are others as soon as it begins anew; copies that are tried
+_HEAD, _TRIES = 32, 20
 #: things in a file that are looked at: a journal has fewer; rows, characters and rounds that are shown
 _MOST, _SHOWN, _LONGEST, _MOST_ROUNDS = 100, 5, 150, 1_000_000
 #: what people call rows of a table
@@ -83,7 +92,7 @@ def decode(text: bytes) -> str:
 
 def _open(name: str, pragmas: tuple[str, ...], *, uri: bool = False) -> sqlite3.Connection:
     # The writer may hand the journal from one thread to another; it never uses it from two at once.
-    connection = sqlite3.connect(name, uri=uri, isolation_level=None, check_same_thread=False, timeout=10)
+    connection = sqlite3.connect(name, uri=uri, isolation_level=None, check_same_thread=False)
     connection.text_factory = decode
     try:
         for pragma in ("trusted_schema = OFF", *pragmas):
@@ -95,10 +104,11 @@ def _open(name: str, pragmas: tuple[str, ...], *, uri: bool = False) -> sqlite3.
 
 
 def connect(path: Path) -> sqlite3.Connection:
-    """A connection that writes; the file is made if it does not exist."""
-    # WAL lets readers work beside the writer. NORMAL survives the death of the process; only a power cut
-    # can take the last outcomes, and those are simply run again.
-    return _open(f"{path}", ("journal_mode = WAL", "synchronous = NORMAL"))
+    """The one connection that writes; the file is made if it does not exist."""
+    # NORMAL survives the death of the process; only a power cut can take the last outcomes, and those are
+    # simply run again. The last question opens the log, whatever is in its place later.
+    pragmas = (_ALONE, "journal_mode = WAL", "synchronous = NORMAL", "schema_version")
+    return _open(f"{path.absolute().as_uri()}?vfs=unix-none", pragmas, uri=True)
 
 
 def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
@@ -115,34 +125,53 @@ def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
 
 
 def connect_to_read(path: Path) -> sqlite3.Connection:
-    """A connection that only reads."""
+    """A connection to what is there now, which makes, changes and locks nothing. Raises OSError."""
+    log = path.with_name(f"{path.name}-wal")
+    if not log.exists():  # nobody writes
+        return _open(f"{path.absolute().as_uri()}?immutable=1", ("schema_version",), uri=True)
+    # what is open can be read when it has no name any more
+    with TemporaryDirectory(prefix="mutabot-journal-") as folder:
+        copy = Path(folder) / path.name
+        for _ in range(_TRIES):
+            before = _generation(path, log)
+            for part in (path, log):
+                with suppress(FileNotFoundError):  # it has been written anew, and there is no log any more
+                    copy_file(part, copy.with_name(part.name))
+            if _generation(path, log) == before:
+                break
+        return _open(f"{copy}", (_ALONE, "schema_version"))
 
-    def opened(file: Path) -> sqlite3.Connection:
-        return _open(f"{file.absolute().as_uri()}?mode=ro", ("schema_version",), uri=True)
 
-    try:
-        return opened(path)
-    except sqlite3.OperationalError:
-        # In a folder we cannot write to, SQLite cannot make the index of a WAL journal: read a copy. What is
-        # open can be read when it has no name any more.
-        with TemporaryDirectory(prefix="mutabot-journal-") as folder:
-            for part in (path, path.with_name(f"{path.name}-wal")):
-                if part.is_file():
-                    (Path(folder) / part.name).write_bytes(part.read_bytes())
-            return opened(Path(folder) / path.name)
+def _generation(path: Path, log: Path) -> tuple[tuple[int, int], bytes]:
+    """As long as it is the same, all that is written into the file is in the log as well: copies fit."""
+    found = path.lstat()
+    return (found.st_dev, found.st_ino), read_file(log, _HEAD) if log.exists() else b""
+
+
+def stamps(path: Path) -> list[tuple[int, int, int, int] | None]:
+    """What changes when somebody writes to a database or its log, or puts something else in their place."""
+    found: list[tuple[int, int, int, int] | None] = []
+    for part in (path, path.with_name(f"{path.name}-wal")):
+        try:
+            status = part.lstat()
+        except OSError:
+            found.append(None)
+        else:
+            found.append((status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns))
+    return found
 
 
 def write_anew(copy: sqlite3.Connection, path: Path) -> None:
     """Make a file of all that is in a database, and put it in the place of whatever is there."""
     new = path.with_name(f"{path.name}.new")
-    new.unlink(missing_ok=True)
+    clear(new)
     try:
         with closing(sqlite3.connect(new)) as target:
             copy.backup(target)
         for suffix in _SUFFIXES[1:]:  # they are of the other file: SQLite would read them into this one
-            path.with_name(path.name + suffix).unlink(missing_ok=True)
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path)
+            clear(path.with_name(path.name + suffix))
+        if path.is_dir():
+            clear(path)
         new.replace(path)
     finally:
         new.unlink(missing_ok=True)
@@ -221,11 +250,10 @@ def set_aside(path: Path) -> Path | None:
     a damaged one takes the place of the previous one. Raises JournalError for a file that is not ours.
     """
     for half in (path, previous_of(path)):  # of a campaign that was killed meanwhile
-        half.with_name(f"{half.name}.new").unlink(missing_ok=True)
+        clear(half.with_name(f"{half.name}.new"))
     if not path.exists():
         return None
-    with path.open("rb") as file:
-        start = file.read(16)
+    start = read_file(path.resolve(), 16)
     if start and not start.startswith(b"SQLite format 3"):
         raise JournalError(f"{path} is in the way: it is not a journal of mutabot")
     kept = previous_of(path)
@@ -246,7 +274,7 @@ def set_aside(path: Path) -> Path | None:
         pass
     for suffix in _SUFFIXES:
         old, new = path.with_name(path.name + suffix), kept.with_name(kept.name + suffix)
-        new.unlink(missing_ok=True)
-        if old.exists():
+        clear(new)
+        if os.path.lexists(old):
             old.replace(new)
     return kept

@@ -10,12 +10,14 @@ from __future__ import annotations
 import fcntl
 import os
 import shutil
+import stat
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from mutabot.errors import JournalError
+from mutabot.model.files import open_file
 from mutabot.repository import GitError, repository_of, tracked
 
 #: mutabot's folder in a project, and its journal
@@ -45,6 +47,14 @@ def recordings_path(journal: Path) -> Path:
     return journal.with_name(f"{journal.stem}-evidence.sqlite")
 
 
+def clear(path: Path) -> None:
+    """Remove what lies there, whatever it is."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
 class WriterLock:
     """Held by the one process that writes a journal; the system gives it back when that process dies."""
 
@@ -55,7 +65,11 @@ class WriterLock:
     @classmethod
     def take(cls, journal: Path) -> WriterLock:
         """Take the lock of a journal. Raises JournalError if another process holds it."""
-        descriptor = os.open(journal.with_name(journal.name + ".lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+        journal.parent.mkdir(parents=True, exist_ok=True)
+        lock = journal.with_name(journal.name + ".lock")
+        if os.path.lexists(lock) and not stat.S_ISREG(lock.lstat().st_mode):
+            clear(lock)  # nobody holds that
+        descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
         # A reader that looks whether somebody writes holds it for a moment, hence more than one try.
         for _ in range(10):
             try:
@@ -72,7 +86,7 @@ class WriterLock:
         if self._descriptor is None:
             return
         try:
-            found = self._journal.with_name(self._journal.name + ".lock").stat()
+            found = self._journal.with_name(self._journal.name + ".lock").lstat()
         except OSError:
             found = None
         held = os.fstat(self._descriptor)
@@ -91,7 +105,7 @@ class WriterLock:
 def is_written(journal: Path) -> bool:
     """Whether some process writes this journal now."""
     try:
-        descriptor = os.open(journal.with_name(journal.name + ".lock"), os.O_RDONLY | os.O_CLOEXEC)
+        descriptor = open_file(journal.with_name(journal.name + ".lock"), os.O_RDONLY)
     except OSError:
         return False
     try:

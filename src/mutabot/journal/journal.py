@@ -62,7 +62,7 @@ _TAKE = {
     "SELECT * FROM kept": "INSERT OR IGNORE INTO kept VALUES (?, ?, ?, ?, ?)",
 }  # fmt: skip
 #: what SQLite says where it is the disk that cannot take what is written, and not the file that is wrong
-_OF_THE_DISK = ("full", "readonly", "disk I/O", "unable to open")
+_OF_THE_DISK = ("full",)
 
 
 @contextmanager
@@ -306,11 +306,9 @@ class Journal(JournalReader):
         # whether there was nothing in the file: then the first transaction brings the tables into it
         self._is_new = not self._rows("SELECT count(*) FROM sqlite_master")[0][0]
         self._waits = not self._is_new  # for its campaign to begin: until then it is that of the one before
-        self._identity, self._version = (0, 0), -1
+        self._stamps = database.stamps(path)  # what it looks like when nobody else has written
         if self._is_new:
             copy.executescript(database.TABLES)
-        else:
-            self._know_file()
 
     @classmethod
     def create(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
@@ -333,7 +331,6 @@ class Journal(JournalReader):
         """
         refuse_tracked(path)
         with guarded(path), ExitStack() as opened:
-            path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
             opened.callback(lock.release)
             moved = database.set_aside(path)
@@ -568,6 +565,7 @@ class Journal(JournalReader):
             for statement, values in done:
                 self._file.execute(statement, values)
             self._file.execute("COMMIT")
+            self._stamps = database.stamps(self.path)
             return True
         return False
 
@@ -579,58 +577,42 @@ class Journal(JournalReader):
         except sqlite3.Error as error:
             if any(text in str(error) for text in _OF_THE_DISK):
                 raise
-            if "locked" in str(error):
-                self.lost.append("was locked by something else")
-            else:
-                self.altered.append(f"the file cannot be written any more ({error})")
+            self.altered.append(f"the file cannot be written any more ({error})")
 
     def _is_ours(self, whole: bool) -> bool:
         """Whether the file holds what was written; says what does not. ``whole``: every row is looked at."""
-        try:
-            is_there = _identity(self.path) == self._identity
-        except OSError:
-            is_there = False
+        self._lock.renew()
+        now = database.stamps(self.path)
+        is_there, has_log = (
+            one is not None and before is not None and one[:2] == before[:2]
+            for one, before in zip(now, self._stamps, strict=True)
+        )  # fmt: skip
         if not is_there:
             self.lost.append("was deleted or replaced")
             return False
-        version = self._data_version()
         found: list[str] = []
-        if whole or version != self._version:
+        if whole or now != self._stamps:
             try:
                 with closing(database.connect_to_read(self.path)) as file:
                     found = database.differences(file, self._copy)
             except (sqlite3.Error, OSError) as error:
                 found = [f"the file cannot be read any more ({error})"]
         self.altered += found
-        self._version = version
-        return not found
-
-    def _data_version(self) -> int:
-        """Changes when another connection changes something."""
-        return int(self._file.execute("PRAGMA data_version").fetchone()[0])
-
-    def _know_file(self) -> None:
-        self._identity, self._version = _identity(self.path), self._data_version()
+        return has_log and not found
 
     def _restore(self) -> None:
         """Write the file anew, and put it in the place of whatever is there."""
         with suppress(sqlite3.Error):
             self._file.close()
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        database.write_anew(self._copy, self.path)
         self._lock.renew()
+        database.write_anew(self._copy, self.path)
         self._file, self._is_new = database.connect(self.path), False
-        self._know_file()
+        self._stamps = database.stamps(self.path)
 
 
 def _stored(values: tuple[Any, ...]) -> tuple[Any, ...]:
     """Values of a row, with texts that can be stored."""
     return tuple(printable(value) if isinstance(value, str) else value for value in values)
-
-
-def _identity(path: Path) -> tuple[int, int]:
-    found = path.lstat()
-    return found.st_dev, found.st_ino
 
 
 def _dump(value: Any) -> str:

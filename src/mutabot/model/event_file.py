@@ -17,6 +17,7 @@ from typing import Any
 
 from mutabot.model.codec import is_too_deep, sparse, to_json
 from mutabot.model.events import Event, Untrusted, event_from_data
+from mutabot.model.files import open_file
 
 #: bytes of a line; the longest are recordings
 MOST_BYTES = 1 << 27
@@ -81,7 +82,7 @@ class EventReader:
         """The events that are new; ``is_last``: its process is gone, so that what is torn is lost."""
         found: list[Event] = []
         try:
-            file = os.open(self._path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
+            file = open_file(self._path, os.O_RDONLY)
             try:
                 self._read(file, found)
             finally:
@@ -97,10 +98,14 @@ class EventReader:
             data = os.pread(file, min(left, MOST_BYTES), self._offset)
             size = data.rfind(b"\n") + 1
             self.is_torn = size < len(data) < MOST_BYTES
+            if not size and not self.is_torn:
+                self._take(data, found)  # no process writes such a line, nor whatever follows
+                self._offset += left
+                return
             if self.is_torn and not size:
                 return
-            self._offset += size or len(data)
-            for line in data[: size or len(data)].split(b"\n")[: -1 if size else None]:
+            self._offset += size
+            for line in data[:size].split(b"\n")[:-1]:
                 self._take(line, found)
         if left < 0:
             self._doubt(f"{self._name} is shorter than it was", found)

@@ -14,6 +14,7 @@ from time import monotonic, sleep  # tests may replace those of the module
 from mutabot.frozen import frozen
 from mutabot.model import events
 from mutabot.model.event_file import ANYBODY, FOLDER, NOW, OWN_FAULT, SUFFIX, EventReader
+from mutabot.model.files import read_file
 from mutabot.model.job import Job
 from mutabot.model.outcome import added
 
@@ -173,10 +174,11 @@ class Children:
 
     def _is_unwritten(self) -> bool:
         try:
-            with open(os.path.join(self._folder, NOW), "rb") as file:
-                return any(file.read(16)[8:])
-        except OSError:  # there is none before the first test
+            return any(read_file(os.path.join(self._folder, NOW), 16)[8:])
+        except FileNotFoundError:  # there is none before the first test
             return False
+        except OSError:
+            return True
 
     def _note(self, why: str) -> None:
         self.doubt = self.doubt or f"what processes below the tests reported was damaged: {why}"

@@ -17,6 +17,7 @@ from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.deadline import Limit
 from mutabot.model.event_file import FOLDER
+from mutabot.model.files import open_file, read_file
 from mutabot.model.mutant import Choice, Instrumentation, Mutant, Span
 from mutabot.model.operation import Vocabulary
 
@@ -196,14 +197,13 @@ def job_file(home: str | os.PathLike[str]) -> str:
 
 def write_job(home: str | os.PathLike[str], job: Job) -> None:
     """Write a worker's job into its folder."""
-    with open(job_file(home), "wb") as file:
+    with os.fdopen(open_file(job_file(home), os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644), "wb") as file:
         file.write(dumps(job))
 
 
 def read_job(home: str | os.PathLike[str]) -> Job:
     """The job of the worker with this folder."""
-    with open(job_file(home), "rb") as file:
-        job: Job = loads(file.read())
+    job: Job = loads(read_file(job_file(home)))
     return job
 
 

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, UNWRITTEN, sealed
 from mutabot.model.events import Event, ForkEnded, Serving, TestEnd, TestStart
+from mutabot.model.files import open_file
 
 #: what the controller is to hear of at once; it finds all else when it looks
 _PROMPT = (TestStart, TestEnd, ForkEnded, Serving)
@@ -116,7 +117,7 @@ class EventFile:
     def _open(self) -> None:
         path = os.path.join(self._folder, self.name + SUFFIX)
         try:
-            self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o600)
+            self._file = open_file(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
             self._status = os.fstat(self._file)
         except OSError:
             self._fail()

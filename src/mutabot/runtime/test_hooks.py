@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from mutabot.model import By, Mutant
+from mutabot.model.event_file import UNWRITTEN
 from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
 from mutabot.model.process_time import TimeUsed, ran_below
@@ -90,7 +91,10 @@ class ForkedRun:
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """The program is about to start its first process, which is to be the mutant as well."""
         if self._tests.members is None and os.getpid() == self._pid:
-            self._tests.members = self._own_processes()
+            try:
+                self._tests.members = self._own_processes()
+            except OSError:  # nobody could know anything of them
+                os._exit(UNWRITTEN)
 
     def _own_processes(self) -> Members:
         session, job = self._session, self._session.job

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import stat
 import subprocess
 import sys
 import threading
@@ -14,7 +15,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Verdict
-from mutabot.model.event_file import FOLDER, SUFFIX, sealed
+from mutabot.model.event_file import FOLDER, NOW, SUFFIX, sealed
 from mutabot.model.events import Began, Event, Found, SessionEnd
 from mutabot.model.fold import Children
 from mutabot.runtime.event_file import EventFile
@@ -78,6 +79,50 @@ def test_damage_is_noticed(tmp_path: Path, damage: Callable[[Path], object]) -> 
     damage(folder)
     children.read()
     assert "was damaged" in (children.doubt or "")
+
+
+#: whatever can be in the place of a file
+OTHERS: dict[str, Callable[[Path], object]] = {
+    "a pipe": os.mkfifo,
+    "a folder": Path.mkdir,
+    "a link": lambda path: path.symlink_to("/dev/zero"),
+    "a socket": lambda path: os.mknod(path, 0o600 | stat.S_IFSOCK),
+    "something huge": lambda path: (path.touch(), os.truncate(path, 1 << 40)),
+}
+
+
+@pytest.mark.parametrize("other", OTHERS.values(), ids=OTHERS)
+def test_whatever_is_in_the_place_of_a_file_nobody_waits_for_it(
+    tmp_path: Path, other: Callable[[Path], object]
+) -> None:
+    folder = folder_of(tmp_path)
+    Now(str(folder), is_host=True)
+    children = Children(str(tmp_path), KEY)
+    append(folder, line_of(BEGAN, 1))
+    assert children.read() == [BEGAN]
+    for name in (NOW, f"{NAME}{SUFFIX}"):
+        (folder / name).unlink()
+        other(folder / name)
+    children.read()
+    assert "was damaged" in (children.doubt or "")
+    if other is not OTHERS["something huge"]:
+        with pytest.raises(OSError, match=r"\w"):
+            Now(str(folder), is_host=True)
+        with pytest.raises(RuntimeError, match="cannot write"):
+            EventFile(str(folder), NAME, KEY, fail=cannot_write)
+
+
+def cannot_write() -> None:
+    raise RuntimeError("cannot write")
+
+
+def test_nobody_writes_into_a_file_that_has_another_name(tmp_path: Path) -> None:
+    folder, precious = folder_of(tmp_path), tmp_path / "precious"
+    precious.write_text("precious")
+    (folder / NOW).hardlink_to(precious)
+    with pytest.raises(OSError, match="something else is in the place of this file"):
+        Now(str(folder), is_host=True)
+    assert precious.read_text() == "precious"
 
 
 def test_an_event_that_is_being_written_is_no_damage(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from mutabot import shared_memory
 from mutabot.frozen import compile_all
 from mutabot.model.events import ForkEnded, Serving
+from mutabot.model.files import open_file
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation.files import isolate_files, may_be_private
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
@@ -126,7 +127,7 @@ class ForkServer:
     def _begin(self, home: str) -> str:
         """In the copy: what is printed goes into its own folder, which is this one."""
         old = os.stat(os.path.join(self.home, self.log))
-        log = os.open(os.path.join(home, self.log), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        log = open_file(os.path.join(home, self.log), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
         isolate_files(old, log)
         os.close(log)
         return home

@@ -22,6 +22,7 @@ from itertools import takewhile
 from typing import Any
 
 from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
+from mutabot.model.files import open_file, read_file
 
 #: told an event's name and its arguments
 Hear = Callable[[str, tuple[Any, ...]], None]
@@ -142,8 +143,13 @@ def write_wake(folder: str, join: str, key: str, names: Iterable[str], files: It
         *(f"name {name}" for name in sorted(set(names))),
         *(f"file {file}" for file in files),
     ]
-    with open(os.path.join(folder, WAKE), "w", encoding="utf-8", errors="surrogateescape") as file:
-        file.write("".join(f"{line}\n" for line in lines))
+    text = "".join(f"{line}\n" for line in lines)
+    _write(os.path.join(folder, WAKE), text.encode("utf-8", "surrogateescape"), os.O_TRUNC)
+
+
+def _write(path: str, data: bytes, flags: int) -> None:
+    with os.fdopen(open_file(path, os.O_WRONLY | os.O_CREAT | flags, 0o644), "wb") as file:
+        file.write(data)
 
 
 def _folders_of(names: Iterable[str]) -> list[str]:
@@ -173,9 +179,8 @@ class Now:
         self._names = [""]
         name = os.path.join(folder, NOW)
         if is_host:
-            with open(name, "wb") as file:
-                file.write(bytes(mmap.PAGESIZE))
-        descriptor = os.open(name, os.O_RDWR | os.O_CLOEXEC)
+            _write(name, bytes(mmap.PAGESIZE), os.O_TRUNC)
+        descriptor = open_file(name, os.O_RDWR)
         try:
             self._memory = mmap.mmap(descriptor, mmap.PAGESIZE)
         finally:
@@ -193,16 +198,15 @@ class Now:
 
     def begin(self, test: str) -> int:
         """In the test process: a test begins. Returns its number."""
-        with open(os.path.join(self._folder, TESTS), "a", encoding="utf-8") as file:
-            file.write(json.dumps(test) + "\n")
+        _write(os.path.join(self._folder, TESTS), json.dumps(test).encode() + b"\n", os.O_APPEND)
         _NUMBER.pack_into(self._memory, 0, self.number + 1)
         return self.number
 
     def name_of(self, number: int) -> str:
         """The node id of a test."""
         if number >= len(self._names):
-            with open(os.path.join(self._folder, TESTS), encoding="utf-8") as file:
-                self._names = ["", *(json.loads(line) for line in file)]
+            lines = read_file(os.path.join(self._folder, TESTS)).splitlines()
+            self._names = ["", *map(json.loads, lines)]
         return self._names[number]
 
 

@@ -106,7 +106,10 @@ def enter(command: "str | None" = None) -> None:
     if not folder or any(isinstance(finder, _Finder) for finder in sys.meta_path):
         return
     try:
-        with open(os.path.join(folder, "wake"), encoding="utf-8", errors="surrogateescape") as file:
+        wake = os.path.join(folder, "wake")
+        if not os.path.isfile(wake):  # whatever somebody has put there, nobody waits for it
+            return
+        with open(wake, encoding="utf-8", errors="surrogateescape") as file:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return

@@ -1,0 +1,67 @@
+"""Open files in folders that programs under test can reach, and that may hold anything by now.
+
+A pipe in the place of a file would make whoever opens it wait for ever, a link would lead elsewhere.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import suppress
+
+_SAFELY = os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC
+_WRITING = os.O_WRONLY | os.O_RDWR
+
+
+def open_file(path: str | os.PathLike[str], flags: int, mode: int = 0o600) -> int:
+    """Open a file; never wait, and follow no link. One to write to has no other name and no other owner.
+
+    Raises OSError for anything else.
+    """
+    descriptor = os.open(path, (flags & ~os.O_TRUNC) | _SAFELY, mode)
+    if not _is_file(os.fstat(descriptor), flags):
+        os.close(descriptor)
+        raise OSError(errno.EINVAL, "something else is in the place of this file", os.fspath(path))
+    if flags & os.O_TRUNC:
+        os.ftruncate(descriptor, 0)
+    return descriptor
+
+
+def _is_file(status: os.stat_result, flags: int) -> bool:
+    is_ours = os.geteuid() in (0, status.st_uid) and status.st_nlink <= 1
+    return stat.S_ISREG(status.st_mode) and (is_ours or not flags & _WRITING)
+
+
+def read_file(path: str | os.PathLike[str], most: int = -1) -> bytes:
+    """What is in a file, or its first bytes. Raises OSError likewise."""
+    with os.fdopen(open_file(path, os.O_RDONLY), "rb") as file:
+        return file.read(most)
+
+
+def copy_file(path: str | os.PathLike[str], target: str | os.PathLike[str]) -> None:
+    """Copy a file, but not its holes, which may be larger than any disk. Raises OSError likewise."""
+    source = open_file(path, os.O_RDONLY)
+    try:
+        copy = os.open(target, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
+        try:
+            os.ftruncate(copy, os.fstat(source).st_size)
+            for start, end in _parts(source):
+                at = os.lseek(copy, start, os.SEEK_SET)
+                while at < end and (done := os.sendfile(copy, source, at, end - at)):
+                    at += done
+        finally:
+            os.close(copy)
+    finally:
+        os.close(source)
+
+
+def _parts(descriptor: int) -> Iterator[tuple[int, int]]:
+    """The parts of a file that hold anything."""
+    end = 0
+    with suppress(OSError):  # there is nothing beyond
+        while True:
+            start = os.lseek(descriptor, end, os.SEEK_DATA)
+            end = os.lseek(descriptor, start, os.SEEK_HOLE)
+            yield start, end
