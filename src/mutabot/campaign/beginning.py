@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.campaign import Campaign, on_this_machine
 from mutabot.campaign.engines.engine import Unhandled, try_controls
+from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan import Plan, draw, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
@@ -22,8 +22,11 @@ from mutabot.errors import NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.extensions import brought
+from mutabot.families import CALLS, MESSAGES
 from mutabot.journal.files import at_work, refuse_tracked
 from mutabot.model.codec import to_data
+from mutabot.model.events import Remark
+from mutabot.model.outcome import by_heading
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
@@ -106,6 +109,10 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
     Raises NothingToDoError if none is left, saying why.
     """
     request = campaign.request
+    ignored = tuple(_ignored(request, plan))
+    campaign.baseline.add_remarks(ignored)
+    for remark in ignored:
+        campaign.progress.note(str(remark))
     if not plan.mutants:
         raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
     mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
@@ -117,13 +124,33 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
     return Plan(drawn, plan.left_out, how)
 
 
+def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
+    """What the configuration asks for and no provider of faults heeds."""
+    configuration, mutants = request.configuration, plan.mutants
+    others = sorted({one.family for one in mutants if one.provider not in (CALLS, MESSAGES)})
+    if request.moments != (None,) and others:
+        text = f"mutants of {' and '.join(others)} act wherever they are reached: moments are those of calls"
+        yield Remark(configuration.file or "configuration", "when", text)
+    firsts = [ladder[0] for ladder in split_ladders(mutants)[1].values()]
+    kinds = {one.id: request.vocabulary.quantity(one.operation, one.pattern, one.quantity) for one in firsts}
+    for demand in configuration.demands:
+        known = ((one, kinds[one.id]) for one in firsts)
+        if not any(demand.is_about(one, of.kind if of is not None else None) for one, of in known):
+            text = (
+                f"no mutant of {demand.operator} is what it speaks of, so it demands nothing; "
+                "`mutabot list --family graded` names the sites and quantities that there are"
+            )
+            yield Remark(demand.source or "configuration", "demand", text)
+
+
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
-    reasons = Counter(one.reason for one in baseline.faults.left_out_beforehand)
+    reasons = by_heading(plan.left_out)
     if reasons:
-        reason, count = reasons.most_common(1)[0]
-        return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
+        told = "; ".join(f"{len(those)} {heading}" for heading, those in reasons.items())
+        return f"no mutants: all {len(plan.left_out)} are left out: {told}"
     if baseline.hits:
-        return f"no mutants: all {len(plan.left_out)} would change nothing"
+        families = ", ".join(request.families)
+        return f"no mutants: no operator of the families asked for ({families}) acts on what is called"
     files = ", ".join((*request.configuration.program, *request.configuration.oracle))
     lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
     lines += [str(remark) for remark in baseline.remarks[:_REMARKS]]
@@ -175,7 +202,7 @@ def _report(
     tests = sorted({test for round in range(request.rounds) for test in baseline.ran(round)})
     skipped = f", {baseline.skipped} skipped" if baseline.skipped else ""
     selected = f" selected of {len(plan.mutants)}" if len(mutants) != len(plan.mutants) else ""
-    why = "cannot matter" if baseline.faults.left_out_beforehand else "would change nothing"
+    reasons = by_heading(plan.left_out)
     reached = {place.operation for place in baseline.hits}
     unused = [one.target for one in request.vocabulary.operations if one.target not in reached]
     flaky, nondeterministic = baseline.unstable, sorted(baseline.nondeterministic)
@@ -187,7 +214,8 @@ def _report(
         f"tests     {passing} in {rounds}{skipped}",
         f"sites     {len({place.site for place in baseline.hits})} reached",
         f"controls  {controls} passed",
-        f"mutants   {len(mutants)}{selected}, {left_out} left out because they {why}",
+        f"mutants   {len(mutants)}{selected}",
+        *(f"left out  {len(those)}: {heading}" for heading, those in reasons.items()),
         *(f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in flaky.items()),
         *(
             f"nondeterministic  {test} in round {round + 1}: equal runs differ in values"
@@ -206,6 +234,7 @@ def _report(
         "mutants": len(mutants),
         "planned": len(plan.mutants),
         "left_out": left_out,
+        "left_out_because": {heading: len(those) for heading, those in reasons.items()},
         "controls": controls,
         "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in flaky.items()],
         "nondeterministic": [{"round": r, "test": t} for r, t in nondeterministic],

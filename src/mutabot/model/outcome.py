@@ -308,6 +308,23 @@ class LeftOut:
     description: str
     reason: str
 
+    @property
+    def heading(self) -> str:
+        """What it is listed under: all that would change nothing together, else the reason."""
+        return NOTHING if self.reason.startswith(NOTHING) else self.reason
+
+
+#: how the reason begins why a mutant is left out that would change nothing in the calls of the baseline
+NOTHING = "would change nothing"
+
+
+def by_heading(left_out: Iterable[LeftOut]) -> dict[str, list[LeftOut]]:
+    """What is left out by why: first what would change nothing, then by how many there are."""
+    found: dict[str, list[LeftOut]] = {}
+    for one in left_out:
+        found.setdefault(one.heading, []).append(one)
+    return dict(sorted(found.items(), key=lambda item: (item[0] != NOTHING, -len(item[1]))))
+
 
 #: parts of a message that differ between equal runs in different processes: addresses, temporary folders,
 #: and the last words of a process that died, which only a process of its own can have

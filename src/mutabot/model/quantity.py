@@ -253,6 +253,11 @@ class Quantity:
         return self.kind in WHOLE
 
     @property
+    def is_numeric(self) -> bool:
+        """Whether its values are numbers of which operators make others, one or several."""
+        return self.values is None and self.kind in DIMENSIONS and not self.is_whole
+
+    @property
     def full_turn(self) -> float | None:
         """A full turn in its unit, where that makes no difference; None for all else, joints included."""
         is_joint = self.axis is not None and self.axis.startswith("j")
@@ -322,6 +327,19 @@ def is_reading_of(reading: Quantity, written: Quantity) -> bool:
 def is_number(value: Any) -> bool:
     """Whether a value is a number; a truth value is none."""
     return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def holds_number(value: Any) -> bool:
+    """Whether a recorded value is a number, or holds one; of strange kinds of numbers texts are recorded."""
+    if isinstance(value, list | tuple):
+        return any(map(holds_number, value))
+    if isinstance(value, str):
+        try:
+            float(value)
+        except ValueError:
+            return False
+        return True
+    return is_number(value)
 
 
 def value_text(value: Any, digits: int = 4) -> str:

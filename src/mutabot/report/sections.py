@@ -10,7 +10,7 @@ from mutabot.errors import in_short
 from mutabot.frozen import frozen
 from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated
 from mutabot.model import LeftOut, Mutant, Span, Verdict
-from mutabot.model.outcome import first_line
+from mutabot.model.outcome import NOTHING, by_heading, first_line
 from mutabot.results.divergence import numbers_text
 from mutabot.results.results import MutantResult, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
@@ -61,8 +61,7 @@ def sections(results: Results, place: Place) -> Iterator[Section]:
     if found := unlooked(results.mutants):
         yield Section("Readings that no test checks", lines=found)
     yield from _outside(results, place)
-    if results.left_out:
-        yield skipped(results.left_out)
+    yield from skipped(results.left_out)
     yield from _thresholds(results, place)
     yield from _reliability(results)
 
@@ -188,11 +187,16 @@ def _outside(results: Results, place: Place) -> Iterator[Section]:
         yield Section(f"{plural(waiting, 'mutant')} not run yet")
 
 
-def skipped(left_out: Sequence[LeftOut]) -> Section:
-    """What the plan leaves out, by reason."""
-    reasons = Counter(item.reason for item in left_out).most_common()
-    title = f"{plural(len(left_out), 'mutant')} skipped because they would not change anything"
-    return Section(title, lines=[f"{count} × {reason}" for reason, count in reasons], is_detail=True)
+def skipped(left_out: Sequence[LeftOut]) -> Iterator[Section]:
+    """What the plan leaves out, a section for each reason."""
+    for heading, those in by_heading(left_out).items():
+        if heading == NOTHING:
+            reasons = Counter(item.reason for item in those).most_common()
+            title = f"{plural(len(those), 'mutant')} left out that {heading}"
+            lines = [f"{count} × {reason}" for reason, count in reasons]
+        else:
+            title, lines = f"{plural(len(those), 'mutant')} left out: {heading}", []
+        yield Section(title, lines=lines, is_detail=True)
 
 
 def _thresholds(results: Results, place: Place) -> Iterator[Section]:

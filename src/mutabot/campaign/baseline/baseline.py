@@ -363,6 +363,10 @@ class Baseline(Original):
         """What tests took, by the clock on the wall."""
         return sum(self.ends[round, test].wall for test in tests)
 
+    def add_remarks(self, remarks: Iterable[Remark]) -> None:
+        """More is to be known about the vocabulary and the configuration."""
+        self.remarks = (*self.remarks, *remarks)
+
     def doubt(self, test: str) -> None:
         """A test failed once where equal runs pass: its kills may be chance."""
         self.doubted.add(test)

@@ -5,6 +5,7 @@ Without readings of probes comparisons would say nothing.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,8 @@ from mutabot.campaign.comparison import parts_of, readings_of
 from mutabot.config.mistakes import problem_error
 from mutabot.extensions import brought
 from mutabot.model.events import Problem, Remark, TestEnd
-from mutabot.model.quantity import is_number, value_text
+from mutabot.model.quantity import holds_number, is_number, value_text
+from mutabot.operators.kinds.readings import DEFAULT_DEVIATION
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
@@ -28,6 +30,9 @@ _NEEDED = {
     "euler": "three angles",
     "quaternion": "four numbers, not all zero",
 }
+_NOISY = "positions, distances, angles and orientations"
+#: where an object lies, which differs between equal runs
+_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 #: why a probe says nothing that was read without an error
 _NOTHING = "it reads nothing (None); a probe returns what it reads"
 
@@ -71,8 +76,12 @@ def note_fit(baseline: Baseline, vocabulary: Vocabulary, progress: Progress) -> 
         progress.note(
             f"the clock {vocabulary.clock.tick} never ticks in a test: there is no limit of simulated time"
         )
-    remarks = tuple(_out_of_range(baseline, vocabulary))
-    baseline.remarks = (*baseline.remarks, *remarks)
+    remarks = (
+        *_out_of_range(baseline, vocabulary),
+        *_no_numbers(baseline, vocabulary),
+        *_no_noise(baseline, vocabulary),
+    )
+    baseline.add_remarks(remarks)
     for remark in remarks:
         progress.note(str(remark))
 
@@ -142,6 +151,31 @@ def _out_of_range(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark
                 f"{quantity.text(examples[0])}, and mutants stay away from what is outside; "
                 f"give it {remedy if side == 'arguments' else 'a wider range'}",
             )
+
+
+def _no_numbers(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
+    """Quantities that name an object where a number is meant."""
+    for owner, side, quantity, values in _recorded(baseline, vocabulary):
+        seen = [value for value in values if value is not None]
+        if quantity.is_numeric and seen and not any(map(holds_number, seen)):
+            path = f'{side}."{quantity.name}.{quantity.axis or "x"}"'
+            text = (
+                f"its value is no number, such as {_ADDRESS.sub('', value_text(seen[0]))}, so that no "
+                f"{quantity.kind} is mutated; name a number in it by its path, such as {path}"
+            )
+            yield Remark(owner.source, f"{side}.{quantity.name}", text)
+
+
+def _no_noise(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
+    """Noise that is given to what no operator adds it to."""
+    for operation in vocabulary.operations:
+        for pattern in (None, *operation.patterns):
+            owner = pattern or operation
+            for quantity in owner.result:
+                if quantity.noise is not None and quantity.kind not in DEFAULT_DEVIATION:
+                    text = f"noise is added to {_NOISY}, and to no {quantity.kind}: leave it out"
+                    key = "result" if quantity.name == "result" else f"result.{quantity.name}"
+                    yield Remark(owner.source, f"{key}.noise", text)
 
 
 def _recorded(

@@ -20,7 +20,7 @@ from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_
 from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project, brought_providers
 from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
 from mutabot.model.mutant import Place, When
-from mutabot.model.quantity import is_number, is_reading_of
+from mutabot.model.quantity import holds_number, is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all, operator
 from mutabot.operators.operator import Rule, with_operation
 from mutabot.operators.passage import CallRecord, rehearse
@@ -356,6 +356,8 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
     if value is None:
         verb, what = ("passes", "argument") if subject.is_written else ("returns", "value")
         return f"none of the {hits} calls {verb} this {what}"
+    if quantity.is_numeric and not holds_number(value):
+        return f"{quantity.name} of {subject.operation.name} is no number: name a number in it by its path"
     within = " within the values that the vocabulary allows" if quantity.range or quantity.values else ""
     return f"would change nothing in {calls}{within} (value {quantity.text(value)})"
 

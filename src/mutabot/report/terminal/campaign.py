@@ -126,8 +126,8 @@ def print_plan(
     ]
     columns = (">no.", "role", "place", "operator", "*fault")
     print_section(console, Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows))
-    if left_out:
-        print_section(console, skipped(left_out))
+    for section in skipped(left_out):
+        print_section(console, section)
     for item in left_out if everything else ():
         console.print(below(f"{item.id}  {item.description}: {item.reason}"))
 

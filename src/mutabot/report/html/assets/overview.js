@@ -161,9 +161,10 @@
       section.append(h("ul", { class: "plain" }, found.map(([name, many]) => h("li", null,
         h("a", { href: address(["mutants"], { status: name }) }, marks.status(name)), ` ${count(many, "mutant")}: ${marks.MEANING[name]}`))));
     } else section.append(h("p", { class: "hint" }, "Every planned mutant was run and is counted."));
-    const reasons = Map.groupBy(campaign.left_out, (one) => one.reason);
-    if (reasons.size) {
-      section.append(h("h3", null, `Skipped because they would not change anything: ${campaign.left_out.length}`), ...[...reasons].map(([reason, items]) => h("details", null,
+    const nothing = "would change nothing";
+    const headings = Map.groupBy(campaign.left_out, (one) => one.reason.startsWith(nothing) ? `Left out that ${nothing}` : `Left out: ${one.reason}`);
+    for (const [heading, those] of [...headings].sort(([one], [other]) => other.startsWith("Left out that") - one.startsWith("Left out that"))) {
+      section.append(h("h3", null, `${heading} (${those.length})`), ...[...Map.groupBy(those, (one) => one.reason)].map(([reason, items]) => h("details", null,
         h("summary", null, `${items.length} × ${reason}`), h("ul", { class: "plain small" }, items.slice(0, 50).map((one) => h("li", null, one.description, " ", h("code", null, one.id))),
           items.length > 50 ? h("li", null, `and ${items.length - 50} more, which \`mutabot list --all\` prints`) : null))));
     }

@@ -1,0 +1,108 @@
+"""Each reason why mutants are left out has its own heading, and what nobody heeds is told with its place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mutabot.campaign.beginning import check, plan_only
+from mutabot.errors import NothingToDoError
+from mutabot.model import LeftOut, Moment
+from mutabot.model.outcome import by_heading
+from mutabot.model.quantity import holds_number
+from mutabot.report.sections import skipped
+from tests.campaign.project import Quiet, request_for, write_project
+
+STILL = "would change nothing in the call (value 0 m)"
+LEFT_OUT = [
+    LeftOut("a", "", "no call raises in the baseline"),
+    LeftOut("b", "", STILL),
+    LeftOut("c", "", "no call raises in the baseline"),
+    LeftOut("d", "", "would change nothing in any of 2 calls"),
+]
+
+
+def test_only_what_would_change_nothing_stands_under_that() -> None:
+    found = by_heading(LEFT_OUT)
+    assert {heading: [one.id for one in those] for heading, those in found.items()} == {
+        "would change nothing": ["b", "d"], "no call raises in the baseline": ["a", "c"],
+    }  # fmt: skip
+    first, second = skipped(LEFT_OUT)
+    assert first.title == "2 mutants left out that would change nothing"
+    assert f"1 × {STILL}" in first.lines
+    assert (second.title, list(second.lines)) == ("2 mutants left out: no call raises in the baseline", [])
+
+
+@pytest.mark.parametrize(
+    ("value", "is_one"),
+    [(1, True), (0.5, True), ([None, 2.0], True), ("1.5", True), ("<base.Vector3 object>", False),
+     ("", False), (True, False), ({"opaque": "base:Vector3"}, False), ([], False)],
+)  # fmt: skip
+def test_what_holds_a_number(value: object, is_one: bool) -> None:
+    assert holds_number(value) is is_one
+
+
+MISSION = """
+    class Speed:
+        def __init__(self, y): self.y = y
+
+    def run(base):
+        base.drive(Speed(-0.1))
+        return base.force()
+    """
+ROBOT = """
+    class Base:
+        def drive(self, speed): self.y = speed.y
+        def force(self): return 3200.0
+    """
+TESTS = """
+    import mission
+    from robot import Base
+
+    def test_run():
+        assert mission.run(Base()) > 0
+    """
+DRIVE = """
+    [[operation]]
+    call = "robot:Base.drive"
+    arguments.speed = { kind = "speed", unit = "m/s", axis = "y" }
+    """
+FORCE = """
+    [[operation]]
+    call = "robot:Base.force"
+    result = { kind = "force", unit = "N", noise = 10 }
+    """
+
+
+def project(folder: Path, vocabulary: str) -> Path:
+    return write_project(folder, MISSION, TESTS, robot=ROBOT, vocabulary=vocabulary)
+
+
+def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(tmp_path: Path) -> None:
+    report = check(request_for(project(tmp_path, DRIVE), engine="fork", rounds=1), Quiet())
+    (note,) = (line for line in report.lines if line.startswith("note "))
+    assert "arguments.speed: its value is no number, such as <mission.Speed object>" in note
+    assert 'name a number in it by its path, such as arguments."speed.y"' in note
+    reason = "speed of Base.drive is no number: name a number in it by its path"
+    assert report.data["left_out_because"] == {reason: 1}
+    assert f"left out  1: {reason}" in report.lines
+
+
+def test_noise_on_what_no_operator_adds_it_to_is_told(tmp_path: Path) -> None:
+    told = Quiet()
+    request = request_for(project(tmp_path, FORCE), engine="fork", rounds=1)
+    with pytest.raises(NothingToDoError, match=r"no operator of the families asked for \(robot\)"):
+        plan_only(request, told)
+    assert any("result.noise: noise is added to positions" in line for line in told.lines)
+
+
+@pytest.mark.whole
+def test_a_moment_or_demand_that_nobody_heeds_is_told(tmp_path: Path) -> None:
+    folder = project(tmp_path, DRIVE)
+    file = folder / "mutabot.toml"
+    file.write_text(file.read_text() + '[[demand]]\nquantity = "speed"\nnotice = "1 mm"\n')
+    asked = request_for(folder, families=("robot", "conventional"), moments=(Moment.parse_any("once"),))
+    notes = [line for line in check(asked, Quiet()).lines if line.startswith("note ")]
+    assert any("when: mutants of conventional act wherever they are reached" in line for line in notes), notes
+    assert any("demand: no mutant of offset is what it speaks of" in line for line in notes), notes
