@@ -19,9 +19,9 @@ from typing import Any
 
 from mutabot.model import Instrumentation, ProgramText
 from mutabot.model.mutant import RUNTIME
-from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text import compiling
+from mutabot.runtime.program_text.compiling import compile_tree
 from mutabot.runtime.program_text.instrument import SessionText, instrumented
-from mutabot.runtime.program_text.loading import compile_tree
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
 
@@ -111,7 +111,7 @@ def _evaluations(folder: Path, text: ProgramText, size: int) -> int:
     try:
         _loaded(folder / text.file).run(size)
     finally:
-        loading._steps.remove(hook)
+        compiling.steps.remove(hook)
     return counter.count
 
 
@@ -121,7 +121,7 @@ def _hooked(folder: Path, text: ProgramText, *, record: bool = False) -> Callabl
     try:
         run: Callable[[int], Any] = _loaded(folder / text.file).run
     finally:
-        loading._steps.remove(hook)
+        compiling.steps.remove(hook)
     setattr(builtins, RUNTIME, (hook.sightings or hook.alternatives).switches)
     if hook.sightings is not None:
         hook.sightings.start()

@@ -41,6 +41,9 @@ counts as having acted when it is reached.
 - What is another operator's (a literal's sign is UOI's, not ABS's) or changes nothing.
 - Plain assignments for ASR: the name may have no value yet.
 - Text arguments that do not stand in the call, or are formatted, for the operators on characters.
+- Files whose code comes neither from the import system, an import hook, `runpy` nor
+  `exec(compile(text, path))`, or is compiled from another text than the file holds. They are listed with the
+  reason; calls of the robot are still seen.
 
 ## The operators
 """

@@ -23,7 +23,7 @@ from mutabot.model.events import Event, SiteSeen
 from mutabot.model.job import Job
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text import compiling
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import NotFoundError, resolve
 
@@ -151,8 +151,8 @@ def _site(span: Span) -> Site:
 
 def forget(step: Any) -> None:
     """Compile files without a step from now on."""
-    if step in loading._steps:
-        loading._steps.remove(step)
+    if step in compiling.steps:
+        compiling.steps.remove(step)
 
 
 def take_away(session: Session) -> None:

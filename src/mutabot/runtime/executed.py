@@ -20,6 +20,7 @@ from mutabot.model.source_units import ALL_FILES, MODULE, WHOLE, Executed, funct
 from mutabot.runtime import real_folder
 from mutabot.runtime.processes.environment import FRAMES, listen
 from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.compiling import SourceStep
 
 #: the built-in name of the bytes, one for each function
 RAN = "__mutabot_ran__"
@@ -31,7 +32,7 @@ _FOREIGN = {"uname", "git", "ldconfig", "lsb_release", "nvidia-smi"}
 _PLACES = tuple[str, int]
 
 
-class ExecutedUnits(loading.SourceStep):
+class ExecutedUnits(SourceStep):
     """The record of this process and of its forks. Of a file that is compiled without marks, all counts.
 
     Args:
@@ -89,6 +90,10 @@ class ExecutedUnits(loading.SourceStep):
             self._places.append((name, node.lineno))
             self._ran.append(0)
             _mark(node, number)  # what is defined in it may be sent to processes that know no marks
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A file is compiled without marks: all of it counts once it is executed."""
+        self._loaded.discard(self._name(path) or "")
 
     def start_test(self) -> None:
         """A test begins, before its fixtures."""

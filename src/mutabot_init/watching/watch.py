@@ -25,7 +25,6 @@ from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.path import class_name
 from mutabot.runtime.interception.adapter import is_mock
 from mutabot.runtime.interception.trace import Locator, border
-from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
 from mutabot.runtime.targets.target import NOWHERE, Handler, Messages, Where
 from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
@@ -190,7 +189,6 @@ class Watch:
         """Watch what is imported from now on."""
         self._names = NamesSeen(self._locator, self._leads)
         self.sites.install()
-        loading.hook_runpy()
 
     def called(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """Return what is called in the place of ``found``, which was read from ``receiver``."""

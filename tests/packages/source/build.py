@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
-from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text import compiling
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.switches import hand_through
 from mutabot_source.nodes import same_program
@@ -71,7 +71,7 @@ def imported(
 
 def switch_off(hook: SessionText) -> None:
     """Import as ever from now on; text that is instrumented goes on as the original."""
-    loading._steps.remove(hook)
+    compiling.steps.remove(hook)
     hook.alternatives.activate()
     if hook.sightings is not None:
         hook.sightings.switches[1:] = [hand_through] * (len(hook.sightings.switches) - 1)

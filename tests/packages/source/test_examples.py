@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.runtime.program_text.compiling import compile_tree
 from mutabot.runtime.program_text.instrument import instrumented
-from mutabot.runtime.program_text.loading import compile_tree
 from mutabot_source.operator import TextExample
 from mutabot_source.registry import names, operator
 from tests.packages.source.build import choices, refined, spliced, text_of

@@ -20,8 +20,8 @@ from mutabot.model import Instrumentation
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.mutant import RUNTIME
 from mutabot.runtime.program_text import instrument
+from mutabot.runtime.program_text.compiling import compile_tree
 from mutabot.runtime.program_text.instrument import SessionText, instrumented
-from mutabot.runtime.program_text.loading import compile_tree
 from mutabot.runtime.program_text.switches import Alternatives, error_of
 from mutabot_source.refine import merge, refine
 from mutabot_source.texts import find_texts
@@ -255,6 +255,34 @@ def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
     finally:
         switch_off(hook)
     assert hook.problems == {text.file: "it has changed since its mutants were made"}
+
+
+def test_another_text_under_the_name_of_a_file_is_left_alone_and_told(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "x = 1 + 1\n")
+    hook = SessionText(str(tmp_path), Instrumentation((text,)))
+    hook.install()
+    space: dict[str, Any] = {}
+    try:
+        exec(compile("x = 1 + 2\n", tmp_path / text.file, "exec"), space)
+    finally:
+        switch_off(hook)
+    assert space["x"] == 3
+    assert hook.problems == {text.file: "what is compiled under its name is another text than it holds"}
+
+
+def test_a_file_whose_code_comes_out_of_sight_is_told(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "x = 1 + 1\n")
+    hook = SessionText(str(tmp_path), Instrumentation((text,), record=True))
+    hook.install()
+    module = types.ModuleType("of_a_cache")
+    module.__file__, module.__loader__ = str(tmp_path / text.file), ast.NodeVisitor()  # type: ignore[assignment]
+    sys.modules["of_a_cache"] = module
+    try:
+        hook.finish()
+    finally:
+        del sys.modules["of_a_cache"]
+        switch_off(hook)
+    assert hook.problems == {text.file: "its loader makes its code out of sight (ast.NodeVisitor)"}
 
 
 def test_the_plan_crosses_the_border_as_json(tmp_path: Path) -> None:

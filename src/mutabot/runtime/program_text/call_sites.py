@@ -30,6 +30,7 @@ from mutabot.languages.python import extent_of
 from mutabot.model import Role
 from mutabot.model.mutant import Extent
 from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.compiling import SourceStep
 from mutabot.runtime.program_text.instrument import declare_global, is_ours
 from mutabot.runtime.program_text.returns import Function, is_translated
 from mutabot.runtime.targets.target import Place
@@ -124,7 +125,7 @@ _ASK: Guards = (({}, "", NOTHING),)
 
 
 @dataclass(slots=True, eq=False)
-class CallSites(loading.SourceStep):
+class CallSites(SourceStep):
     """Puts the questions into files, and answers them.
 
     Of a file that is compiled without, calls are seen by what they call.

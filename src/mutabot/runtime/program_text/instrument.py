@@ -29,6 +29,7 @@ from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.program_text import loading
+from mutabot.runtime.program_text.compiling import text_of
 from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
@@ -281,11 +282,15 @@ class _ChangedError(MismatchError):
     """A file is no longer what the plan was made for."""
 
 
+_CHANGED = "it has changed since its mutants were made"
+_OTHER = "what is compiled under its name is another text than it holds"
+
+
 class SessionText:
     """Compiles program files with their alternatives, or with witnesses that note which values occur.
 
     What happens while the program is imported, before any test, holds for every test after it: each test
-    counts it as its own. See ``loading.SourceStep``.
+    counts it as its own. See ``compiling.SourceStep``.
 
     Args:
         root: absolute path of the project.
@@ -344,7 +349,7 @@ class SessionText:
             if text is not None:
                 self._refuse(text, "it was imported before mutabot could look at it")
         loading.add(self)
-        loading.hook_runpy()
+        loading.hook_pytest_first(self)
 
     def wants(self, path: str) -> bool:
         """Whether there are alternatives for a file."""
@@ -355,7 +360,7 @@ class SessionText:
         text = self._text_of(path)
         assert text is not None
         if digest(source) != text.digest:
-            raise _ChangedError("it has changed since its mutants were made")
+            raise _ChangedError(_CHANGED if digest(text_of(path)) != text.digest else _OTHER)
         record = self.sightings is not None
         instrumented(tree, text.places, record=record, originals=self._originals)
         self.imported.append(text.file)
@@ -417,9 +422,18 @@ class SessionText:
         """All tests are over; ``others`` is what was seen in processes below them."""
         if self.sightings is not None:
             others = list(others)
+            self._note_unseen()
             imported = dict.fromkeys([*self.imported, *(file for one in others for file in one.imported)])
             seen = [*self.sightings.seen(), *(seen for one in others for seen in one.sightings)]
             self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
+
+    def _note_unseen(self) -> None:
+        """Files that were loaded although nothing of them was compiled."""
+        for module in list(sys.modules.values()):
+            text = self._text_of(_file_of(module))
+            if text is not None and text.file not in {*self.imported, *self.problems}:
+                loader = getattr(module, "__loader__", None)
+                self._refuse(text, f"{loading.UNSEEN} ({loading.loader_name(loader)})")
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""

@@ -1,88 +1,80 @@
-"""Change source files while Python compiles them, imported or run as scripts.
+"""Change source files while they are loaded, imported or run as scripts.
 
-Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
-``importlib``, ``runpy.run_module``. That one place is patched; loader, spec and module stay as they are. Of
-a file that a step wants, no compiled form is read or written.
+Every loader that reads source inherits ``get_code``, which asks the loader for the code of its file. What is
+compiled meanwhile is that file (``compiling``); loader, spec and module stay as they are. Of a file that a
+step wants, no compiled form is read or written.
 
-Python compiles the script of a process, and ``runpy.run_path`` its file, without a loader. Python runs a
-script by a loader if a path hook claims it, as it does with a zip file; what the script sees of itself is
-then put right before its first statement. ``runpy`` compiles in one function, which is patched.
+Python compiles the script of a process without a loader. It runs a script by a loader if a path hook claims
+it, as it does with a zip file; what the script sees of itself is then put right before its first statement.
 """
 
 from __future__ import annotations
 
 import ast
+import copy
 import os
-import runpy
 import sys
-import warnings
 from collections.abc import Callable
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
 from types import CodeType, ModuleType
-from typing import Any, Protocol
+from typing import Any
 
 from mutabot.languages.python import head_size
+from mutabot.runtime.program_text import compiling
+from mutabot.runtime.program_text.compiling import LoaderRequest, SourceStep, is_wanted
 
-
-class SourceStep(Protocol):
-    """Something that changes source files on their way.
-
-    One with an attribute ``is_optional`` leaves files alone whose loader compiles them in a way of its own.
-    """
-
-    def wants(self, path: str) -> bool:
-        """Whether it has anything to do with a file."""
-
-    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Change the tree of a file that it wants, in place.
-
-        Raises RecursionError, SyntaxError or ValueError if it cannot.
-        """
-
-    def give_up(self, path: str, error: Exception) -> None:
-        """A file that it was to change is compiled without it; it may raise the error instead."""
-        return
-
-
-#: in the order of their turns
-_steps: list[SourceStep] = []
-_original = SourceFileLoader.get_code
+#: where ``get_code`` stands that loaders of source files inherit, those of other packages as well
+_SourceLoader: Any = next(one for one in SourceFileLoader.__mro__ if "get_code" in vars(one))
+_original = _SourceLoader.get_code
 
 
 def add(step: SourceStep) -> None:
-    """Let a step take the last turn at all files that are imported from now on."""
-    _steps.append(step)
-    # get_code is inherited; it is put where the inherited one is found last
-    SourceFileLoader.get_code = _get_code  # type: ignore[method-assign, assignment]
+    """Let a step take the last turn at all files that are compiled from now on."""
+    compiling.steps.append(step)
+    compiling.install()
+    _SourceLoader.get_code = _get_code
 
 
-def is_wanted(path: str) -> bool:
-    """Whether any step has anything to do with a file."""
-    return any(step.wants(path) for step in _steps)
-
-
-def compile_tree(tree: ast.Module, path: str) -> CodeType:
-    """The code of a changed file. Raises what ``compile`` raises."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SyntaxWarning)  # what was put in may look as if it were a slip
-        return compile(tree, path, "exec", dont_inherit=True)
-
-
-def _get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
+def _get_code(self: Any, fullname: str) -> CodeType | None:
     path = self.get_filename(fullname)
-    is_plain = type(self).source_to_code is SourceFileLoader.source_to_code
-    steps = [step for step in _steps if step.wants(path) and (is_plain or not hasattr(step, "is_optional"))]
-    while steps:
-        source = self.get_data(path)
-        try:
-            tree = ast.parse(source, path)
-            for step in steps:
-                step.change(tree, source, path)
-            return compile_tree(tree, path)
-        except (RecursionError, SyntaxError, ValueError) as error:
-            steps.pop(0).give_up(path, error)
-    return _original(self, fullname)
+    if not is_wanted(path):
+        found: CodeType | None = _original(self, fullname)
+        return found
+    request = LoaderRequest(path, self.get_data(path))
+    code, why = _asked(self, request)
+    if why is not None:
+        for step in compiling.steps:
+            if step.wants(path):
+                step.give_up(path, ValueError(f"{why} ({loader_name(self)})"))
+    return code
+
+
+def _asked(loader: Any, request: LoaderRequest) -> tuple[CodeType, str | None]:
+    """The code that a loader makes of its file, and why that is not of the changed text, if it is not."""
+    compiling.requests.open.append(request)
+    why = None
+    try:
+        code = loader.source_to_code(request.data, request.path)
+    except Exception as error:
+        if not request.is_changed:
+            raise
+        request.is_off = True  # the loader may well take the text as it stands
+        code = loader.source_to_code(request.data, request.path)
+        why = f"its loader fails at changed text: {type(error).__name__}: {error}"
+    finally:
+        compiling.requests.open.pop()
+    return code, why if why is not None or request.is_met else UNSEEN
+
+
+#: why nothing of a file can be changed
+UNSEEN = "its loader makes its code out of sight"
+
+
+def loader_name(loader: Any) -> str:
+    """What people know a loader by."""
+    kind = loader if isinstance(loader, type) else type(loader)
+    return f"{kind.__module__}.{kind.__qualname__}"
 
 
 #: told the tree of a file, its source and its path
@@ -103,6 +95,7 @@ def hook_pytest(wants: Callable[[str], bool], change: Change, look: Change | Non
         rewrite(tree, source, path, *rest)
         if wanted is not None:
             change(tree, source, wanted)
+            setattr(tree, compiling.DONE, True)
 
     def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
         # what pytest compiled in earlier sessions tells nothing
@@ -111,22 +104,19 @@ def hook_pytest(wants: Callable[[str], bool], change: Change, look: Change | Non
     rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
 
 
-def hook_runpy() -> None:
-    """Let ``runpy`` compile files that it runs as files are compiled that are imported."""
-    module: Any = runpy
-    original = module._get_code_from_file
-    if getattr(original, "is_of_mutabot", False):
-        return
+def hook_pytest_first(step: SourceStep) -> None:
+    """Let a step change files that pytest rewrites before it does."""
 
-    def code_of(*arguments: Any) -> Any:  # the name of the module came before the file in older versions
-        path = os.path.abspath(os.fspath(arguments[-1]))
-        if not is_wanted(path):
-            return original(*arguments)
-        code = SourceFileLoader("__main__", path).get_code("__main__")
-        return (code, arguments[-1]) if len(arguments) > 1 else code
+    def look(tree: ast.Module, source: bytes, path: str) -> None:
+        changed = copy.deepcopy(tree)
+        try:
+            step.change(changed, source, path)
+        except (RecursionError, SyntaxError, ValueError) as error:
+            step.give_up(path, error)
+        else:
+            tree.body = changed.body
 
-    code_of.is_of_mutabot = True  # type: ignore[attr-defined]
-    module._get_code_from_file = code_of
+    hook_pytest(step.wants, lambda *_: None, look)
 
 
 def hook_script() -> None:

@@ -61,6 +61,7 @@ class Returns:
         setattr(builtins, RETURNED, self._returned)
         setattr(builtins, RAISED, self._raised)
         loading.add(self)
+        loading.hook_pytest(self.wants, self.change)
 
     def wants(self, path: str) -> bool:
         """Whether a file is one of the program's: these get notes."""

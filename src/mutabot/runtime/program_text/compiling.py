@@ -1,0 +1,227 @@
+"""Change source files while they are compiled, whoever asks for it.
+
+All program text comes to ``compile``: from the import system, from loaders of others, which check types,
+expand macros or rewrite text, from ``runpy`` and from ``exec(compile(text, path))``. That one place is
+patched, so a loader makes of the changed text what it would make of any.
+
+Text is changed when it is compiled. A loader that parses it first gets the changed tree, as long as the
+import system asks it for code: whoever parses a program at other times only reads it. A tree that comes
+without the changes gets them when it is compiled.
+"""
+
+from __future__ import annotations
+import __future__
+
+import ast
+import builtins
+import copy
+import os
+import sys
+import threading
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from importlib.util import decode_source
+from types import CodeType
+from typing import Any, Protocol
+
+
+class SourceStep(Protocol):
+    """Something that changes source files on their way.
+
+    One with an attribute ``is_optional`` leaves alone what is not compiled as it stands in its file.
+    """
+
+    def wants(self, path: str) -> bool:
+        """Whether it has anything to do with a file."""
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Change the tree of a file that it wants, in place.
+
+        ``source`` is what the file holds, or the text that is compiled under its name if that is another one.
+
+        Raises RecursionError, SyntaxError or ValueError if it cannot.
+        """
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A file that it was to change is compiled without it; it may raise the error instead."""
+        return
+
+
+@dataclass(slots=True, eq=False)
+class LoaderRequest:
+    """Code that the import system asks a loader for.
+
+    Attributes:
+        path: the file.
+        data: what it holds.
+        is_met: whether steps have had their turns at it.
+        is_changed: whether any has changed it.
+        is_off: whether nothing is to be changed.
+    """
+
+    path: str
+    data: bytes
+    is_met: bool = False
+    is_changed: bool = False
+    is_off: bool = False
+
+
+class _Requests(threading.local):
+    def __init__(self) -> None:
+        self.open: list[LoaderRequest] = []
+
+
+#: in the order of their turns
+steps: list[SourceStep] = []
+#: of each thread those without an answer yet, the latest last
+requests = _Requests()
+_builtin = builtins.compile
+#: flags of code that what it compiles inherits; those of two old features mean something else today
+_INHERITED = 0
+for _name in {*__future__.all_feature_names} - {"nested_scopes", "generators"}:
+    _INHERITED |= getattr(__future__, _name).compiler_flag
+#: how all names begin that are put into text, and an attribute of trees that are known to be done with
+_OURS, DONE = "__mutabot", "is_done_by_mutabot"
+
+
+def install() -> None:
+    """Let the steps take their turns at all that is compiled from now on."""
+    if builtins.compile is _builtin:
+        builtins.compile = _compile
+
+
+def is_wanted(path: str) -> bool:
+    """Whether any step has anything to do with a file."""
+    return any(step.wants(path) for step in steps)
+
+
+def compile_tree(tree: ast.Module, path: str, flags: int = 0, optimize: int = -1) -> CodeType:
+    """The code of a changed file. Raises what ``compile`` raises."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SyntaxWarning)  # what was put in may look as if it were a slip
+        code: CodeType = _builtin(tree, path, "exec", flags, True, optimize)
+    return code
+
+
+def _compile(
+    source: Any, filename: Any, mode: str, flags: int = 0, dont_inherit: bool = False, optimize: int = -1,
+    **more: Any,
+) -> Any:  # fmt: skip
+    """In place of ``compile``."""
+    if not dont_inherit:
+        flags |= sys._getframe(1).f_code.co_flags & _INHERITED
+    plainly = partial(_builtin, source, filename, mode, flags, True, optimize, **more)
+    request = requests.open[-1] if requests.open else None
+    if mode != "exec" or (request is not None and request.is_off):
+        return plainly()
+    is_tree, is_parsed = isinstance(source, ast.AST), bool(flags & ast.PyCF_ONLY_AST)
+    if request is not None and not is_tree and _is_same(source, request.data):
+        path: str | None = request.path
+    else:
+        path = None if is_parsed else _wanted(filename)
+    if path is None or (is_tree and _has_ours(source)):
+        return plainly()
+
+    def parse() -> Any:
+        if is_tree:
+            return copy.deepcopy(source)
+        return _builtin(source, filename, mode, flags | ast.PyCF_ONLY_AST, True, optimize, **more)
+
+    def finish(tree: ast.Module) -> Any:
+        if not is_parsed:
+            return compile_tree(tree, path, flags, optimize)
+        setattr(tree, DONE, True)
+        return tree
+
+    is_own = request is not None and path == request.path
+    data = request.data if request is not None and is_own else text_of(path)
+    is_whole = not is_tree and _is_same(source, data)
+    text = data if is_tree or is_whole else _bytes_of(source)
+    made = _through_steps(path, text, parse, finish, is_whole=is_whole and not is_parsed)
+    if request is not None and is_own:
+        request.is_met, request.is_changed = True, request.is_changed or made is not None
+    return plainly() if made is None else made
+
+
+def _through_steps(
+    path: str,
+    source: bytes,
+    parse: Callable[[], Any],
+    finish: Callable[[Any], Any],
+    *,
+    is_whole: bool,
+) -> Any:
+    """What becomes of a file once all steps that can have changed it; None if none can."""
+    waiting = [one for one in steps if one.wants(path) and (is_whole or not hasattr(one, "is_optional"))]
+    while waiting:
+        failing = waiting[0]
+        try:
+            tree = parse()
+            for failing in waiting:  # the one that fails is looked at after the loop
+                failing.change(tree, source, path)
+            failing = waiting[0]
+            return finish(tree)
+        except (RecursionError, SyntaxError, ValueError) as error:
+            waiting.remove(failing)
+            failing.give_up(path, error)
+    return None
+
+
+def _wanted(filename: Any) -> str | None:
+    """The path under which something is compiled to be run, if steps have to do with such a file."""
+    if not isinstance(filename, str | bytes | os.PathLike):
+        return None
+    name = os.fsdecode(filename)
+    if name.startswith("<"):
+        return None
+    path = name if os.path.isabs(name) else os.path.abspath(name)  # the folder may change before it runs
+    return path if is_wanted(path) and not _is_kept() else None
+
+
+def _is_kept() -> bool:
+    """Whether it is ``py_compile`` that asks: what it writes is run by anybody."""
+    frame = sys._getframe(2)
+    for _ in range(6):
+        if frame.f_globals.get("__name__") == "py_compile":
+            return True
+        if frame.f_back is None:
+            return False
+        frame = frame.f_back
+    return False
+
+
+def text_of(path: str) -> bytes:
+    """What a file holds; nothing if it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError:
+        return b""
+
+
+def _is_same(source: Any, data: bytes) -> bool:
+    """Whether a text is that of a file, however its lines end and whatever it is written in."""
+    if source is data or source == data:
+        return True
+    return _decoded(source) == _decoded(data)
+
+
+def _decoded(source: Any) -> str | None:
+    try:
+        text = source if isinstance(source, str) else decode_source(bytes(source))
+    except (SyntaxError, ValueError, TypeError):
+        return None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _bytes_of(source: Any) -> bytes:
+    return source.encode("utf-8", "surrogatepass") if isinstance(source, str) else bytes(source)
+
+
+def _has_ours(tree: ast.AST) -> bool:
+    """Whether a tree has been changed before."""
+    return hasattr(tree, DONE) or any(
+        isinstance(node, ast.Name) and node.id.startswith(_OURS) for node in ast.walk(tree)
+    )

@@ -1,0 +1,3 @@
+import checked
+
+checked.install()
