@@ -28,7 +28,7 @@ _import_us_unrewritten()  # before anything else of us is imported
 from mutabot.model import call  # noqa: E402
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
 from mutabot.runtime import seeds  # noqa: E402
-from mutabot.runtime.seeds import PytestNode, node_id  # noqa: E402
+from mutabot.runtime.seeds import node_id  # noqa: E402
 
 if TYPE_CHECKING:
     from mutabot.runtime.session_hooks import SessionHooks
@@ -75,9 +75,14 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None
     try:
         return (yield)
     except BaseException as error:
-        if _hooks is not None:
-            _hooks.import_failed(getattr(error, "cause", error), "")
+        if (hooks := _hooks_of(early_config)) is not None:
+            hooks.import_failed(getattr(error, "cause", error), "")
         raise
+
+
+def _hooks_of(config: pytest.Config) -> SessionHooks | None:
+    """The hooks of the job; None for a session that a test has started in this process."""
+    return _hooks if _hooks is not None and _hooks.config is config else None
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -88,7 +93,7 @@ def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
     """
     status = yield
     is_last = config.hook.pytest_cmdline_main.get_hookimpls()[-1].plugin is sys.modules[__name__]
-    if _hooks is not None and is_last and isinstance(status, int):
+    if _hooks_of(config) is not None and is_last and isinstance(status, int):
         from mutabot.runtime.isolation.namespaces import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         leave(int(status))
@@ -98,19 +103,24 @@ def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
 def pytest_configure(config: pytest.Config) -> None:
     """Register the hooks of the job."""
     _offer_at_every_scope(__name__)
-    if _hooks is not None:
-        config.pluginmanager.register(_hooks, "mutabot-session")
-        config.pluginmanager.register(_hooks.tests, "mutabot-tests")
+    if (hooks := _hooks_of(config)) is not None:
+        config.pluginmanager.register(hooks, "mutabot-session")
+        config.pluginmanager.register(hooks.tests, "mutabot-tests")
     if _plain_round is not None:
         config.pluginmanager.register(_plain_round, "mutabot-round")
 
 
-def seed_of(node: PytestNode) -> int:
+def seed_of(node: pytest.Item | pytest.Collector) -> int:
     """The seed of a test, or of a class, module, package or session, in this round."""
-    seeded = _hooks or _plain_round
+    seeded = _seeded(node.config)
     if seeded is not None:
         return seeded.seed_of(node_id(node))
     return int(os.environ.get(call.SEED_VARIABLE, "0"))
+
+
+def _seeded(config: pytest.Config) -> SessionHooks | PlainRound | None:
+    """What gives the seeds of a session; none of one that a test has started in a job's process."""
+    return _hooks_of(config) if _hooks is not None else _plain_round
 
 
 def _seed(request: pytest.FixtureRequest) -> int:
@@ -145,7 +155,7 @@ _mutabot_class_seed = pytest.fixture(scope="class", name=_SHARED["class"])(_seed
 @pytest.hookimpl(wrapper=True)
 def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, Any]:
     """Fixtures shared by several tests draw from a seed of their own."""
-    seeded = _hooks or _plain_round
+    seeded = _seeded(request.config)
     if seeded is None or fixturedef.scope == "function":
         return (yield)
     with seeds.seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
