@@ -54,9 +54,9 @@ WAITING = """
         assert arm.x > 0.25
 
     def test_retreat():
-        home = os.path.dirname(os.environ["MUTABOT_PROCESSES"])
-        until = time.monotonic() + 60
-        with open(f"{home}/job", "rb") as job:
+        folder = os.environ["MUTABOT_PROCESSES"]
+        home, until = os.path.dirname(folder), time.monotonic() + 60
+        with open(f"{folder}/job", "rb") as job:
             waits = "WAITS" in os.environ and b"Forking" in job.read() and FORKED == BEFORE
         while waits and not os.path.exists(f"{home}/stop") and time.monotonic() < until:
             time.sleep(0.01)
