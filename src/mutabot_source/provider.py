@@ -88,17 +88,23 @@ class SourceFaults(FaultProvider):
 
 def _note_reached(planned: Planned, round: int, seen: TextSeen) -> None:
     places = {place.number: place for text in planned.texts for place in text.places}
-    told = [(seen.reached, ""), *((found, origin) for origin, found in seen.below.items())]
-    for test, numbers, origin in ((*one, origin) for found, origin in told for one in found.items()):
-        for place in (places[number] for number in numbers if number in places):
+    for origin, found in (("", seen.reached), *seen.below.items()):
+        reaching: dict[int, list[str]] = {}  # the tests by place: a suite may have ten thousand
+        for test, numbers in found.items():
+            for number in numbers:
+                reaching.setdefault(number, []).append(test)
+        for number, tests in reaching.items():
+            place = places.get(number)
+            if place is None:
+                continue
             where = Place(place.site, "")
-            tests = planned.reached.setdefault((round, where), [])
-            if test not in tests:
-                tests.append(test)
-            if origin:
+            known = planned.reached.setdefault((round, where), [])
+            there = set(known)
+            known += [test for test in tests if test not in there]
+            for test in tests if origin else ():
                 planned.below.setdefault((round, where, test), set()).add(origin)
             # what a process below the tests evaluates holds for that process alone
-            if (place.at_import and not origin) or not test:
+            if (place.at_import and not origin) or "" in tests:
                 planned.early.add(where)
 
 

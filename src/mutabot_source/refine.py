@@ -8,7 +8,7 @@ from dataclasses import replace
 from mutabot.faults import Planted
 from mutabot.model import Mutant
 from mutabot.model.codec import to_data
-from mutabot.model.mutant import Alternative, Choice, ProgramText, Sighting, TextPlace
+from mutabot.model.mutant import FITTING, Alternative, Choice, ProgramText, Sighting, TextPlace
 
 from . import registry
 from .extension import PROVIDER
@@ -50,15 +50,6 @@ def _mutant_of(place: TextPlace, alternative: Alternative) -> Mutant:
         description=f"{place.text} → {shortened(alternative.text)}",
         provider=PROVIDER,
     )
-
-
-#: kinds of values that fit what an alternative needs
-FITTING: Mapping[str, frozenset[str]] = {
-    "number": frozenset({"number", "integer"}),
-    "integer": frozenset({"integer"}),
-    "truth": frozenset({"truth"}),
-    "bits": frozenset({"integer", "truth", "set", "flag"}),
-}
 
 
 def merge(sightings: Iterable[Sighting]) -> dict[int, Sighting]:

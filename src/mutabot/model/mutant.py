@@ -376,6 +376,15 @@ def kept_name(index: int) -> str:
     return f"__kept_{index}__"
 
 
+#: kinds of values that fit what an alternative needs
+FITTING: Mapping[str, frozenset[str]] = {
+    "number": frozenset({"number", "integer"}),
+    "integer": frozenset({"integer"}),
+    "truth": frozenset({"truth"}),
+    "bits": frozenset({"integer", "truth", "set", "flag"}),
+}
+
+
 @frozen
 class Alternative:
     """One other reading of a place.
@@ -504,7 +513,7 @@ class Sighting:
         place: number of the place.
         hits: evaluations that were looked at; no more than a few per test.
         kinds: kinds of the values it had, sorted: ``number``, ``integer``, ``truth``, ``text`` … or
-            ``module:Type``.
+            ``module:Type``; there may be more once each alternative has had one that fits.
         variables: for a variable: others in scope that had the same type each time, sorted.
     """
 

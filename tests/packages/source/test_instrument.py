@@ -245,6 +245,25 @@ def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) 
     }
 
 
+def test_a_place_that_has_told_all_is_not_looked_at_any_more(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "LIMIT = 4\ndef f(x):\n    return x, [x + x]\n", "ABS", "SVR")
+    numbers = {place.text: place.number for place in text.places}
+    found = []
+    with imported(tmp_path, text, record=True) as (module, hook):
+        assert hook.sightings is not None
+        for value in ("a", 2, 2.0, "b"):
+            hook.sightings.start()
+            for _ in range(50):
+                module.f(value)
+            assert {numbers["x"], numbers["x + x"]} <= hook.sightings.entered
+            found.append({one.place: one for one in hook.sightings.seen()})
+    looks = {name: [one[numbers[name]].hits for one in found] for name in ("x", "x + x")}
+    assert looks["x + x"] == [20, 21, 21, 21]  # it waits for a number
+    assert looks["x"] == [20, 21, 21, 21]  # and a name until no other is of the same type
+    assert found[3][numbers["x"]].kinds == ("integer", "text")
+    assert found[3][numbers["x"]].variables == ()
+
+
 def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     (tmp_path / text.file).write_text("x = 5\n")

@@ -321,8 +321,7 @@ class SessionText:
         self.alternatives.on_act = on_act
         self.sightings: Sightings | None = None
         if instrumentation.record:
-            variables = {number: place.text for number, place in self._places.items() if place.variable}
-            self.sightings = Sightings(size, variables)
+            self.sightings = Sightings(size, self._places)
         self.pipe: EventWriter = pipe or Held()
         self.imported: list[str] = []
         self.problems: dict[str, str] = {}

@@ -5,8 +5,8 @@ else E``. ``__mutabot__`` is a plain list with False at places that are off, so 
 a built-in name: modules keep the names they have.
 
 In a baseline the text becomes ``__mutabot__[0](p) or __mutabot__[p](E)``: the first call notes that the place
-is reached, whatever becomes of ``E``. A place is examined a few times per test; from then on the function
-there passes the value through, as cheaply as a call can.
+is reached, whatever becomes of ``E``. A place is examined a few times per test, and no more once it has told
+all that the plan asks; from then on the function there passes the value through, as cheaply as a call can.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ import numbers
 import sys
 import threading
 import types
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from typing import Any, NoReturn
 
-from mutabot.model.mutant import FATAL, IDENTITY, Choice, Sighting
+from mutabot.model.mutant import FATAL, FITTING, IDENTITY, Choice, Sighting, TextPlace
 from mutabot.model.path import class_name
 from mutabot.runtime.program_text.foresee import Forms, locals_of
 
@@ -78,7 +78,11 @@ class Switch:
             return _UNKNOWN
 
 
-_UNKNOWN = object()
+class _Unknown:
+    """The type of what stands for a value that is not known, and of nothing else."""
+
+
+_UNKNOWN = _Unknown()
 #: items of a list or tuple that is shown
 _SHOWN = 12
 #: evaluations of a place in one test after which it is no longer looked ahead: that takes its time
@@ -329,13 +333,15 @@ class Sightings:
 
     Attributes:
         entered: places that were reached since the start of the test.
+        asked: those that were looked at.
         switches: what instrumented program text calls, by number of the place; item 0 notes what is reached.
     """
 
-    def __init__(self, size: int, variables: Mapping[int, str]) -> None:
-        """``size``: the largest number of a place; ``variables``: names of the places that are variables."""
-        self._witnesses = [_Witness(self, place, variables.get(place)) for place in range(1, size + 1)]
+    def __init__(self, size: int, places: Mapping[int, TextPlace]) -> None:
+        """``size``: the largest number of a place."""
+        self._witnesses = [_Witness(self, number, places.get(number)) for number in range(1, size + 1)]
         self.entered: set[int] = set()
+        self.asked: list[_Witness] = []
         self._on_first: Callable[[int], None] | None = None
         self.switches: list[Callable[[Any], Any]] = [self.entered.add, *self._witnesses]
 
@@ -353,9 +359,11 @@ class Sightings:
     def start(self) -> None:
         """A new test begins: look at every place anew."""
         self.entered.clear()
-        for witness in self._witnesses:
-            witness.looks = witness.looks_around = 0
-        self.switches[1:] = self._witnesses
+        asked, self.asked = self.asked, []
+        for witness in asked:
+            witness.start()
+            if not witness.has_told_all:
+                self.switches[witness.place] = witness
 
     def seen(self) -> tuple[Sighting, ...]:
         """What was seen so far, over all tests, by place."""
@@ -371,28 +379,51 @@ class _Witness:
         hits: evaluations that were looked at, over all tests.
     """
 
-    def __init__(self, owner: Sightings, place: int, variable: str | None) -> None:
-        self._owner, self.place, self._variable = owner, place, variable
+    def __init__(self, owner: Sightings, number: int, place: TextPlace | None) -> None:
+        self._owner, self.place = owner, number
+        self._variable = place.text if place is not None and place.variable else None
+        self._lacking = {one.needs for one in place.alternatives if one.needs} if place is not None else set()
+        self._is_around = self._variable is not None  # as far as is known, others may stand in its place
         self.hits = self.looks = self.looks_around = 0
         self._types: set[type] = set()
         self._kinds: set[str] = set()
         self._variables: set[str] | None = None
 
+    def start(self) -> None:
+        """A new test begins."""
+        self.looks = self.looks_around = 0
+
     def __call__(self, value: Any) -> Any:
+        if not self.looks:
+            self._owner.asked.append(self)
         self.hits += 1
         self.looks += 1
-        if self.looks >= LOOKS:
-            self._owner.switches[self.place] = hand_through
         kind = type(value)
         if kind not in self._types:
-            self._types.add(kind)
-            self._kinds.add(kind_of(value))
-            self.looks_around = 0
-        if self._variable is not None and self.looks_around < LOOKS_AROUND:
+            self._note_kind(kind, value)
+        if self._is_around and self.looks_around < LOOKS_AROUND:
             self.looks_around += 1
-            names = set(_alike(value, sys._getframe(1))) - {self._variable} if is_variable(value) else set()
-            self._variables = names if self._variables is None else self._variables & names
+            self._look_around(value, sys._getframe(1))
+        if self.looks >= LOOKS or self.has_told_all:
+            self._owner.switches[self.place] = hand_through
         return value
+
+    @property
+    def has_told_all(self) -> bool:
+        """Whether each alternative has had a value that fits, and no variable around may stand here."""
+        return not (self._lacking or self._is_around)
+
+    def _note_kind(self, kind: type, value: Any) -> None:
+        self._types.add(kind)
+        self._kinds.add(kind_of(value))
+        self._lacking = {one for one in self._lacking if self._kinds.isdisjoint(FITTING.get(one, ()))}
+        self.looks_around = 0
+
+    def _look_around(self, value: Any, frame: types.FrameType) -> None:
+        """Keep the variables that are of the value's type at every look."""
+        names = set(_alike(value, frame, self._variables)) if is_variable(value) else set()
+        self._variables = names - {self._variable}
+        self._is_around = bool(self._variables)
 
     def sighting(self) -> Sighting:
         """What was seen."""
@@ -400,8 +431,8 @@ class _Witness:
         return Sighting(self.place, self.hits, tuple(kinds), tuple(variables))
 
 
-def _alike(value: Any, frame: types.FrameType) -> Iterator[str]:
-    """Names around a frame's instruction with a value of exactly this type.
+def _alike(value: Any, frame: types.FrameType, among: Collection[str] | None) -> Iterator[str]:
+    """Names around a frame's instruction with a value of exactly this type, of all or ``among`` these.
 
     Of the function's own names and the module's: to mention a name of a function further out would make
     it a part of this one. So inside another function only such names of the module count as this one uses,
@@ -410,8 +441,11 @@ def _alike(value: Any, frame: types.FrameType) -> Iterator[str]:
     code = frame.f_code
     own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
     allowed = code.co_names if "<locals>" in code.co_qualname else frame.f_globals
-    others = [one for one in list(frame.f_globals.items()) if one[0] in allowed and one[0] not in own]
-    for name, other in [*list(frame.f_locals.items()), *others]:
+    local, everywhere, kind = frame.f_locals, frame.f_globals, type(value)
+    for name in [*local, *everywhere] if among is None else among:
+        found = type(local.get(name, _UNKNOWN)) is kind
+        if not found and name in allowed and name not in own:
+            found = type(everywhere.get(name, _UNKNOWN)) is kind
         # comprehensions have names of their own, which are no identifiers
-        if type(other) is type(value) and name.isidentifier() and not name.startswith("__"):
+        if found and name.isidentifier() and not name.startswith("__"):
             yield name
