@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from mutabot.campaign.beginning import at_it, begin
-from mutabot.model.source_units import ALL_FILES, File
+from mutabot.campaign.campaign import Campaign
+from mutabot.execution.task import Result
+from mutabot.model.source_units import ALL_FILES, ExecutedByTests, File
 from tests.campaign.project import Quiet, request_for, write_project
 
 NAMES = ("mission.py", "robot.py", "tests/test_mission.py")
@@ -74,8 +76,8 @@ ASKS = """
 
 
 @pytest.fixture(scope="module")
-def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
-    """What tests of a project execute in the baseline, in the order of the file."""
+def taken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Campaign, list[Result]]:
+    """A project's campaign with its baseline."""
     folder = write_project(
         tmp_path_factory.mktemp("executed"),
         MISSION,
@@ -84,8 +86,14 @@ def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
     )
     request = request_for(folder, engine="replay")
     with at_it(request, Quiet()) as opened:
-        campaign, _ = begin(request, opened, Quiet())
-    files = {name: File(name, (folder / name).read_bytes()) for name in NAMES}
+        return begin(request, opened, Quiet())
+
+
+@pytest.fixture(scope="module")
+def executed(taken: tuple[Campaign, list[Result]]) -> dict[str, set[str]]:
+    """What tests of the project execute in the baseline, in the order of the file."""
+    campaign, _ = taken
+    files = {name: File(name, (campaign.request.root / name).read_bytes()) for name in NAMES}
     found: dict[str, set[str]] = {}
     for _, test in campaign.baseline.ends:
         executed = campaign.baseline.executed[0].by([test])
@@ -113,6 +121,21 @@ def test_what_a_test_executes_counts_for_all_tests_after_it(executed: dict[str, 
         executed["test_shared"], NAMES[2]
     )
     assert "test_shared" not in of(executed["test_right"], NAMES[2])
+
+
+def test_each_test_tells_only_what_none_before_it_has_told(taken: tuple[Campaign, list[Result]]) -> None:
+    ends = taken[1][0].ends
+    told = [(name, line) for end in ends for name, lines in (end.executed or {}).items() for line in lines]
+    assert len(ends) > 3
+    assert len(told) == len(set(told)) > 5
+
+
+def test_what_is_told_before_a_test_counts_for_it_and_what_is_not_known_for_all_after_it() -> None:
+    found = ExecutedByTests([("a", {"f.py": (1,)}), ("b", {}), ("c", {"f.py": (2,)}), ("d", None), ("e", {})])
+    assert found.by(["b"]) == found.by(["b", "a"]) == {"f.py": (1,)}
+    assert found.by(["c"]) == {"f.py": (1, 2)}
+    assert found.by(["e"]) is None
+    assert found.by(["unknown"]) == {}
 
 
 def test_a_file_that_is_opened_counts(executed: dict[str, set[str]]) -> None:
