@@ -23,9 +23,23 @@ def test_what_waits_takes_less_than_a_third_of_itself() -> None:
     seen = observation(end, {0: Place.of(MOVE)})
     run = _ForkedRun(MOVE, 0, (end.test,))
     run.hold(end, seen)
-    assert sum(map(len, run.held.values())) < len(pickle.dumps((end, seen))) / 3
+    assert not run.held
+    assert sum(map(len, run.packed)) < len(pickle.dumps((end, seen))) / 3
     run.unpack()
-    assert (run.own, run.observations, run.held) == ({end.test: end}, {end.test: seen}, {})
+    assert (run.own, run.observations, run.packed) == ({end.test: end}, {end.test: seen}, [])
+
+
+def test_short_tests_are_packed_together_and_take_less_than_a_fifth() -> None:
+    ends = [TestEnd(f"tests/test_mission.py::test_{number}", "passed", hits=1) for number in range(1010)]
+    run = _ForkedRun(MOVE, 0, tuple(end.test for end in ends))
+    for end in ends:
+        run.hold(end, observation(end, {}))
+    assert len(run.packed) * 50 + len(run.held) == len(ends)
+    assert sum(map(len, run.packed)) < sum(len(pickle.dumps((end, observation(end, {})))) for end in ends) / 5
+    run.unpack()
+    assert list(run.own.values()) == ends
+    assert len(run.observations) == len(ends)
+    assert (run.held, run.packed) == ([], [])
 
 
 def test_a_failed_test_has_nothing_to_compare() -> None:

@@ -57,6 +57,10 @@ _FORK = 0.01
 _MISSED = "its processes did not all get the mutant from a fork"
 #: the level at which zlib costs least
 _QUICKLY = 1
+#: short tests of a fork that are packed together, since they are much alike; long ones weigh more
+_TOGETHER = 50
+
+_Held = tuple[events.TestEnd, "Observation | None"]
 
 
 def run_trials(
@@ -339,28 +343,38 @@ class _ForkedRun(Run):
     """What is known of one mutant so far.
 
     Attributes:
-        own: its tests that have ended, but for those in ``held``.
-        held: how its own tests ended and what is compared of them, packed: all that were forked in a test
-            wait for their parent to end it.
+        own: its tests that have ended, but for those in ``held`` and ``packed``.
+        held: how its own tests ended and what is compared of them.
+        weight: how much that is, in short tests.
+        packed: the same of those before: all that were forked in a test wait for their parent to end it.
         forked: number of the test in which it was forked, as far as it has told; -1: before any.
         is_decided: whether one of them has decided about the mutant.
     """
 
     own: dict[str, events.TestEnd] = field(default_factory=dict)
-    held: dict[str, bytes] = field(default_factory=dict)
+    held: list[_Held] = field(default_factory=list)
+    weight: int = 0
+    packed: list[bytes] = field(default_factory=list)
     forked: int | None = None
     is_decided: bool = False
 
     def hold(self, end: events.TestEnd, seen: Observation | None) -> None:
         """One of its tests has ended. ``seen``: what is compared of it, if anything is."""
-        self.held[end.test] = zlib.compress(pickle.dumps((end, seen)), _QUICKLY)
+        self.held.append((end, seen))
+        self.weight += 1 + len(end.trace) + len(end.recording or "")
+        if self.weight >= _TOGETHER:
+            self.packed.append(zlib.compress(pickle.dumps(self.held), _QUICKLY))
+            self.held.clear()
+            self.weight = 0
 
     def unpack(self) -> None:
         """Put what was held where the end of a run is looked for."""
-        for test, data in self.held.items():
-            self.own[test], seen = pickle.loads(zlib.decompress(data))  # it was packed here
+        unpacked = (one for data in self.packed for one in pickle.loads(zlib.decompress(data)))  # packed here
+        for end, seen in (*unpacked, *self.held):
+            self.own[end.test] = end
             if seen is not None:
-                self.observations[test] = seen
+                self.observations[end.test] = seen
+        self.packed.clear()
         self.held.clear()
 
 
