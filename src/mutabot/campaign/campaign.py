@@ -98,6 +98,7 @@ class Campaign:
         return self.request.job(
             round,
             tests=tests,
+            aside=self.baseline.aside(round, tests),
             record=True,
             reaching=self.reaching(mutants, round),
             simulated=self._simulated(round, tests),

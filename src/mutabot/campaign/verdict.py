@@ -75,6 +75,8 @@ class Run:
         exit_code: how the process ended after the whole session; None if it did not get that far.
         problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
         left_out: tests that it was to leave out, unless the original has run them for it.
+        gone: tests that are not collected since it changed something.
+        has_acted: whether it changed anything, as far as the session tells at its end.
     """
 
     mutant: Mutant
@@ -89,6 +91,8 @@ class Run:
     exit_code: int | None = None
     problem: str | None = None
     left_out: frozenset[str] = frozenset()
+    gone: tuple[str, ...] = ()
+    has_acted: bool = False
 
     @property
     def hindered(self) -> str | None:
@@ -115,6 +119,8 @@ def run_of(result: Result, sources: Sources) -> Run:
         exit_code=result.exit_code if result.end is not None else None,
         problem=result.untrusted if result.untrusted is not None else next(not_there, None),
         wall=result.wall,
+        gone=result.end.gone if result.end is not None else (),
+        has_acted=result.end is not None and result.end.has_acted,
     )
 
 
@@ -125,7 +131,7 @@ def _death_in(result: Result, tests: Collection[str]) -> Death | None:
     elif result.end.errors:
         text = "; ".join(result.end.errors)
     else:
-        text = not_run(tests, result.ends, result.exit_code)
+        text = not_run(set(tests).difference(result.end.gone), result.ends, result.exit_code)
     if text is None:
         return None
     return Death(
@@ -246,7 +252,7 @@ def _executed(run: Run, decided: TestEnd | None, baseline: Baseline, *, is_of_su
     None if that is not known: of a process that died, and of a suite that ended otherwise without a failed
     test.
     """
-    if run.death is not None or run.problem is not None or is_of_suite:
+    if run.death is not None or run.problem is not None or is_of_suite or run.gone:
         return None
     reaching = set(baseline.tests_reaching(run.round, run.mutant))
     asked = [n for n, one in enumerate(run.ends) if one is decided or one.hits or one.test in reaching]
@@ -302,6 +308,7 @@ def _ruling(run: Run, usual: int) -> Ruling:
 
 def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool) -> Ruling:
     """No test decided: what the end of the process says."""
+    acted = acted or run.has_acted
     if run.death is not None:
         return _ruling_on_death(run.death, acted)
     if refused is not None:
@@ -358,9 +365,19 @@ def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
     return Verdict.KILLED, None, text
 
 
+def _collected_otherwise(run: Run) -> tuple[str, ...]:
+    """How the tests that there are differ from the original's, in words."""
+    new = [end.test for end in run.ends if end.test not in run.tests]
+    told = [f"{in_short(run.gone, 1)} not collected"] if run.gone else []
+    told += [f"collected beside the original's tests: {in_short(new, 1)}"] if new else []
+    return tuple(told)
+
+
 def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
     """The outcome of a survivor with how far its world is from the original's."""
     baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
+    if otherwise := _collected_otherwise(run):
+        return replace(outcome, divergence=otherwise, indistinguishable=False)
     comparisons = []
     first = next((number for number, end in enumerate(run.ends) if end.hits), 0)
     since_hit = {end.test for end in run.ends[first:]}  # before it is hit, a mutant is the original

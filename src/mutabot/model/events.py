@@ -274,11 +274,15 @@ class ForkSessionEnd(Event):
         mutants: ids of the mutants it was.
         exit_code: its exit code, by which the suite says how it has ended; its parent's word.
         errors: what could not be collected.
+        gone: tests that are not collected since the mutant changed something.
+        has_acted: whether it had changed something by then.
     """
 
     mutants: tuple[str, ...]
     exit_code: int = 0
     errors: tuple[str, ...] = ()
+    gone: tuple[str, ...] = ()
+    has_acted: bool = False
 
 
 @frozen
@@ -528,12 +532,15 @@ class SessionEnd(Event):
         collected: node ids of the tests collected, in order.
         errors: texts of collection errors.
         not_private: why its files were not its own, though that was asked for; None if they were.
+        gone, has_acted: as in ``ForkSessionEnd``.
     """
 
     exit_status: int = 0
     collected: tuple[str, ...] = ()
     errors: tuple[str, ...] = ()
     not_private: str | None = None
+    gone: tuple[str, ...] = ()
+    has_acted: bool = False
 
 
 @frozen

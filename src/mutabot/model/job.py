@@ -107,6 +107,7 @@ class Job:
         seed: the campaign's seed.
         round: 0-based round.
         tests: node ids to run, in this order; None for all that the project's own arguments select.
+        aside: tests that the original has as well, but which judge nothing: others are the mutant's doing.
         reaching: by the ids of mutants, the numbers of the tests that reach them: after the first of these,
             all others are left out. Of mutants that are missing here, none is.
         mutant: the fault to plant; None for the original.
@@ -142,6 +143,7 @@ class Job:
     seed: int
     round: int
     tests: tuple[str, ...] | None = None
+    aside: tuple[str, ...] = ()
     reaching: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     mutant: Mutant | None = None
     record: bool = False

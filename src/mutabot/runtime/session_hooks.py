@@ -19,7 +19,7 @@ from mutabot.model import Mutant, Role
 from mutabot.model.events import SessionEnd
 from mutabot.model.job import Job, read_job
 from mutabot.operators.registry import preload
-from mutabot.runtime import seeds
+from mutabot.runtime import FOLDER, seeds
 from mutabot.runtime.event_file import EventFile, Held
 from mutabot.runtime.evidence import limit_memory
 from mutabot.runtime.interception.trace import Locator
@@ -65,6 +65,7 @@ class SessionHooks:
         self._server = server
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
+        self._gone: tuple[str, ...] = ()
 
     @property
     def job(self) -> Job:
@@ -152,7 +153,7 @@ class SessionHooks:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Keep the job's tests, in the job's order."""
+        """Keep the job's tests, in the job's order, and those that the mutant has made."""
         self._collected = tuple(node_id(item) for item in items)
         self._select(items)
 
@@ -163,9 +164,14 @@ class SessionHooks:
         alike = {node_id(item) for item in items if by_id[node_id(item)].nodeid != item.nodeid}
         self._errors += [f"several tests are called {name} once that is written in UTF-8" for name in alike]
         missing = [test for test in self.job.tests if test not in by_id]
-        if missing:
+        new: set[str] = set()
+        if self.session.evidence.acted:  # it is the mutant's doing, and for its suite to judge
+            self._gone = tuple(missing)
+            new = by_id.keys() - {*self.job.tests, *self.job.aside}
+        elif missing:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
-        items[:] = [by_id[test] for test in self.job.tests if test in by_id]
+        known = new.union(self.job.tests)
+        items[:] = [by_id[one] for one in (by_id if new else self.job.tests) if one in by_id and one in known]
 
     @pytest.hookimpl(wrapper=True)
     def pytest_make_collect_report(
@@ -200,6 +206,12 @@ class SessionHooks:
                 self.tests.fork.end_test(end)
             else:
                 self.session.pipe.send(end)
+
+    def pytest_internalerror(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
+        """A hook of the suite has failed, which ends the suite: if the mutant did it, it was noticed."""
+        is_ours = excinfo.traceback[-1].frame.code.raw.co_filename.startswith(FOLDER)
+        if not is_ours and not self.session.test:
+            self.import_failed(excinfo.value, "")
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Note what could not be collected."""
@@ -250,14 +262,15 @@ class SessionHooks:
         if self._server is not None:
             return
         if self.tests.fork is not None:
-            self.tests.fork.finish(self._errors)
+            self.tests.fork.finish(self._errors, self._gone)
             return
         members = self.tests.members
         self.session.finish(members.texts_seen() if members is not None else ())
         if members is not None and members.children.doubt is not None:
             self._errors.append(members.children.doubt)
         not_private = self._files.why_not if self.job.private_files else None
-        self.session.pipe.send(SessionEnd(int(exitstatus), self._collected, tuple(self._errors), not_private))
+        told = (self._collected, tuple(self._errors), not_private, self._gone)
+        self.session.pipe.send(SessionEnd(int(exitstatus), *told, self.session.evidence.acted > 0))
 
 
 def _keep_cache_in(config: pytest.Config, home: str) -> None:

@@ -61,9 +61,9 @@ class ForkedRun:
         self._has_acted = False
         listen((*STARTS, *FORKINGS), self._hear)
 
-    def start_test(self) -> None:
+    def start_test(self, test: str) -> None:
         """A test begins, its second at least."""
-        self._parent.note_next_test(self.mutant.id)
+        self._parent.note_test(self.mutant.id, test)
         self._shared = None
 
     def end_test(self, end: TestEnd) -> None:
@@ -75,11 +75,13 @@ class ForkedRun:
             if end.is_decided and not self._parent.forking.every_test:
                 os._exit(DECIDED)  # whatever happens, nothing must run on in this process
 
-    def finish(self, errors: list[str]) -> None:
+    def finish(self, errors: list[str], gone: tuple[str, ...]) -> None:
         """The session is over: what its exit code is, the parent will tell."""
-        self._parent.note_next_test(self.mutant.id)
+        self._parent.note_test(self.mutant.id)
         self._parent.note_finished(self.mutant.id)
-        self._session.pipe.send(ForkSessionEnd((self.mutant.id,), errors=tuple(errors)))
+        self._session.pipe.send(
+            ForkSessionEnd((self.mutant.id,), 0, tuple(errors), gone, self._session.evidence.acted > 0)
+        )
 
     def _report(self, end: TestEnd) -> None:
         if end.outcome == FAILED:  # only survivors are compared with the original
@@ -166,7 +168,7 @@ class TestHooks:
         session, test = self.session, node_id(item)
         self.units.start_test()
         if self.fork is not None:
-            self.fork.start_test()
+            self.fork.start_test(test)
         if test in self.left_out:
             return (yield)
         self._start(item, test)

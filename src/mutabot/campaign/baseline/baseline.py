@@ -266,6 +266,7 @@ class Baseline(Original):
         known: see ``Job.known``.
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there acts in all tests.
+        collected: per round, all that the original collects.
         unread: whether nobody uses what the calls of a place return.
         stand_ins: places at which a mock or a fake of the project gets calls.
         shares_files: whether runs see each other's files.
@@ -297,10 +298,15 @@ class Baseline(Original):
     known: tuple[tuple[Span, str], ...] = ()
     early: set[Place] = field(default_factory=set)
     shares_files: bool = False
+    collected: dict[int, frozenset[str]] = field(default_factory=dict)
 
     def suite(self, round: int) -> tuple[str, ...]:
         """The tests that a mutant is run with, in their order: all that can be relied on."""
         return tuple(self.tests[round])
+
+    def aside(self, round: int, tests: Collection[str]) -> tuple[str, ...]:
+        """What the original collects in a round beside these tests."""
+        return tuple(sorted(self.collected.get(round, frozenset()).difference(tests)))
 
     def tests_reaching(self, round: int, mutant: Mutant) -> tuple[str, ...]:
         """The tests that reach a mutant, quickest first."""

@@ -296,6 +296,8 @@ def _add_round(
                 if again is not None:
                     baseline.compare_runs(round, again, observation(again, there), request.vocabulary)
     baseline.tests.append(good)
+    first = repetitions[0].end
+    baseline.collected[round] = frozenset(first.collected if first is not None else ())
     baseline.executed[round] = ExecutedByTests((end.test, end.executed) for end in repetitions[0].ends)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])

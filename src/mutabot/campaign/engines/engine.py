@@ -493,7 +493,7 @@ class _ForkParent:
             case events.ForkSessionEnd():
                 for mutant in self._open.keys() & set(event.mutants):
                     run = self._open[mutant]
-                    run.exit_code = event.exit_code
+                    run.exit_code, run.gone, run.has_acted = event.exit_code, event.gone, event.has_acted
                     run.death = Death("; ".join(event.errors)) if event.errors else run.death
                     yield from self._settle(mutant)
             case events.Unforked():
@@ -532,7 +532,7 @@ class _ForkParent:
     def _fork_ended(self, event: events.ForkTestEnd) -> Iterator[Outcome]:
         fork, test = self._open[event.mutant], event.end.test
         if fork.forked is None:
-            fork.forked = -1 if event.is_early else self._numbers[test]
+            fork.forked = -1 if event.is_early else self._numbers.get(test, -1)
         fork.is_decided |= event.end.is_decided
         if event.shared is not None:
             fork.shared = (fork.shared or 0.0) + event.shared
@@ -589,9 +589,10 @@ class _ForkParent:
             return
         ends = {end.test: end for end in self._own_ends[:shared]} | run.own
         run.ends = [ends[test] for test in self._tests if test in ends]
+        run.ends += [end for test, end in ends.items() if test not in self._numbers]
         run.wall = sum(end.wall for end in run.ends)
         if run.exit_code is not None:
-            text = not_run({*self._tests} - run.left_out, run.ends, run.exit_code)
+            text = not_run({*self._tests} - run.left_out - {*run.gone}, run.ends, run.exit_code)
             run.death = Death(text) if text is not None else run.death
         del self._open[run.mutant.id]
         yield judged(self._campaign, run)

@@ -110,6 +110,7 @@ class ForkParent:
         self._children: dict[int, Child] = {}
         self._places: dict[int, frozenset[int]] | None = None
         os.register_at_fork(before=self._note_copy)
+        self._numbers = {test: number for number, test in enumerate(self.tests)}
         self._slots = {mutant.id: slot for slot, mutant in enumerate(self.forking.mutants)}
         # the board, which children write: whether each has gone to the end, and the number of its test
         count = max(1, len(self._slots))
@@ -125,7 +126,7 @@ class ForkParent:
     def begin_test(self, test: str) -> None:
         """A test is about to begin: fork for the mutants that may be hit in processes below it."""
         self._is_overtaken()  # also if no place is reached before
-        self._test, self._number = test, self.tests.index(test)
+        self._test, self._number = test, self._numbers[test]
         self._copied = False
         self._is_stopped()
         due = set(self.forking.at_start.get(test, ())) - self._gone
@@ -284,9 +285,11 @@ class ForkParent:
         """In a child: it has gone to the end of the session."""
         self._finished[self._slots[mutant]] = 1
 
-    def note_next_test(self, mutant: str) -> None:
-        """In a child: it begins another test."""
-        self._tests[self._slots[mutant]] += 1
+    def note_test(self, mutant: str, test: str | None = None) -> None:
+        """In a child: it begins a test, which the parent need not have; None: the last one is over."""
+        slot = self._slots[mutant]
+        number = len(self.tests) if test is None else self._numbers.get(test, max(self._tests[slot], 0))
+        self._tests[slot] = number
 
     def finish(self) -> None:
         """All tests are over: wait for the children that still run, holding no token meanwhile."""
