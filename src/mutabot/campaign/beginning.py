@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from mutabot.campaign import simulation
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
+from mutabot.campaign.baseline.wrappers import shared_sites
 from mutabot.campaign.campaign import Campaign, on_this_machine
 from mutabot.campaign.engines.engine import Unhandled, try_controls
 from mutabot.campaign.faults.demanded import split_ladders
@@ -24,6 +25,7 @@ from mutabot.execution.processes import provide
 from mutabot.extensions import brought
 from mutabot.families import CALLS, MESSAGES
 from mutabot.journal.files import at_work, refuse_tracked
+from mutabot.languages.front_end import program_files
 from mutabot.model.codec import to_data
 from mutabot.model.events import Remark
 from mutabot.model.outcome import by_heading
@@ -99,7 +101,9 @@ def begin(
     campaign, results = take(request, executor, 2 if is_compared else 0)
     if tried is not None:
         campaign, results = simulation.chosen(campaign, results, tried)
-    note_fit(campaign.baseline, request.vocabulary, progress)
+    files = program_files(request.root, request.configuration.program)
+    shared = shared_sites(campaign.baseline, request.vocabulary, campaign.sources, files)
+    note_fit(campaign.baseline, request.vocabulary, progress, shared)
     return campaign, results
 
 

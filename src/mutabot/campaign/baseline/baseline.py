@@ -199,7 +199,7 @@ class Sources:
     def _place(self, seen: SiteSeen) -> Place:
         span = seen.span
         if span.file not in self._names:
-            self._names[span.file] = self._in(span.file, front_end_of(span.file).names) or {}
+            self._names[span.file] = self.found_in(span.file, front_end_of(span.file).names) or {}
         text, occurrence = self._names[span.file].get(_extent(span), SiteName(f"line {span.line}", 1))
         site = Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
         return Place(site, seen.operation, seen.pattern)
@@ -207,9 +207,9 @@ class Sources:
     def is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
         """Whether an expression is one of those that are found in the text of its file, if that is Python."""
         is_python = front_end_of(span.file) is PYTHON
-        return is_python and _extent(span) in (self._in(span.file, find) or ())
+        return is_python and _extent(span) in (self.found_in(span.file, find) or ())
 
-    def _in(self, file: str, find: Callable[[str], Any]) -> Any:
+    def found_in(self, file: str, find: Callable[[str], Any]) -> Any:
         """What is found in the text of a file; None for one that cannot be read."""
         if (file, find) not in self._read:
             try:

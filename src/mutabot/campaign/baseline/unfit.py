@@ -60,8 +60,13 @@ def refuse_unfit(baseline: Baseline, vocabulary: Vocabulary) -> None:
         raise problem_error(problem)
 
 
-def note_fit(baseline: Baseline, vocabulary: Vocabulary, progress: Progress) -> None:
-    """Tell which probes some tests cannot read, that a clock never ticks, and values out of range."""
+def note_fit(
+    baseline: Baseline, vocabulary: Vocabulary, progress: Progress, shared: Iterable[Remark] = ()
+) -> None:
+    """Tell which probes some tests cannot read, that a clock never ticks, and values out of range.
+
+    ``shared`` tells of sites that are one for several calls.
+    """
     ends = _with_calls(baseline)
     for probe in vocabulary.probes:
         blind = {end.test: why for end in ends if (why := _why_not(probe, end)) is not None}
@@ -80,6 +85,7 @@ def note_fit(baseline: Baseline, vocabulary: Vocabulary, progress: Progress) -> 
         *_out_of_range(baseline, vocabulary),
         *_no_numbers(baseline, vocabulary),
         *_no_noise(baseline, vocabulary),
+        *shared,
     )
     baseline.add_remarks(remarks)
     for remark in remarks:

@@ -1,0 +1,80 @@
+"""Functions of the program that only pass on to an operation what several calls give them.
+
+The site in such a function is one for all of its calls, and a mutant acts on all of them at once: a test that
+sees the first hides that none sees the last. Where the function itself is described, each call is a site.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from mutabot.languages.python import extent_of, head_size
+from mutabot.model import Role, Vocabulary
+from mutabot.model.events import Remark
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline, Sources
+    from mutabot.model.mutant import Extent
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def shared_sites(
+    baseline: Baseline, vocabulary: Vocabulary, sources: Sources, files: Iterable[str]
+) -> Iterator[Remark]:
+    """Tell of the sites in such functions, and what to describe."""
+    described = {one.qualname.rpartition(".")[2] for one in vocabulary.operations}
+    for place in baseline.hits:
+        span, operation = place.site.span, vocabulary.operation(place.operation)
+        name = span.function.rpartition(".")[2]
+        if place.site.role is not Role.PROGRAM or operation is None or name in described:
+            continue
+        if not sources.is_among(span, passed_on):
+            continue
+        count = sum((sources.found_in(file, call_names) or {}).get(name, 0) for file in files)
+        if count > 1:
+            text = (
+                f"{span.file}:{span.line} stands in {span.function}, which only passes on what {count} calls "
+                "give it: a mutant there acts on all of them at once; to mutate each by itself, "
+                f"describe {span.function} as an operation"
+            )
+            yield Remark(operation.source, "call", text)
+
+
+def passed_on(source: str) -> frozenset[Extent]:
+    """Where calls stand that are all that a function does, with nothing but its own arguments."""
+    functions = (node for node in ast.walk(ast.parse(source)) if isinstance(node, _Function))
+    calls = ((_only_call(function), function) for function in functions)
+    return frozenset(
+        extent_of(call) for call, function in calls if call is not None and _fits(call, function)
+    )
+
+
+def call_names(source: str) -> Counter[str]:
+    """How many calls of each last name there are."""
+    functions = (node.func for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
+    names = (getattr(one, "attr", None) or getattr(one, "id", None) for one in functions)
+    return Counter(name for name in names if name is not None)
+
+
+def _only_call(function: _Function) -> ast.Call | None:
+    body = function.body[head_size(function.body) :]
+    value = body[0].value if len(body) == 1 and isinstance(body[0], ast.Expr | ast.Return) else None
+    value = value.value if isinstance(value, ast.Await) else value
+    return value if isinstance(value, ast.Call) else None
+
+
+def _fits(call: ast.Call, function: _Function) -> bool:
+    """Whether a call passes on arguments of the function, and beside them constants at most."""
+    given = function.args
+    own = [*given.posonlyargs, *given.args, *given.kwonlyargs, given.vararg, given.kwarg]
+    names = {one.arg for one in own if one is not None} - {"self", "cls"}
+    values = [*call.args, *(one.value for one in call.keywords)]
+    plain = [one.value if isinstance(one, ast.Starred) else one for one in values]
+    passed = [isinstance(one, ast.Name) and one.id in names for one in plain]
+    return any(passed) and all(
+        is_own or isinstance(one, ast.Constant) for is_own, one in zip(passed, plain, strict=True)
+    )
