@@ -77,6 +77,9 @@ def _is_without(default: Any, method: str) -> bool:
 _given: dict[type[Any], dict[str, tuple[Any, Any]]] = {}
 #: the classes that have had no object yet
 _pending: set[type[Any]] = set()
+#: the classes whose methods they have. They are kept, since a class refers to itself: a test of the user's
+#: may count what the collector of garbage finds
+_helpers: list[type[Any]] = []
 
 
 def compile_all() -> None:
@@ -92,7 +95,9 @@ def _compile(kind: Any) -> None:
     body["__annotations__"] = {name: text for name, (text, _) in given.items()}
     body |= {name: default for name, (_, default) in given.items() if default is not MISSING}
     refuses = kind.__setattr__ is _REFUSING[0]
-    made = vars(dataclass(eq=False, repr=False, frozen=refuses)(type(kind.__name__, (), body)))
+    helper: type[Any] = dataclass(eq=False, repr=False, frozen=refuses)(type(kind.__name__, (), body))
+    _helpers.append(helper)
+    made = vars(helper)
     for name in ("__init__", "__match_args__", "__dataclass_params__", _FIELDS):
         setattr(kind, name, made[name])
     _pending.discard(kind)

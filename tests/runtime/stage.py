@@ -83,7 +83,12 @@ class Stage:
         return load(["robot.toml"], self.folder)
 
     def session(
-        self, mutant: Mutant | None = None, *, simulated: float | None = None, inspect: bool = False
+        self,
+        mutant: Mutant | None = None,
+        *,
+        simulated: float | None = None,
+        inspect: bool = False,
+        record: bool = False,
     ) -> Session:
         """A session with everything in place, in the middle of a test."""
         job = Job(
@@ -96,6 +101,7 @@ class Stage:
             mutant=mutant,
             simulated={} if simulated is None else {"test": simulated},
             inspect=inspect,
+            record=record,
         )
         locator = Locator(job.root, job.program, job.oracle)
         session = Session(job, self.pipe, locator)  # type: ignore[arg-type]  # it has the one method

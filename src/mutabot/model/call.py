@@ -48,7 +48,7 @@ _NO_READING = _nobody("no reading tells where the robot is now")
 _NO_CLOCK = _nobody("nothing tells the time of the simulation")
 _NO_WAIT = _nobody("nothing lets the program's time pass")
 _NO_PREVIOUS = _nobody("nobody knows what the call before this one was told")
-_NO_DEFER = _nobody("nobody makes calls later")
+NO_DEFER = _nobody("nobody makes calls later")
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +152,7 @@ class Call:
     time: Callable[[], float] = _NO_CLOCK
     wait: Callable[[float], Awaitable[None]] = _NO_WAIT
     previous: Callable[[], Mapping[str, Value] | None] = _NO_PREVIOUS
-    defer: Callable[[Call], None] = _NO_DEFER
+    defer: Callable[[Call], None] = NO_DEFER
     is_refusal: Callable[[BaseException], bool] = lambda error: False
 
     @property

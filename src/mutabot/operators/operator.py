@@ -322,9 +322,10 @@ class Context:
         subject: what it acts on.
         random: its generator for this round and test; ``draw`` is the one of a call.
         option: what the operator's table of variants says of the subject's; None if that has none.
-        call: the call of the value that it is about to change, for operators on values.
+        call: the call of the value that it is about to change, for operators on values; only while it does.
         number: of the call, from 1.
-        memory: what the operator keeps from one call for later ones.
+        memory: what the operator keeps from one call for later ones: values, or copies; an object of the
+            program's that is kept here does not die with the call.
     """
 
     subject: Subject
@@ -339,6 +340,11 @@ class Context:
     def quantity(self) -> Quantity:
         """The subject's quantity, for operators on values."""
         return quantity_of(self.subject)
+
+    def let_go(self, call: Call) -> None:
+        """The value of this call is changed: nothing keeps the call any longer."""
+        if getattr(self, "call", None) is call:
+            del self.call
 
     def draw(self) -> Random:
         """The call's own generator; a new one each time.

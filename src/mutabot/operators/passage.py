@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 from mutabot.errors import OperatorError
 from mutabot.model import Call, Middleware, Proceed, Quantity, Reply
+from mutabot.model.call import NO_DEFER
 from mutabot.model.quantity import Value, are_same, same
 
 T = TypeVar("T")
@@ -38,12 +39,17 @@ def run(coroutine: Coroutine[Any, Any, T], *, operator: str) -> T:
         result: T = end.value
         return result
     except Carried as carried:
-        raise carried.error from None
-    coroutine.close()
-    raise OperatorError(
-        f"operator {operator!r} waits for something in a plain call; "
-        "it may await proceed and call.current only"
-    )
+        error = carried.error
+    else:
+        coroutine.close()
+        raise OperatorError(
+            f"operator {operator!r} waits for something in a plain call; "
+            "it may await proceed and call.current only"
+        )
+    try:
+        raise error  # out of the clause, so that it is raised beside no other
+    finally:
+        del error  # its traceback leads here
 
 
 @dataclass(slots=True)
@@ -55,7 +61,7 @@ class CallRecord:
         performed: the calls that reached the robot.
         answered: the robot's answers to them.
         received: what the program received; None while the mutant is still at work.
-        waited: seconds of the program's time that the mutant let pass.
+        waits: seconds of the program's time that the mutant let pass, each time.
         deferred: calls to be made right after the program's next command.
         is_late: whether it is the passage of such a call.
     """
@@ -64,9 +70,14 @@ class CallRecord:
     performed: list[Call] = field(default_factory=list)
     answered: list[Reply] = field(default_factory=list)
     received: Reply | None = None
-    waited: float = 0.0
+    waits: list[float] = field(default_factory=list)
     deferred: list[Call] = field(default_factory=list)
     is_late: bool = False
+
+    @property
+    def waited(self) -> float:
+        """Seconds of the program's time that the mutant let pass."""
+        return sum(self.waits)
 
     @property
     def acted(self) -> bool:
@@ -131,14 +142,20 @@ def recording(passage: CallRecord, proceed: Proceed) -> Proceed:
 
 
 async def run_middleware(passage: CallRecord, middleware: Middleware, proceed: Proceed) -> Reply:
-    """Send the passage's call through the mutant."""
-    wait = passage.call.wait
+    """Send the passage's call through the mutant.
+
+    What the call holds leads back to none of this: what it was given dies with it.
+    """
+    wait, waits, deferred = passage.call.wait, passage.waits, passage.deferred
 
     async def waited(seconds: float) -> None:
         await wait(seconds)
-        passage.waited += seconds
+        waits.append(seconds)
 
-    passage.call = replace(passage.call, wait=waited, defer=passage.deferred.append)
+    def defer(call: Call) -> None:
+        deferred.append(replace(call, defer=NO_DEFER))
+
+    passage.call = replace(passage.call, wait=waited, defer=defer)
     passage.received = await middleware(passage.call, recording(passage, proceed))
     return passage.received
 

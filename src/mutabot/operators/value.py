@@ -76,6 +76,8 @@ class ValuesOperator(Operator):
             changed = await self.changes(one.values, context)
         except Unchanged as why:
             return one.as_is(str(why))
+        finally:
+            context.let_go(call)
         known = {quantity.name: quantity for quantity in context.subject.side}
         reasons = [self.why_unchanged(known[name], one.values[name], changed[name]) for name in changed]
         serious = [reason for reason in reasons if reason and reason != SAME]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+import weakref
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from time import process_time  # tests may replace that of the module
@@ -50,8 +51,68 @@ def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
     return None
 
 
-def is_due_to(error: BaseException, culprits: frozenset[int]) -> bool:
-    """Whether an exception is one of the culprits (by ``id``), or caused by them and by nothing else.
+class KnownError:
+    """An exception that was raised, known again by what it is; it is not kept, nor what its frames hold.
+
+    Most classes of Python's own cannot be referred to weakly. Of these, one that takes the place of another
+    in memory and says the same is taken for it.
+    """
+
+    __slots__ = ("_address", "_reference", "_said")
+
+    def __init__(self, error: BaseException) -> None:
+        self._address = id(error)
+        self._reference: weakref.ref[BaseException] | None = None
+        try:
+            self._reference = weakref.ref(error)
+        except TypeError:
+            self._said = (type(error), _text(error))
+
+    def is_of(self, error: BaseException) -> bool:
+        """Whether it is this one."""
+        if self._reference is not None:
+            return self._reference() is error
+        return self._address == id(error) and self._said == (type(error), _text(error))
+
+
+class Refusal:
+    """An exception by which the robot refused a mutated call.
+
+    Attributes:
+        text: what it said.
+        noted: itself, and those that it held.
+    """
+
+    __slots__ = ("noted", "text")
+
+    def __init__(self, error: BaseException) -> None:
+        held = leaves(error)
+        self.text = _text(held[0])
+        self.noted = tuple(KnownError(one) for one in (error, *(leaf for leaf in held if leaf is not error)))
+
+
+def _text(error: BaseException) -> str:
+    try:
+        return str(error)
+    except Exception:  # an exception of the user's may fail to say what it is
+        return type(error).__name__
+
+
+class Culprits:
+    """The exceptions by which the robot refused mutated calls, and all that these held."""
+
+    def __init__(self, noted: Iterable[KnownError]) -> None:
+        self._noted = tuple(noted)
+
+    def __bool__(self) -> bool:
+        return bool(self._noted)
+
+    def __contains__(self, error: object) -> bool:
+        return isinstance(error, BaseException) and any(one.is_of(error) for one in self._noted)
+
+
+def is_due_to(error: BaseException, culprits: Culprits) -> bool:
+    """Whether an exception is one of the culprits, or caused by them and by nothing else.
 
     A group is so if all that it holds are, or if it was made of one: with ``raise … from``, or while a
     culprit was handled. What a group was raised beside says nothing otherwise: a task group ends beside
@@ -60,11 +121,11 @@ def is_due_to(error: BaseException, culprits: frozenset[int]) -> bool:
     return _is_due(error, culprits, frozenset())
 
 
-def _is_due(error: BaseException | None, culprits: frozenset[int], above: frozenset[int]) -> bool:
+def _is_due(error: BaseException | None, culprits: Culprits, above: frozenset[int]) -> bool:
     """``above``: what led here; a chain of exceptions may be a circle."""
     if error is None or id(error) in above:
         return False
-    if id(error) in culprits:
+    if error in culprits:
         return True
     above |= {id(error)}
     held = _held(error)
@@ -72,7 +133,8 @@ def _is_due(error: BaseException | None, culprits: frozenset[int], above: frozen
         return _is_due(_cause(error), culprits, above)
     if all(_is_due(one, culprits, above) for one in held) or _is_due(error.__cause__, culprits, above):
         return True
-    return id(_cause(error)) in culprits.difference(map(id, leaves(error)))
+    cause = _cause(error)
+    return cause in culprits and all(cause is not leaf for leaf in leaves(error))
 
 
 def _held(error: BaseException) -> tuple[BaseException, ...]:
@@ -100,7 +162,7 @@ class Evidence:
         hits: calls at its site.
         acted: hits at which it changed something.
         example: value before and after, at the first hit at which it acted.
-        refusals: the exceptions by which the robot refused mutated calls, the latest last; not all of many.
+        refusals: how the robot refused mutated calls by exceptions, the latest last; not all of many.
         said: how the robot refused a mutated call by data, in words; None if it did not.
         failure: what went wrong in the tool or the operator itself, or None.
         is_of_text: whether the mutant is one of the program text, which makes no calls itself: a refusal
@@ -112,7 +174,7 @@ class Evidence:
     hits: int = 0
     acted: int = 0
     example: tuple[Any, ...] | None = None
-    refusals: tuple[BaseException, ...] = ()
+    refusals: tuple[Refusal, ...] = ()
     said: str | None = None
     failure: str | None = None
     is_of_text: bool = False
@@ -124,14 +186,14 @@ class Evidence:
         return replace(self, away=dict(self.away))
 
     @property
-    def culprits(self) -> frozenset[int]:
-        """The refusals and all that they hold, each by its ``id``."""
-        return frozenset(id(leaf) for refusal in self.refusals for leaf in (refusal, *leaves(refusal)))
+    def culprits(self) -> Culprits:
+        """The refusals and all that they held."""
+        return Culprits(one for refusal in self.refusals for one in refusal.noted)
 
     @property
     def refusal(self) -> str | None:
         """How the robot refused a mutated call, in its own words; None if it did not."""
-        return str(leaves(self.refusals[-1])[0]) if self.refusals else self.said
+        return self.refusals[-1].text if self.refusals else self.said
 
 
 class TimeExceeded(BaseException):  # it is no error of the program's

@@ -11,6 +11,7 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSeen, TextsSeen
+from mutabot.model.job import Idle
 from mutabot.model.operation import owner_of
 from mutabot.runtime.evidence import Evidence, Meter
 from mutabot.runtime.inspection import Inspection
@@ -89,6 +90,7 @@ class Session:
         self._adapters: list[Adapter] = []
         self._lately: dict[str, Mapping[str, Value]] = {}
         self._telling: list[Adapter] = []
+        self._asking: list[tuple[str, str | None, Idle]] = []
         self._time = ProgramTime(job.vocabulary, lambda: self.meter, self.instances)
         self._main_thread = threading.main_thread().ident
         self._sees_itself: set[Handler] = set()
@@ -113,6 +115,7 @@ class Session:
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
             self.callables.wrap(clock.tick, reader.handle)
         self._listen()
+        self._ask_for_answers()
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
         if self.job.record or self.job.serving is not None:
@@ -121,6 +124,23 @@ class Session:
             is_original = self.job.mutant is None
             self.recorder.answers = Answers(handles_of(vocabulary)) if is_original else None
             self._start_mutant()
+
+    def _ask_for_answers(self) -> None:
+        """Find the mutants of the job that may ask what a command answered last."""
+        idle = [(one, Idle.of(one.idle)) for one in self._mutants_of_job() if one.idle is not None]
+        self._asking = [(one.operation, one.pattern, answers) for one, answers in idle if answers.varying]
+        self._remember_answers()
+
+    def _remember_answers(self) -> None:
+        """Have the answers of the running test remembered that somebody may ask for, and no others."""
+        now = (self.job.round, self.test)
+        asked = {(target, pattern) for target, pattern, idle in self._asking if idle.is_varying(*now)}
+        for adapter in self._adapters:
+            adapter.remembers = {text for target, text in asked if target == adapter.operation.target}
+
+    def _mutants_of_job(self) -> list[Mutant]:
+        mutants = list(self.job.forking.mutants) if self.job.forking is not None else []
+        return mutants + ([self.job.mutant] if self.job.mutant is not None else [])
 
     def _see_calls(self) -> None:
         """See calls where they are written, of whatever stands in the place of an operation."""
@@ -134,8 +154,7 @@ class Session:
 
     def _tell_standing(self) -> None:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
-        mutants = list(self.job.forking.mutants) if self.job.forking is not None else []
-        mutants += [self.job.mutant] if self.job.mutant is not None else []
+        mutants = self._mutants_of_job()
         self.standing.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
         if self.job.inspect:
             self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
@@ -243,6 +262,7 @@ class Session:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
         self.inspection.is_asked = job.inspect
+        self._ask_for_answers()
         self.passing.on_end = self.inspection.note if job.inspect else None
         self._tell_standing()
         if self.text is not None:
@@ -274,6 +294,7 @@ class Session:
         self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
             self.returns.start()
+        self._remember_answers()
         for adapter in self._adapters:
             adapter.reset()
         if self.text is not None:

@@ -21,7 +21,7 @@ from mutabot.operators import Need, Subject, operator
 from mutabot.operators.command import FatalFault
 from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import CallRecord, Carried, run_middleware
-from mutabot.runtime.evidence import REFUSALS, Evidence, leaves
+from mutabot.runtime.evidence import REFUSALS, Evidence, KnownError, Refusal, leaves
 from mutabot.runtime.interception import call_faults
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot
 from mutabot.runtime.interception.live import HandedCopies, copied, is_live
@@ -67,8 +67,9 @@ class RefusedCalls:
             return
         self._watched.pop(made.call.operation.target, None)
         refused = refused_of(made.call)
-        if any(one.topic is not None for one in refused):  # nothing of the program's is kept without need
-            self._watched[made.call.operation.target] = (made, refused)
+        if any(one.topic is not None for one in refused):
+            call = Call(made.call.operation, made.call.pattern)  # nothing of the program's is kept
+            self._watched[made.call.operation.target] = (replace(made, call=call), refused)
 
     def returned(self, made: SiteCall, result: Any) -> None:
         """Look whether the answer to a call of the original's says that the robot refuses it."""
@@ -418,7 +419,7 @@ class _MutatedCall:
 
     Attributes:
         does_nothing: whether the operator is to let the robot do nothing.
-        raised: what the robot raised, all of it.
+        raised: what the robot raised, all of it; it is not kept, since its traceback leads here.
         answer: what it returned last, and whether it has.
         kept: the same, or the copy that the operator saw.
         is_live: whether that is the robot's own memory.
@@ -429,7 +430,7 @@ class _MutatedCall:
     made: SiteCall
     passage: CallRecord
     does_nothing: bool
-    raised: list[BaseException] = field(default_factory=list)
+    raised: list[KnownError] = field(default_factory=list)
     answer: Any = None
     is_answered: bool = False
     kept: Any = None
@@ -450,9 +451,10 @@ class _MutatedCall:
             result = await self._perform(call)
         except BaseException as error:
             raised = error.error if isinstance(error, Carried) else error
-            self.raised.append(raised)
+            self.raised.append(KnownError(raised))
             if is_changed and is_refusal(raised, mutant.refusals) and not self._is_usual:
                 mutant.evidence.refusals = with_refusal(mutant.evidence.refusals, raised)
+            del raised
             raise
         finally:
             if is_changed:
@@ -469,7 +471,7 @@ class _MutatedCall:
     def is_own(self, error: BaseException) -> bool:
         """Whether the operator's own code raised an exception: neither the robot nor who ends the call."""
         error = error.error if isinstance(error, Carried) else error
-        if any(one is error for one in self.raised):
+        if any(one.is_of(error) for one in self.raised):
             return False
         if isinstance(error, Exception):
             return True
@@ -518,6 +520,6 @@ def is_refusal(error: BaseException, names: Iterable[str]) -> bool:
     return all(is_named(leaf, names) for leaf in leaves(error))
 
 
-def with_refusal(refusals: tuple[BaseException, ...], error: BaseException) -> tuple[BaseException, ...]:
+def with_refusal(refusals: tuple[Refusal, ...], error: BaseException) -> tuple[Refusal, ...]:
     """Return the refusals of a test with a new one; a program that tries on and on leaves no endless list."""
-    return (*refusals, error)[-REFUSALS:]
+    return (*refusals, Refusal(error))[-REFUSALS:]

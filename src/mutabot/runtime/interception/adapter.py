@@ -12,6 +12,7 @@ from __future__ import annotations
 import copy
 import inspect
 import sys
+import weakref
 from collections.abc import Awaitable, Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -20,7 +21,7 @@ from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, NotToldError, Operation, Path, Pattern, Quantity, Reply, Vocabulary
-from mutabot.model.answer import NotKeptError, is_of_numpy, keep, restore
+from mutabot.model.answer import is_of_numpy, keep, restore
 from mutabot.model.enumeration import is_member, name_of
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
@@ -168,6 +169,7 @@ class Adapter:
         handles: classes that are part of the robot API: their objects are never copied.
         now, wait: tell the program's time, s, and let so much of it pass.
         handler: what stands around the operation.
+        remembers: the commands, by the texts of their patterns, whose last answers somebody may ask for.
         commands: how often the robot was made to do this, if it does anything.
     """
 
@@ -179,6 +181,7 @@ class Adapter:
     now: Callable[[], float]
     wait: Callable[[float], Awaitable[None]]
     handler: Handler = field(init=False)
+    remembers: Collection[str | None] = ()
     commands: int = 0
 
     def __post_init__(self) -> None:
@@ -187,12 +190,12 @@ class Adapter:
         self._declared = parse_signature(operation.signature) if operation.signature is not None else None
         self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
         self._own: Signature | None = None
-        self._last_results: dict[str | None, Any] = {}
+        self._last_answers: dict[str | None, Callable[[Mapping[str, Any]], Any]] = {}
         self._last_written: dict[str | None, dict[str, Value]] = {}
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
-        self._last_results.clear()
+        self._last_answers.clear()
         self._last_written.clear()
         self.lately.clear()
         self.commands = 0
@@ -344,8 +347,8 @@ class Adapter:
         self._check_result(call.payload, result)
         meant = call.pattern if call.pattern is not None else self.operation
         values = self._read_result(meant.result, result)
-        if call.is_command:
-            self._last_results[call.pattern.text if call.pattern is not None else None] = snapshot(result)
+        if self.remembers and call.is_command:
+            self._remember(call, result)
         if self.operation.named is not None:
             self.lately[self.operation.target] = {**call.values, **values}
         return Reply(values, result)
@@ -414,18 +417,39 @@ class Adapter:
         return await value if inspect.isawaitable(value) else value
 
     def last_answer(self, call: Call) -> Reply | None:
-        """Return what the robot answered last to this command in the running test; None if it has not yet.
+        """Return what the robot answered last to this command in the running test.
 
         It is a copy, so that the program cannot change it, or the object where that cannot be copied safely.
+        None if it has not answered yet, or if that object is no more.
         """
+        last = self._last_answers.get(call.pattern.text if call.pattern is not None else None)
+        found = last(call_context(call)) if last is not None else _GONE
+        return Reply({}, found) if found is not _GONE else None
+
+    def _remember(self, call: Call, result: Any) -> None:
+        """Note an answer as it is now, by its value: nothing of the program's is kept alive."""
         key = call.pattern.text if call.pattern is not None else None
-        if key not in self._last_results:
-            return None
-        last, known = self._last_results[key], call_context(call)
+        if key not in self.remembers:
+            return
         try:
-            return Reply({}, restore(keep(last, known, self.handles), known))
-        except NotKeptError:
-            return Reply({}, last)
+            data = keep(result, call_context(call), self.handles)
+        except Exception:  # it cannot be kept, or does anything when it is looked at
+            self._last_answers[key] = _weakly(result)
+        else:
+            self._last_answers[key] = partial(restore, data)
+
+
+#: stands for an answer that is no more
+_GONE = object()
+
+
+def _weakly(answer: Any) -> Callable[[Mapping[str, Any]], Any]:
+    """Return what gives an answer as long as somebody else keeps it."""
+    try:
+        reference = weakref.ref(answer)
+    except TypeError:
+        return lambda here: _GONE
+    return lambda here: _GONE if (found := reference()) is None else found
 
 
 def snapshot(value: Any) -> Any:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Coroutine, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from types import FrameType, FunctionType, MethodType
+from types import FrameType, FunctionType, MethodType, TracebackType
 from typing import TYPE_CHECKING, Any, cast
 
 import wrapt
@@ -28,6 +28,7 @@ from mutabot.operators.passage import Carried, run
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Invocation, SiteCall, is_mock
+from mutabot.runtime.interception.frames import without_ours
 from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.trace import Locator, Recorder, border, caller_of
 from mutabot.runtime.observation.clock import Instances
@@ -121,34 +122,41 @@ class Dispatcher:
 
         def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where = NOWHERE) -> Any:
             __tracebackhide__ = True
-            if self.turn is not None:
-                self.turn()
-            if self.meter is None:
-                return wrapped(*args, **kwargs)
-            if instance is not None and self.instances.is_watching:
-                self.instances.used(instance)
-            runs = _runs.get()
-            if runs == _UNTRACKED:
-                return wrapped(*args, **kwargs)
-            frame = sys._getframe(1)
-            site = where.site or self._site(frame, where, adapter, runs == _OPERATION)
-            if runs and site is None:
-                return wrapped(*args, **kwargs)
-            if is_counted and not where.is_again:
-                self.meter.operations += 1
-            if site is None:
-                return wrapped(*args, **kwargs)
-            is_direct = self.recorder.answers is not None and self._is_direct(frame, where)
-            wrapped = _bound(wrapped, instance)
-            is_async = is_coroutine_function(wrapped) or where.is_awaited
-            caller = caller_of(where.frame or frame, is_async)
-            invocation = Invocation(wrapped, instance, args, kwargs, where, caller)
-            on_its_way = self.dispatch(adapter, site, invocation, is_async, is_direct)
-            if is_async:
-                return _or_alone(on_its_way, invocation) if adapter.operation.is_partial else on_its_way
-            operator = self.mutant.mutant.operator if self.mutant is not None else ""
-            result = run(on_its_way, operator=operator)
-            return wrapped(*args, **kwargs) if result is _ALONE else result
+            try:
+                if self.turn is not None:
+                    self.turn()
+                if self.meter is None:
+                    return wrapped(*args, **kwargs)
+                if instance is not None and self.instances.is_watching:
+                    self.instances.used(instance)
+                runs = _runs.get()
+                if runs == _UNTRACKED:
+                    return wrapped(*args, **kwargs)
+                frame: Any = sys._getframe(1)
+                site = where.site or self._site(frame, where, adapter, runs == _OPERATION)
+                if runs and site is None:
+                    return wrapped(*args, **kwargs)
+                if is_counted and not where.is_again:
+                    self.meter.operations += 1
+                if site is None:
+                    return wrapped(*args, **kwargs)
+                is_direct = self.recorder.answers is not None and self._is_direct(frame, where)
+                wrapped = _bound(wrapped, instance)
+                is_async = is_coroutine_function(wrapped) or where.is_awaited
+                caller = caller_of(where.frame or frame, is_async)
+                invocation: Any = Invocation(wrapped, instance, args, kwargs, where, caller)
+                on_its_way: Any = self.dispatch(adapter, site, invocation, is_async, is_direct)
+                if is_async:
+                    return _awaited(on_its_way, invocation)
+                operator = self.mutant.mutant.operator if self.mutant is not None else ""
+                result = run(on_its_way, operator=operator)
+                return wrapped(*args, **kwargs) if result is _ALONE else result
+            except BaseException as error:
+                # who keeps the exception keeps this frame
+                wrapped = instance = args = kwargs = frame = invocation = on_its_way = None
+                where = NOWHERE
+                error.__traceback__ = _from_here(error)
+                raise
 
         return handle
 
@@ -266,11 +274,26 @@ class Dispatcher:
             self.on_end(made.call, reply.values if reply is not None else {})
 
 
-async def _or_alone(on_its_way: Coroutine[Any, Any, Any], invocation: Invocation) -> Any:
+async def _awaited(on_its_way: Coroutine[Any, Any, Any], invocation: Invocation | None) -> Any:
     """Await a call on its way, or make it as if there were no handler around it."""
     __tracebackhide__ = True
-    result = await on_its_way
-    return await invocation.wrapped(*invocation.args, **invocation.kwargs) if result is _ALONE else result
+    try:
+        result = await on_its_way
+        if result is not _ALONE or invocation is None:
+            return result
+        return await invocation.wrapped(*invocation.args, **invocation.kwargs)
+    except BaseException as error:
+        invocation = None
+        error.__traceback__ = _from_here(error)
+        raise
+
+
+def _from_here(error: BaseException) -> TracebackType | None:
+    """The traceback of an exception that is caught here, without the frames of ours below this one."""
+    here = error.__traceback__
+    if here is not None:
+        here.tb_next = without_ours(here.tb_next)
+    return here
 
 
 def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:

@@ -6,11 +6,13 @@ Whose call it is, and exactly where it stands: from the frames of the running pr
 from __future__ import annotations
 
 import os
+import sys
+import weakref
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from types import CodeType, FrameType, FunctionType
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from types import CodeType, FrameType, FunctionType, ModuleType
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.front_end import SourcePosition, front_ends
@@ -26,7 +28,8 @@ if TYPE_CHECKING:
     from mutabot.runtime.targets.target import Place
 
 F = TypeVar("F")
-
+K = TypeVar("K")
+V = TypeVar("V")
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
 #: modules whose frames run the tasks of an event loop
@@ -205,6 +208,32 @@ def _is_within_border(frame: FrameType | None) -> bool:
     return frame is not None
 
 
+class OfModules(Generic[K, V]):
+    """What is remembered of the names of modules, as long as the modules are there.
+
+    A test may load a module anew, or run a file for its names alone: nothing of these is kept.
+
+    Attributes:
+        known: what is remembered, by keys.
+    """
+
+    def __init__(self) -> None:
+        self.known: dict[K, V] = {}
+        self._keys: dict[weakref.ref[ModuleType], set[K]] = {}
+
+    def keep(self, names: dict[str, Any], key: K, value: V) -> V:
+        """Remember what was found out about ``names``, if they are those of a module."""
+        module = sys.modules.get(names.get("__name__", ""))
+        if type(module) is ModuleType and vars(module) is names:
+            self.known[key] = value
+            self._keys.setdefault(weakref.ref(module, self._forget), set()).add(key)
+        return value
+
+    def _forget(self, module: weakref.ref[ModuleType]) -> None:
+        for key in self._keys.pop(module, ()):
+            self.known.pop(key, None)
+
+
 class Locator:
     """Finds the nearest frame that lies in the configured program or oracle paths.
 
@@ -299,8 +328,11 @@ async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: b
     return await wrapped(*args, **kwargs)
 
 
-#: callers by code, instruction and whether they await; the code is kept, so that no other can get its address
-_callers: dict[tuple[int, int, bool], tuple[Caller, CodeType, dict[str, Any]]] = {}
+#: code of callers by code, instruction and whether they await. The latter code is kept, so that no other can
+#: get its address
+_codes: dict[tuple[int, int, bool], tuple[CodeType, CodeType]] = {}
+#: callers likewise, with the global names that they have
+_callers: OfModules[tuple[int, int, bool], tuple[Caller, dict[str, Any]]] = OfModules()
 
 
 def caller_of(frame: FrameType, is_async: bool) -> Caller:
@@ -310,26 +342,29 @@ def caller_of(frame: FrameType, is_async: bool) -> Caller:
     was called. Between the program and an operation there are frames of ours; the last of them has the
     program's file, line, function and global names.
     """
-    code = frame.f_code
+    code, names = frame.f_code, frame.f_globals
     key = (id(code), frame.f_lasti, is_async)
-    known = _callers.get(key)
-    if known is None or known[2] is not frame.f_globals:
-        made = _made(code, frame.f_lasti, frame.f_globals, is_async)
-        known = _callers[key] = (made, code, frame.f_globals)
+    known = _callers.known.get(key)
+    if known is None or known[1] is not names:
+        if key not in _codes:
+            _codes[key] = (_made(code, frame.f_lasti, is_async), code)
+        made = FunctionType(_codes[key][0], names, code.co_name, (True,))
+        known = _callers.keep(names, key, (made, names))
     return known[0]
 
 
-def _made(code: CodeType, instruction: int, names: dict[str, Any], is_async: bool) -> Caller:
+def _made(code: CodeType, instruction: int, is_async: bool) -> CodeType:
     line = list(code.co_positions())[instruction // 2][0] or code.co_firstlineno
     own = (_async_call if is_async else _call).__code__
-    own = own.replace(
+    made = own.replace(
         co_name=code.co_name,
         co_qualname=code.co_qualname,
         co_filename=code.co_filename,
         co_firstlineno=line,
         co_linetable=_all_in_line(len(own.co_code) // 2),
     )
-    return border(FunctionType(own, names, code.co_name, (True,)))
+    _borders[id(made)] = made
+    return made
 
 
 def _all_in_line(units: int) -> bytes:

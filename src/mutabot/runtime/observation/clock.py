@@ -100,7 +100,12 @@ class Instances:
         for name in self._names_of(type(instance)):
             used = self._used.setdefault(name, {})
             if id(instance) not in used and len(used) < MOST:
-                used[id(instance)] = _held(instance)
+                used[id(instance)] = _held(instance, self._references_to(instance))
+
+    def _references_to(self, instance: Any) -> int:
+        """How many weak references to an object are kept here."""
+        made = (by_id for by_name in self._made.values() for by_id in by_name.values())
+        return sum(id(instance) in by_id for by_id in made)
 
     def of(self, name: str) -> list[Any]:
         """The objects of this class that a probe is read from, as they are now."""
@@ -152,14 +157,22 @@ def _forget(made: dict[int, weakref.ref[Any]], key: int, gone: weakref.ref[Any])
         del made[key]
 
 
-def _held(instance: Any) -> Callable[[], Any]:
-    """Keeps an object that the program may let go before its test ends, unless it would miss that."""
-    if hasattr(type(instance), "__del__"):
-        try:
-            return weakref.ref(instance)
-        except TypeError:
-            return lambda: None
-    return lambda: instance
+def _held(instance: Any, known: int) -> Callable[[], Any]:
+    """Keep an object that the program may let go before its test ends, unless somebody would miss that.
+
+    ``known``: the weak references to it that are kept here.
+    """
+    parts: dict[str, Any] = {}
+    with contextlib.suppress(AttributeError):  # of an object without a dictionary
+        parts = object.__getattribute__(instance, "__dict__")
+    kinds = map(type, (instance, *list(parts.values())))
+    ends = any(hasattr(kind, "__del__") for kind in kinds)  # such as an open port
+    if weakref.getweakrefcount(instance) <= known and not ends:
+        return lambda: instance
+    try:
+        return weakref.ref(instance)
+    except TypeError:
+        return lambda: None
 
 
 def _note_made(owner: type, note: Callable[[Any], None]) -> None:

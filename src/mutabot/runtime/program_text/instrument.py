@@ -27,7 +27,7 @@ from mutabot.model.mutant import RUNTIME, Extent, kept_name
 from mutabot.model.source_units import digest
 from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.evidence import Evidence, Refusal
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.compiling import text_of
 from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
@@ -328,7 +328,7 @@ class SessionText:
         self._originals: _Nodes = {}
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._test: str | None = None
-        self._refusals: tuple[BaseException, ...] = ()
+        self._refusals: tuple[Refusal, ...] = ()
         self._unknown = False
 
     @classmethod

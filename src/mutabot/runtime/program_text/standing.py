@@ -31,6 +31,7 @@ from __future__ import annotations
 import copy
 import inspect
 import sys
+import weakref
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -47,7 +48,7 @@ from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
-from mutabot.runtime.interception.trace import Locator, is_border
+from mutabot.runtime.interception.trace import Locator, OfModules, is_border
 from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Place, Where, named_class
@@ -161,7 +162,7 @@ class Standing:
     alone: set[Span] = field(default_factory=set)
     by_name: dict[str, list[Adapter]] = field(default_factory=dict)
     _signatures: dict[Adapter, Signature | None] = field(default_factory=dict)
-    _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
+    _meant: OfModules[int, dict[str, Any]] = field(default_factory=OfModules)
 
     def __post_init__(self) -> None:
         for one in self.adapters:
@@ -213,7 +214,13 @@ class Standing:
         signature = signature_of(found) if is_own else self._signature_of(one)
         if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
             instance, found, args = args[0], partial(found, args[0]), args[1:]
-        return one.handler(found, instance, args, kwargs, Where(receiver=given, signature=signature, **where))
+        try:
+            return one.handler(
+                found, instance, args, kwargs, Where(receiver=given, signature=signature, **where)
+            )
+        except BaseException:
+            found = receiver = args = kwargs = where = given = instance = None  # type: ignore[assignment]
+            raise  # who keeps the exception keeps this frame
 
     def stands_in(self, found: Any) -> bool:
         """Whether something is a mock, or a function of the project that is no operation: a fake."""
@@ -307,7 +314,7 @@ class Standing:
 
         With the class, or the handler of the operation.
         """
-        known = self._meant.get(id(names))
+        known = self._meant.known.get(id(names))
         if known is None:
             owners = self.callables.owners.values()
             found: dict[str, Any] = {}
@@ -316,8 +323,8 @@ class Standing:
                     found[name] = value._self_wrapper
                 elif any(value is owner for owner in owners):
                     found[name] = value
-            known = self._meant[id(names)] = (names, found)
-        return known[1]
+            known = self._meant.keep(names, id(names), found)
+        return known
 
     def _owner(self, one: Adapter) -> type | None:
         return self.callables.owners.get(one.operation.target)
@@ -445,7 +452,7 @@ class Handing:
             self._standing.noted.note(site, one.operation, found, receiver)
         mock = mock_of(found)
         if mock is not None:
-            known = vars(mock).get(_MARK, (one, receiver, place))
+            known = vars(mock).get(_MARK, (one, _weakly(receiver), place))
             if known[2] == place or not site.is_given:
                 vars(mock)[_MARK] = (*known[:2], place if known[2] == place else None)
                 return found
@@ -498,7 +505,7 @@ class Handing:
         if is_untracked() or (caller is not None and is_border(caller.f_code)):  # the operation itself
             return original(mock, *args, **kwargs)
         if mark is not None:
-            one, receiver, place = mark
+            one, receiver, place = mark[0], mark[1](), mark[2]
         else:
             parent = own.get("_mock_new_parent")
             one, receiver, place = None, NOTHING if parent is None else parent, None
@@ -512,6 +519,15 @@ class Handing:
         is_awaited = is_coroutine_function(mock)
         where = {"handed": place, "frame": caller, "is_awaited": is_awaited, "stands_in": True}
         return self._standing.call(one, where, partial(original, mock), receiver, *args, **kwargs)
+
+
+def _weakly(receiver: Any) -> Callable[[], Any]:
+    """What gives the object that a mock was read from as long as it is there: it may keep the mock itself."""
+    try:
+        reference = weakref.ref(receiver)
+    except TypeError:
+        return lambda: receiver
+    return lambda: NOTHING if (found := reference()) is None else found
 
 
 def _caller(frame: FrameType | None) -> FrameType | None:
