@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import hashlib
 import math
 import weakref
 from collections.abc import Callable, Mapping, Sequence
@@ -9,11 +11,17 @@ from dataclasses import replace
 from os import PathLike
 from types import TracebackType
 
+import daqp
+import mujoco
+import numpy as np
+import ruckig
+
 from mutabot_cell.models.kinova import gen3
 from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.robot import RobotModel
 from mutabot_cell.shown.feed import tell_of
 
+from . import originals
 from .belt import ConveyorBelt
 from .errors import BadArgument
 from .force_sensor import Wrench, true_wrench
@@ -352,3 +360,6 @@ def world() -> dict[str, float]:
     """
     cell = current()
     return {} if cell is None else cell.truth.world()
+
+
+originals.note(copy, daqp, hashlib, math, mujoco, np, np.linalg, ruckig)

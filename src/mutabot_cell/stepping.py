@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import hashlib
 from contextlib import suppress
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -17,16 +18,14 @@ from mutabot import shared_memory
 
 from .fingerprint import Fingerprint
 from .geometry import Array
+from .originals import Originals
 
 MOVING = int(mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART)
 """What of a state changes within a tick."""
 
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION) & ~int(mujoco.mjtState.mjSTATE_CTRL)
 _SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
-_CALLBACKS = (
-    mujoco.get_mjcb_passive, mujoco.get_mjcb_control, mujoco.get_mjcb_contactfilter, mujoco.get_mjcb_sensor,
-    mujoco.get_mjcb_act_dyn, mujoco.get_mjcb_act_gain, mujoco.get_mjcb_act_bias,
-)  # fmt: skip
+_CALLBACKS = ("passive", "control", "contactfilter", "sensor", "act_dyn", "act_gain", "act_bias")
 
 
 class Stepping:
@@ -73,13 +72,13 @@ class Stepping:
         return None if kept is None else np.frombuffer(kept)
 
     def _is_told_by_state(self) -> bool:
-        """Whether nothing else decides, such as which islands sleep, or what callbacks do."""
+        """Whether nothing else decides: islands that sleep, callbacks, or what a test has put in place."""
         sleeps = self._model.opt.enableflags & _SLEEP
-        return not sleeps and all(callback() is None for callback in _CALLBACKS)
+        return not sleeps and _is_native() and _ORIGINALS.are_in_place(self, self._fingerprint)
 
     def keep(self, values: Array) -> None:
         """Keep values that follow from all that was given when `recall` was last asked."""
-        if self._memory is not None and self._key is not None:
+        if self._memory is not None and self._key is not None and self._is_told_by_state():
             self._memory.put(self._key, values.tobytes())
 
     def step(self, inputs: Array, before: Array) -> None:
@@ -109,4 +108,32 @@ def _measure_no_time() -> None:
         ctypes.c_void_p.in_dll(library, "mjcb_time").value = None
 
 
+class _Pointers:
+    """What MuJoCo itself holds to call: somebody may set it from C as well, behind the bindings' back."""
+
+    def __init__(self) -> None:
+        self._callbacks: list[ctypes.c_void_p] = []
+        self._collisions: Any = b""
+        with suppress(OSError, ValueError):  # another build may keep it elsewhere: then nothing is known
+            library = ctypes.PyDLL(mujoco._functions.__file__)
+            self._callbacks = [ctypes.c_void_p.in_dll(library, f"mjcb_{name}") for name in _CALLBACKS]
+            kinds = int(mujoco.mjtGeom.mjNGEOMTYPES)
+            table = ctypes.c_void_p * (kinds * kinds)
+            self._collisions = table.in_dll(library, "mjCOLLISIONFUNC")
+        self._known = bytes(self._collisions)
+
+    def are_original(self) -> bool:
+        """Whether there are no callbacks, and shapes collide as MuJoCo has it."""
+        known = self._known
+        return bool(known) and not any(map(_is_set, self._callbacks)) and bytes(self._collisions) == known
+
+
+def _is_set(pointer: ctypes.c_void_p) -> bool:
+    return pointer.value is not None
+
+
 _measure_no_time()
+_is_native = _Pointers().are_original
+_OWN = (__name__, Fingerprint.__module__, shared_memory.__name__)
+#: what steps depend on
+_ORIGINALS = Originals(_OWN, (mujoco, np, hashlib))

@@ -11,6 +11,7 @@ from mutabot import shared_memory
 from mutabot_cell.geometry import Array
 from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.models.robot import RobotModel
+from mutabot_cell.originals import MOTIONS, are_original
 
 from .kinematics import Kinematics
 from .line import Line
@@ -63,7 +64,7 @@ class Planner:
 
     def _remembered(self, plan: Callable[[], Motion], *given: Array | float) -> Motion:
         """What `plan` makes of all that is given."""
-        if self._memory is None:
+        if self._memory is None or not are_original(MOTIONS, self, self._kinematics):
             return plan()
         numbers = np.concatenate([np.ravel(part) for part in given])
         key = hashlib.sha256(self._robot + numbers.tobytes()).digest()[: shared_memory.KEY]
@@ -71,5 +72,6 @@ class Planner:
         if kept is not None:
             return Motion(*np.frombuffer(kept).reshape(2, -1, self._kinematics.count))
         motion = plan()
-        self._memory.put(key, motion.joints.tobytes() + motion.speeds.tobytes())
+        if are_original(MOTIONS, self, self._kinematics):
+            self._memory.put(key, motion.joints.tobytes() + motion.speeds.tobytes())
         return motion

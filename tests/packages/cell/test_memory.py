@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -10,9 +11,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from mutabot_cell import Box, Cell, CellError, MotionRefused, Scene, gen3
+from mutabot import shared_memory
+from mutabot_cell import Box, Cell, CellError, MotionRefused, Scene, gen3, stepping
 from mutabot_cell.fingerprint import Fingerprint
 from mutabot_cell.motion.kinematics import Kinematics
+from mutabot_cell.motion.trajectory import joint_motion
+from mutabot_cell.originals import MOTIONS, Originals, are_original
 
 from .memory import remembering
 
@@ -40,6 +44,9 @@ def steps(monkeypatch: pytest.MonkeyPatch) -> Callable[[], int]:
         return count
 
     monkeypatch.setattr(mujoco, "mj_step", step)
+    monkeypatch.setattr(
+        Originals, "are_in_place", lambda *_: True
+    )  # to count is to put something in its place
     return asked
 
 
@@ -190,6 +197,7 @@ def test_a_motion_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return original(self, *given)
 
     monkeypatch.setattr(Kinematics, "follow", follow)
+    monkeypatch.setattr(Originals, "are_in_place", lambda *_: True)  # although it was put in place
     for _ in range(2):
         cell = Cell(1)
         cell.arm.move_by(z=0.02)
@@ -215,3 +223,104 @@ def test_a_plan_from_memory_is_the_plan_to_the_bit() -> None:
     assert first.joints.tobytes() == second.joints.tobytes()
     assert first.speeds.tobytes() == second.speeds.tobytes()
     assert first.joints.shape == second.joints.shape
+
+
+def fields(cell: Cell) -> bytes:
+    """Where everything is."""
+    return cell.simulation.data.qpos.tobytes()
+
+
+def disturbed(cell: Cell) -> Callable[..., None]:
+    """A step of the physics in whose course somebody takes the box away."""
+    original = mujoco.mj_step
+
+    def step(model: mujoco.MjModel, data: mujoco.MjData, *more: object) -> None:
+        data.qpos[-7] += 1e-4
+        original(model, data, *more)
+
+    return step
+
+
+@pytest.mark.parametrize("watch", [singly, lambda cell: cell], ids=["ticks", "stretches"])
+def test_what_was_stepped_by_something_else_is_not_remembered(
+    watch: Callable[[Cell], Cell], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plain = watch(Cell(1))
+    with monkeypatch.context() as patch:
+        patch.setattr(shared_memory, "_shared", None)
+        plain = watch(Cell(1))
+        move(plain)
+    with monkeypatch.context() as patch:
+        other = watch(Cell(1))
+        patch.setattr(mujoco, "mj_step", disturbed(other))
+        move(other)
+        assert fields(other) != fields(plain)
+    again = watch(Cell(1))
+    move(again)
+    assert fields(again) == fields(plain)
+    with monkeypatch.context() as patch:  # nor is what is remembered put in the place of something else
+        other_again = watch(Cell(1))
+        patch.setattr(mujoco, "mj_step", disturbed(other_again))
+        move(other_again)
+        assert fields(other_again) == fields(other)
+
+
+@pytest.mark.parametrize(
+    "target",
+    [
+        "mujoco.mj_step", "mujoco.mj_setState", "mujoco.mj_getState", "mujoco.mj_saveModel",
+        "mutabot_cell.stepping.Stepping.step", "mutabot_cell.stepping.Stepping.end",
+        "mutabot_cell.fingerprint.Fingerprint.now", "mutabot_cell.stepping.MOVING",
+    ],
+)  # fmt: skip
+def test_ticks_are_remembered_only_while_all_that_makes_them_is_in_place(
+    target: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert stepping._ORIGINALS.are_in_place()
+    with monkeypatch.context() as patch:
+        patch.setattr(target, object())
+        assert not stepping._ORIGINALS.are_in_place()
+    assert stepping._ORIGINALS.are_in_place()
+
+
+@pytest.mark.parametrize(
+    "target",
+    [
+        "mutabot_cell.motion.planning.Planner.along", "mutabot_cell.motion.trajectory.joint_motion",
+        "mutabot_cell.motion.kinematics.Kinematics.follow", "mutabot_cell.motion.trajectory.ruckig",
+        "ruckig.Ruckig", "numpy.linalg.norm", "mink.Configuration", "math.sqrt",
+    ],
+)  # fmt: skip
+def test_motions_are_remembered_only_while_all_that_plans_them_is_in_place(
+    target: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert are_original(MOTIONS)
+    with monkeypatch.context() as patch:
+        patch.setattr(target, object())
+        assert not are_original(MOTIONS)
+    assert are_original(MOTIONS)
+
+
+def test_other_code_in_a_function_and_a_method_of_one_object_count_as_well(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    planner = Cell(1).arm._planner
+    assert are_original(MOTIONS, planner)
+    monkeypatch.setattr(planner, "between", object())
+    assert not are_original(MOTIONS, planner)
+    monkeypatch.undo()
+    monkeypatch.setattr(joint_motion, "__code__", (lambda: None).__code__)
+    assert not are_original(MOTIONS)
+
+
+def test_a_callback_that_c_code_has_set_is_seen() -> None:
+    library = ctypes.PyDLL(mujoco._functions.__file__)
+    pointer = ctypes.c_void_p.in_dll(library, "mjcb_control")
+    callback = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(lambda model, data: None)
+    assert stepping._is_native()
+    pointer.value = ctypes.cast(callback, ctypes.c_void_p).value
+    try:
+        assert not stepping._is_native()
+    finally:
+        pointer.value = None
+    assert stepping._is_native()
