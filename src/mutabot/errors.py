@@ -164,6 +164,10 @@ class PathError(MutabotError):
         self.step, self.known = step, tuple(known)
 
 
+class StrangeValueError(PathError):
+    """A value of the user's is no plain data, so nobody looks into it."""
+
+
 class ExtensionError(MutabotError):
     """A package beside the core cannot be loaded, or what it brings is not what it should be."""
 

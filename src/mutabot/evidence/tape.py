@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import os
 import struct
-import time
 import zlib
 from array import array
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from typing import Any
+
+from mutabot.model.clocks import monotonic
 
 from .recording import Block, RecordedMoment, Recording, Track, TrackKind
 
@@ -117,7 +118,7 @@ class Tape:
         self.clock: Callable[[], float | None] | None = None
         self.is_simulated = False
         self.at_end: list[Callable[[], None]] = []
-        self._began = time.monotonic()
+        self._began = monotonic()
 
     @property
     def now(self) -> float:
@@ -127,7 +128,7 @@ class Tape:
         the wall clock, below zero so that it is known for what it is.
         """
         told = self._told()
-        return self.at_wall(time.monotonic()) if told is None else told
+        return self.at_wall(monotonic()) if told is None else told
 
     def at_wall(self, moment: float) -> float:
         """A moment of the clock of ``time.monotonic``, as a time."""

@@ -19,6 +19,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from mutabot.extensions import brought
+from mutabot.model.data import is_of_numpy
 from mutabot.model.enumeration import is_member, member_of, name_of
 from mutabot.model.path import class_name
 
@@ -30,7 +31,8 @@ def future_class(value: Any) -> str | None:
     """The kind of future that a value is; None if it is none."""
     for module, name in _FUTURES:
         kind = getattr(sys.modules.get(module), name, None)
-        if kind is not None and (type(value) is kind or (module == "asyncio" and isinstance(value, kind))):
+        own = type(value)
+        if kind is not None and (own is kind or (module == "asyncio" and issubclass(own, kind))):
             return f"{module}.{name}"
     name = class_name(type(value))
     return next((one.name for one in brought("futures").values() if one.reference == name), None)
@@ -83,12 +85,6 @@ class NotKeptError(ValueError):
     """An answer that cannot be kept by value; the text says what it is."""
 
 
-def is_of_numpy(value: Any) -> bool:
-    """Whether it is an array or a scalar of numpy, which may not be there at all."""
-    numpy = sys.modules.get("numpy")
-    return numpy is not None and (type(value) is numpy.ndarray or isinstance(value, numpy.generic))
-
-
 def is_plain(value: Any) -> bool:
     """Whether a value is kept as it is."""
     return type(value) in _PLAIN
@@ -129,12 +125,12 @@ class _Keeper:
         self._left = LIMIT
 
     def keep(self, value: Any, depth: int) -> Any:
-        self._spend(len(value) if isinstance(value, str) else 8)
+        self._spend(len(value) if type(value) is str else 8)
         if type(value) in _PLAIN:
             return value
         if depth > DEPTH:
             raise NotKeptError("something that holds itself")
-        if not isinstance(value, _IMMUTABLE):
+        if not issubclass(type(value), _IMMUTABLE):
             known = next((name for name, one in self._here.items() if one is value), None)
             if known is not None:
                 return {"here": known}
@@ -162,7 +158,7 @@ class _Keeper:
             return {"pending": future}
         if is_member(value):
             return {"member": [_name_of(kind), name_of(value)]}
-        if isinstance(value, tuple) and hasattr(kind, "_fields"):
+        if issubclass(kind, tuple) and hasattr(kind, "_fields"):
             return {"namedtuple": [_name_of(kind), [self.keep(item, depth) for item in tuple(value)]]}
         return self._object(value, depth)
 

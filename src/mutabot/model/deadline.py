@@ -8,9 +8,9 @@ none.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from time import monotonic  # before a simulation takes over the clock
 
 from mutabot.frozen import frozen
+from mutabot.model.clocks import monotonic
 from mutabot.model.process_time import MOST, TimeUsed, below, children
 
 #: seconds after which the accounts of a process are read for the first time, which takes milliseconds: most

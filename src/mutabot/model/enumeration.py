@@ -20,7 +20,7 @@ _MOST = 12
 def is_member(value: Any) -> bool:
     """Whether a value is a member of an enumeration."""
     kind: Any = type(value)
-    return isinstance(value, Enum) or _is_of_pybind11(kind)
+    return issubclass(kind, Enum) or _is_of_pybind11(kind)
 
 
 @cache

@@ -9,10 +9,10 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from time import monotonic, sleep  # tests may replace those of the module
 
 from mutabot.frozen import frozen
 from mutabot.model import events
+from mutabot.model.clocks import monotonic, sleep
 from mutabot.model.event_file import ANYBODY, FOLDER, NOW, OWN_FAULT, SUFFIX, EventReader
 from mutabot.model.files import read_file
 from mutabot.model.job import Job

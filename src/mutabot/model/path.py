@@ -112,8 +112,7 @@ class Path:
         inner = self._put(self._advance(value, step), new, depth + 1)
         try:
             return _with_step(value, step, inner)
-        except (TypeError, AttributeError, ValueError, AssertionError, OverflowError) as error:
-            # messages of ROS 2 assert that a value is of the type of its field
+        except Exception as error:  # messages of ROS 2 assert what a field takes; others may do anything
             raise PathError(
                 f"cannot replace {step} of {type(value).__name__} (path {self}): {error}", step=str(step)
             ) from error
@@ -133,6 +132,9 @@ class Path:
                 step=str(step),
                 known=known,
             ) from error
+        except Exception as error:  # what the user's objects do when they are asked is up to them
+            what = f"{step} of {type(value).__name__} raises {type(error).__name__}: {error}"
+            raise PathError(f"{str(self) or 'the value'}: {what}", step=str(step)) from error
 
 
 def _read_step(match: re.Match[str], text: str) -> Step:
@@ -159,6 +161,13 @@ def _read_step(match: re.Match[str], text: str) -> Step:
 
 def known_steps(value: Any) -> list[str]:
     """The steps that could be taken from ``value``, for error messages."""
+    try:
+        return _known_steps(value)
+    except Exception:  # as above
+        return []
+
+
+def _known_steps(value: Any) -> list[str]:
     if isinstance(value, dict):
         return [f"[{key!r}]" for key in list(value)[:20]]
     names = list(getattr(value, "_fields", ()))

@@ -12,9 +12,9 @@ import resource
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
-from time import monotonic  # before a simulation takes over the clock
 
 from mutabot.frozen import frozen
+from mutabot.model.clocks import monotonic
 
 _PRESSURE = "/proc/pressure/cpu"
 

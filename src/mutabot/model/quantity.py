@@ -18,6 +18,7 @@ from math import isclose
 from typing import Any
 
 from mutabot.frozen import frozen
+from mutabot.model.data import UNKNOWN, data_of, in_place_of
 from mutabot.model.enumeration import is_member, member_of, written_of
 from mutabot.model.path import Path, Step
 from mutabot.model.units import UNITS, Dimension, Quaternion, convert, distance, to_quaternion, to_values
@@ -197,29 +198,40 @@ class Quantity:
     by_number: bool = False
 
     def get(self, start: Any) -> Value:
-        """Its value in what its path starts at: the seconds of a stamp, the numbers of an orientation.
+        """Its value in what its path starts at, see ``of``. Raises PathError."""
+        return self.of(self.path.get(start))
 
-        A member of an enumeration is what ``values`` write for it. Raises PathError.
+    def of(self, value: Any) -> Value:
+        """What lies at the end of its path as a value: the seconds of a stamp, the numbers of an orientation.
+
+        A member of an enumeration is what ``values`` write for it. ``data.UNKNOWN`` if nobody may look into
+        it. Raises PathError.
         """
-        value = self.path.get(start)
         if self.values is not None and is_member(value):
             return written_of(value, self.values)
         if self.is_whole:
-            return numbers_of(value, self._parts)
-        return seconds_of(value) if self.kind is Kind.STAMP else value
+            value = numbers_of(value, self._parts)
+        elif self.kind is Kind.STAMP:
+            data = data_of(value)
+            return seconds_of(value if data is UNKNOWN else data)
+        return data_of(value)
 
     def put(self, start: Any, value: Value) -> Any:
-        """A copy of what its path starts at, with another value, or None. Raises PathError."""
+        """A copy of what its path starts at, with another value, or None. Raises PathError.
+
+        The value is of the class of what was there, such as a decimal, where that can be.
+        """
+        before = self.path.get(start)
         if value is None:
             return self.path.put(start, None)
         if self.kind is Kind.STAMP:
-            value = with_seconds(self.path.get(start), value)
+            value = with_seconds(before, value)
         elif self.is_whole:
-            value = with_numbers(self.path.get(start), self._parts, value)
-        elif self.values is not None and is_member(before := self.path.get(start)):
+            value = with_numbers(before, self._parts, value)
+        elif self.values is not None and is_member(before):
             member = member_of(type(before), value)
             value = value if member is None else member
-        return self.path.put(start, value)
+        return self.path.put(start, in_place_of(before, value))
 
     @property
     def _parts(self) -> str:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import threading
+from array import array
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from mutabot.model.data import UNKNOWN, data_of, is_of_numpy
 from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, UNWRITTEN, sealed
 from mutabot.model.events import Event, ForkEnded, Serving, TestEnd, TestStart
 from mutabot.model.files import open_file
+from mutabot.model.path import class_name
 
 #: what the controller is to hear of at once; it finds all else when it looks
 _PROMPT = (TestStart, TestEnd, ForkEnded, Serving)
@@ -143,10 +146,11 @@ class Held:
 
 def plain(value: Any) -> Any:
     """JSON-like stand-in for a value that JSON does not know."""
-    if hasattr(type(value), "tolist"):
-        return value.tolist()
-    if isinstance(value, bytes):
-        return value.decode("utf-8", "backslashreplace")
-    if isinstance(value, set | frozenset | tuple):
-        return list(value)
-    return repr(value)
+    data = data_of(value)
+    if type(data) is array or is_of_numpy(data):
+        return data.tolist()
+    if type(data) is bytes:
+        return data.decode("utf-8", "backslashreplace")
+    if type(data) in (set, frozenset, tuple):
+        return list(data)
+    return f"<{class_name(type(value))}>" if data is UNKNOWN else repr(data)

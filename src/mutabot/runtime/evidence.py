@@ -6,10 +6,10 @@ import resource
 import weakref
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from time import process_time  # tests may replace that of the module
 from typing import Any
 
 from mutabot.errors import MutabotError
+from mutabot.model.clocks import process_time
 from mutabot.model.path import class_name
 
 #: classes that are told by their names, since their modules may not be loaded, with what they hold

@@ -6,6 +6,7 @@ import importlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from mutabot.errors import StrangeValueError
 from mutabot.model.events import Event, Problem, Remark
 from mutabot.runtime.targets.callables import Callables, not_imported
 from mutabot.runtime.targets.target import Finding, Messages, NotFoundError, resolve
@@ -50,7 +51,8 @@ class Inspection:
 
     def path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
         """A path does not fit what a call was given, or what it returned."""
-        finding = Finding(key, str(error), error.step, error.known)
+        is_remark = isinstance(error, StrangeValueError)
+        finding = Finding(key, str(error), error.step, error.known, is_remark=is_remark)
 
         def tell() -> None:
             if key.partition(".")[2] not in self._fit.get(operation.target, ()):

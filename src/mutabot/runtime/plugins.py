@@ -16,13 +16,13 @@ import re
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
-from time import monotonic  # before a simulation takes over the clock
 from types import ModuleType
 from typing import Any
 
 import pytest
 
 from mutabot.frozen import frozen
+from mutabot.model.clocks import monotonic
 from mutabot.model.events import Watched
 from mutabot.runtime.isolation.namespaces import left_out
 from mutabot.runtime.seeds import node_id

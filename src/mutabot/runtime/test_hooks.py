@@ -11,12 +11,12 @@ from collections.abc import Generator, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import islice
-from time import perf_counter, process_time  # tests may replace those of the module
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from mutabot.model import By, Mutant
+from mutabot.model.clocks import monotonic, process_time
 from mutabot.model.event_file import UNWRITTEN
 from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
@@ -152,7 +152,7 @@ class TestHooks:
 
     def start_clocks(self, *, is_new: bool = False) -> None:
         """Count from now on what the test takes; ``is_new``: in a process that was just forked."""
-        self._started = (perf_counter(), self._ran())
+        self._started = (monotonic(), self._ran())
         if is_new or self._used.age > _RECENT:
             self._used = TimeUsed.from_now([os.getpid()])
 
@@ -281,7 +281,7 @@ class TestHooks:
             self._failure, self._outcome = None, PASSED
         session, returns = self.session, self.session.returns
         evidence, meter = session.evidence, session.meter
-        wall, cpu = perf_counter() - self._started[0], self._ran() - self._started[1]
+        wall, cpu = monotonic() - self._started[0], self._ran() - self._started[1]
         assert meter is not None
         # of a test that a mutant neither reached nor failed, it is told what was executed in that test alone
         is_mutant = session.job.mutant is not None or self.fork is not None

@@ -14,6 +14,7 @@ from typing import Any
 from mutabot.errors import OperatorError, PathError
 from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Path, Proceed, Reply, Span
 from mutabot.model.answer import restore
+from mutabot.model.data import UNKNOWN, data_of, is_of_numpy
 from mutabot.model.enumeration import is_member, member_of
 from mutabot.model.job import Idle, RefusedAt
 from mutabot.model.operation import Form, Refused
@@ -126,16 +127,18 @@ def _found(refused: Refused, start: Any) -> str | None:
         value = path.get(start)
     except PathError:  # another kind of answer, or of message
         return None
-    if not any(_means(wanted, value) for wanted in refused.values):
+    value = data_of(value)
+    value = value.tolist() if is_of_numpy(value) else value
+    if value is UNKNOWN or not any(_means(wanted, value) for wanted in refused.values):
         return None
-    value = value.value if is_member(value) else _plain(value)
+    value = value.value if is_member(value) else value
     return " ".join(part for part in (str(path).lstrip("."), str(value)) if part)
 
 
 def _means(wanted: Any, value: Any) -> bool:
     """Whether a value of the vocabulary stands for one of the robot's."""
     if not is_member(value):
-        return _same(_plain(value), wanted)
+        return _same(value, wanted)
     member = member_of(type(value), wanted)
     return member is not None and bool(member == value)
 
@@ -146,10 +149,6 @@ def _same(value: Any, wanted: Any) -> bool:
         return isinstance(value, bool) is isinstance(wanted, bool) and bool(value == wanted)
     except Exception:  # a value of the user's may compare in any way
         return False
-
-
-def _plain(value: Any) -> Any:
-    return value.tolist() if hasattr(type(value), "tolist") else value
 
 
 @cache

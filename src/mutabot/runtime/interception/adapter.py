@@ -17,14 +17,17 @@ from collections.abc import Awaitable, Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from inspect import Parameter, Signature
+from types import CoroutineType
 from typing import Any
 
-from mutabot.errors import PathError
+from mutabot.errors import PathError, StrangeValueError
 from mutabot.model import Call, NotToldError, Operation, Path, Pattern, Quantity, Reply, Vocabulary
-from mutabot.model.answer import is_of_numpy, keep, restore
+from mutabot.model.answer import keep, restore
+from mutabot.model.data import UNKNOWN, is_of_numpy
 from mutabot.model.enumeration import is_member, name_of
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
+from mutabot.model.path import class_name
 from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
@@ -285,13 +288,16 @@ class Adapter:
         values: dict[str, Value] = {}
         for quantity, start in quantities:
             try:
-                if "unittest.mock" in sys.modules and is_mock(quantity.path.get(start)):
+                found = quantity.path.get(start)
+                if "unittest.mock" in sys.modules and is_mock(found):
                     continue  # it is no value, and to look at it would be to call it
-                value = quantity.get(start)
-            except PathError as error:
-                self.on_problem(f"{key}.{quantity.name}", error)
+                value = quantity.of(found)
+            except Exception as error:  # objects of the user's may do anything when they are looked at
+                self.on_problem(f"{key}.{quantity.name}", _unread(quantity, error))
                 continue
-            if value is not None:
+            if value is UNKNOWN:
+                self.on_problem(f"{key}.{quantity.name}", _strange(quantity, found))
+            elif value is not None:
                 values[quantity.name] = value
         return values
 
@@ -367,12 +373,12 @@ class Adapter:
             if quantity.name in reply.values:
                 value = reply.values[quantity.name]
                 if not is_same(quantity, value, before.get(quantity.name)):
-                    result = quantity.put(result, _typed_like(value, before.get(quantity.name)))
+                    result = quantity.put(result, value)
         return result
 
     def _check_result(self, invocation: Invocation, result: Any) -> None:
         """Tell of a coroutine that nobody awaits, and of a call that went well against its signature."""
-        if inspect.iscoroutine(result):
+        if type(result) is CoroutineType:
             text = f"{self.operation.target} returns a coroutine but is no coroutine function"
             self._tell("call", f"{text}; name the coroutine function behind it")
         if invocation.values is None and self.operation.signature is not None:
@@ -521,9 +527,9 @@ def _names(invocation: Invocation, argument: str) -> tuple[str, ...]:
         value = None
     if value is None:
         return ("none",)
-    if is_member(value):
-        return (str(value.value), name_of(value))
     try:
+        if is_member(value):
+            return (str(value.value), name_of(value))
         if isinstance(value, bytes):
             return (str(value), _whole_text(value))
         whole = (str(int(value)),) if isinstance(value, float) and value.is_integer() else ()
@@ -533,14 +539,17 @@ def _names(invocation: Invocation, argument: str) -> tuple[str, ...]:
         return (f"a {type(value).__name__}",)
 
 
-def _typed_like(value: Value, original: Value) -> Value:
-    """Return ``value`` in the type of the original, where that is a scalar of a numeric library."""
-    if value is None:
-        return None
-    if hasattr(original, "dtype") and not hasattr(value, "dtype") and not getattr(original, "shape", None):
-        kind = type(original)
-        return kind(value) if getattr(original.dtype, "kind", "") == "f" else value
-    return value
+def _unread(quantity: Quantity, error: Exception) -> PathError:
+    if isinstance(error, PathError):
+        return error
+    return PathError(f"{quantity.path or 'the result'} cannot be read: {type(error).__name__}: {error}")
+
+
+def _strange(quantity: Quantity, found: Any) -> StrangeValueError:
+    """Say what to describe instead of an object that nobody looks into."""
+    path, kind = str(quantity.path), class_name(type(found))
+    what = f"{path or 'the result'} is of {kind}, which is no plain data, so its value is left as it is"
+    return StrangeValueError(f"{what}; describe the part of it that is a number, such as {path}.magnitude")
 
 
 def is_mock(value: Any, kind: str = "NonCallableMock") -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import sys
-import time
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -14,6 +13,7 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 from mutabot.model import Call, CallFault, Reply
+from mutabot.model.clocks import sleep
 from mutabot.model.operation import ANSWERED, COMING
 from mutabot.runtime.interception.live import copied
 from mutabot.runtime.targets.target import Delivery, MiddlewareControls, resolve
@@ -169,4 +169,4 @@ def _end(*, anew: bool) -> NoReturn:
         os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
     os.kill(os.getpid(), signal.SIGKILL)
     while True:  # the signal is on its way
-        time.sleep(1.0)
+        sleep(1.0)

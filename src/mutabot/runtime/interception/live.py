@@ -51,15 +51,18 @@ def is_live(answer: Any, quantities: Iterable[Quantity]) -> bool:
 
 def _is_held(value: Any, known: int) -> bool:
     """``known``: the references to it that are no more than how one comes here."""
-    if isinstance(value, (*_FIXED, tuple)):  # of a tuple, the parts may be written to
+    if issubclass(type(value), (*_FIXED, tuple)):  # of a tuple, the parts may be written to
         return False
     if sys.getrefcount(value) > known:
         return True
-    base = getattr(value, "base", None) if hasattr(type(value), "dtype") else None
-    if base is None or not getattr(getattr(value, "flags", None), "writeable", True):
+    arrays: Any = getattr(sys.modules.get("numpy"), "ndarray", ())
+    if not issubclass(type(value), arrays):
+        return False
+    base = arrays.base.__get__(value)
+    if base is None or not arrays.flags.__get__(value).writeable:
         return False
     # a view of an array that nobody else has is as good as that array
-    return not hasattr(type(base), "dtype") or _is_held(base, _OF_ANSWER)
+    return not issubclass(type(base), arrays) or _is_held(base, _OF_ANSWER)
 
 
 def _parts(answer: Any, path: Path) -> Iterator[Any]:

@@ -21,9 +21,9 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from time import monotonic  # tests may replace that of the module
 
 from mutabot.model import Call, Mutant, Span
+from mutabot.model.clocks import monotonic
 from mutabot.model.deadline import Deadline, Limit
 from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Unforked
 from mutabot.model.job import STOP, Forking

@@ -12,12 +12,12 @@ import ast
 import builtins
 import math
 import os
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib.util import decode_source
 from typing import Any
 
+from mutabot.model.data import is_of_numpy
 from mutabot.model.outcome import Check
 from mutabot.runtime.program_text import loading
 
@@ -131,8 +131,7 @@ def _numbers(value: Any) -> list[float] | None:
 
 def _without_numpy(value: Any) -> Any:
     """An array of numbers as a list, a number of numpy's as a plain one; numpy is not imported for this."""
-    numpy = sys.modules.get("numpy")
-    if numpy is None or not isinstance(value, numpy.ndarray | numpy.generic):
+    if not is_of_numpy(value):
         return value
     return value.tolist() if value.dtype.kind in "biuf" and value.size <= _MOST_ITEMS else value
 

@@ -229,7 +229,7 @@ class ClockReader:
             meter = self._meter()
             if meter is not None:
                 meter.tick(result)
-        elif isinstance(result, CoroutineType):  # nothing has happened yet
+        elif type(result) is CoroutineType:  # nothing has happened yet
             return self._awaited(result, wrapped, instance, args, kwargs)
         else:
             self._told(result, wrapped, instance, args, kwargs)
@@ -260,7 +260,7 @@ class ClockReader:
             return None
         try:
             number = float(value)
-        except (TypeError, ValueError):
+        except Exception:  # an object of the user's may fail in any way
             number = float("nan")
         if not isfinite(number):
             where = (

@@ -15,13 +15,11 @@ import random
 import re
 import sys
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum
 from functools import cached_property
 from itertools import islice
-from time import perf_counter  # tests may replace those of the module
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +27,8 @@ from mutabot.errors import nearest_name
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.evidence.tape import FilmWriter, Tape
+from mutabot.model.clocks import monotonic, thread_time
+from mutabot.model.data import UNKNOWN, data_of, fields_of, is_of_numpy, is_told, items_of
 from mutabot.model.path import class_name
 from mutabot.runtime.targets.target import resolve
 
@@ -260,10 +260,10 @@ def rehearse(read: Callable[[], Reading]) -> Reading:
         return first
     drawn, walls, used = _random_state(), [], []
     for _ in range(_TIMED):  # the system may do other things meanwhile: the least counts
-        began = perf_counter(), time.thread_time()
+        began = monotonic(), thread_time()
         again = read()
-        walls.append(perf_counter() - began[0])
-        used.append(time.thread_time() - began[1])
+        walls.append(monotonic() - began[0])
+        used.append(thread_time() - began[1])
         if walls[-1] > _SLOW and len(walls) > 1:
             break
     # NaN is as good as NaN
@@ -294,8 +294,6 @@ LONGEST, _CHARACTERS = 4000, 300
 #: items of a container beyond which it is not looked at, and how deep
 MOST, _DEPTH = 20_000, 20
 _AS_TEXT = (complex, range, slice)
-#: modules whose objects are told as texts; they are not imported for this
-_TOLD = ("datetime", "decimal", "fractions")
 #: what differs between equal runs in different processes
 _ACCIDENTS = re.compile(r"0x[0-9a-fA-F]{6,}|pytest-\d+")
 
@@ -318,26 +316,29 @@ def text_of_error(error: BaseException) -> str:
 
 
 def _data_of(value: Any, depth: int) -> Any:
-    if value is None or isinstance(value, bool):
+    kind = type(value)
+    if value is None or kind is bool:
         return value
-    if isinstance(value, Enum):
-        return f"{type(value).__name__}.{value.name}"
-    if isinstance(value, int | float):
-        return float(value) if isinstance(value, float) else int(value)
-    if isinstance(value, str | bytes | bytearray):
-        return _text(value)
-    if isinstance(value, _AS_TEXT) or type(value).__module__ in _TOLD:
+    if issubclass(kind, Enum):
+        return f"{kind.__name__}.{value.name}"
+    if type(value) in _AS_TEXT or is_told(value):
         return repr(value)
-    if hasattr(type(value), "tolist") and hasattr(type(value), "dtype"):
+    if is_of_numpy(value):
         return _array(value, depth)
-    value = _fields_of(value)
-    if isinstance(value, set | frozenset):
-        value = sorted(value, key=repr)
-    if depth > _DEPTH or not isinstance(value, Mapping | list | tuple) or len(value) > MOST:
+    items: Mapping[Any, Any] | list[Any] | None = fields_of(value)
+    if items is None:
+        found = items_of(value) if (data := data_of(value)) is UNKNOWN else data
+        if isinstance(found, int | float):
+            return found
+        if isinstance(found, str | bytes | bytearray):
+            return _text(found)
+        items = items_of(found)
+    if depth > _DEPTH or items is None or len(items) > MOST:
         return opaque(value)
-    if isinstance(value, Mapping):
-        return {_key(key): _data_of(item, depth + 1) for key, item in value.items()}
-    return [_data_of(item, depth + 1) for item in value]
+    if isinstance(items, Mapping):
+        return {_key(key): _data_of(item, depth + 1) for key, item in items.items()}
+    told = [_data_of(item, depth + 1) for item in items]
+    return sorted(told, key=json.dumps) if type(value) in (set, frozenset) else told
 
 
 def _array(value: Any, depth: int) -> Any:
@@ -349,7 +350,7 @@ def _array(value: Any, depth: int) -> Any:
 
 
 def _key(key: Any) -> str:
-    return key if isinstance(key, str) else json.dumps(_data_of(key, 0))
+    return key if type(key) is str else json.dumps(_data_of(key, 0))
 
 
 def _text(value: str | bytes | bytearray) -> Any:

@@ -11,13 +11,13 @@ import atexit
 import os
 import sys
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import events
+from mutabot.model.clocks import monotonic
 from mutabot.model.event_file import ANYBODY
 from mutabot.model.job import Job, read_job
 from mutabot.runtime import FOLDER as OURS
@@ -119,7 +119,7 @@ class Member:
         self._folder = folder
         self._now = Now(folder)
         self._test = self._now.number
-        now = time.monotonic()
+        now = monotonic()
         name = f"{os.getpid()}-{int(now * 1e6)}"
         self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
         command = tuple(getattr(sys, "orig_argv", sys.argv))
@@ -167,7 +167,7 @@ class Member:
         """Write down what the session sees of calls."""
 
         def hit(site: int, written: Any, read: Any, answer: Any) -> None:
-            self.file.send(events.Called(site, written, read, answer, time.monotonic()))
+            self.file.send(events.Called(site, written, read, answer, monotonic()))
 
         def heard(hear: Callable[[str, Any], None], name: str, message: Any) -> None:
             before = session.evidence.said

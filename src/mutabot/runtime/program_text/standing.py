@@ -371,7 +371,10 @@ def _is_told_by_type(found: Any, receiver: Any) -> bool:
         return receiver is NOTHING and "<locals>" not in found.__qualname__
     if receiver is NOTHING or isinstance(receiver, type | ModuleType):
         return False
-    if receiver.__class__ is not type(receiver):  # it stands for something else
+    try:
+        if receiver.__class__ is not type(receiver):  # it stands for something else
+            return False
+    except Exception:  # a proxy may fail to say what it stands for
         return False
     of_python = type(found) is MethodType and type(found.__func__) is FunctionType
     return (of_python or type(found) is BuiltinMethodType) and found.__self__ is receiver

@@ -21,6 +21,7 @@ from contextlib import contextmanager
 from functools import cache
 from typing import Any, NoReturn
 
+from mutabot.model.data import is_of_numpy
 from mutabot.model.mutant import FATAL, FITTING, IDENTITY, Choice, Sighting, TextPlace
 from mutabot.model.path import class_name
 from mutabot.runtime.program_text.foresee import Forms, locals_of
@@ -301,8 +302,8 @@ def kind_of(value: Any) -> str:
     plain = _PLAIN.get(kind)
     if plain is not None:
         return plain
-    if hasattr(kind, "dtype"):  # scalars and arrays of numpy
-        return _ARRAYS.get(getattr(value.dtype, "kind", ""), "other")
+    if is_of_numpy(value):
+        return _ARRAYS.get(value.dtype.kind, "other")
     if issubclass(kind, enum.Flag):
         return "flag"
     if issubclass(kind, numbers.Integral):

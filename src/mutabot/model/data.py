@@ -1,0 +1,167 @@
+"""Values of the user's as data, without running any code of the user's.
+
+What is looked at is told by its class alone: the plain ones of Python and of its standard library, arrays and
+numbers of numpy, and subclasses of these by what they are made of. What else an object may be, such as a
+quantity with a unit, a proxy or a mock, is not looked into: to ask it may do anything.
+"""
+
+from __future__ import annotations
+
+import operator
+import sys
+from array import array
+from collections import OrderedDict, defaultdict, deque
+from collections.abc import Callable, Mapping
+from dataclasses import is_dataclass
+from types import MappingProxyType, MemberDescriptorType
+from typing import Any
+
+from mutabot.model.enumeration import is_member
+
+#: stands for what is no data
+UNKNOWN = object()
+#: levels of containers in containers that are looked at
+DEPTH = 20
+#: what nobody can change, and what is its own data
+_FIXED = frozenset({type(None), bool, int, float, complex, str, bytes, range, slice})
+#: modules of the standard library whose objects say by their texts what they are
+_TOLD = ("datetime", "decimal", "fractions")
+_SEQUENCES: tuple[type[Any], ...] = (list, tuple, set, frozenset, deque)
+_MAPPINGS = (dict, OrderedDict, defaultdict, MappingProxyType)
+#: what makes a plain value of one of a subclass
+_PLAINLY: tuple[tuple[type[Any], Callable[[Any], Any]], ...] = (
+    (int, int.__int__), (float, float.__float__), (str, str.__str__), (bytes, bytes.__bytes__),
+)  # fmt: skip
+
+
+def is_of_numpy(value: Any) -> bool:
+    """Whether it is an array or a scalar of numpy, which may not be there at all."""
+    numpy = sys.modules.get("numpy")
+    kind = type(value)
+    array_kind, scalar_kind = getattr(numpy, "ndarray", None), getattr(numpy, "generic", None)
+    if not (isinstance(array_kind, type) and isinstance(scalar_kind, type)):
+        return False
+    return kind is array_kind or (issubclass(kind, scalar_kind) and kind.__module__.startswith("numpy"))
+
+
+def is_told(value: Any) -> bool:
+    """Whether it is a moment, a decimal or a fraction of the standard library; nothing is imported for it."""
+    kind = type(value)
+    module = kind.__module__
+    return module in _TOLD and getattr(sys.modules.get(module), kind.__name__, None) is kind
+
+
+def _is_exact(value: Any) -> bool:
+    """Whether it is a number that does not go together with floating-point ones, which operators draw."""
+    return type(value).__name__ in ("Decimal", "Fraction") and is_told(value)
+
+
+def data_of(value: Any) -> Any:
+    """A value as operators see it; ``UNKNOWN`` if nobody may look into it.
+
+    It is the value itself where it is plain, or of numpy, or a member of an enumeration. Decimals and
+    fractions become floating-point numbers, of which ``in_place_of`` makes the like of what was there.
+    """
+    return _data_of(value, DEPTH)
+
+
+def _data_of(value: Any, depth: int) -> Any:
+    kind = type(value)
+    if kind in _FIXED or kind is bytearray or kind is array or is_of_numpy(value):
+        return value
+    if is_told(value):
+        return float(value) if _is_exact(value) else value
+    if is_member(value):
+        return value
+    for base, plainly in _PLAINLY:
+        if issubclass(kind, base):
+            return plainly(value)
+    for base in (list, tuple):
+        if issubclass(kind, base):
+            return _items(value, base, depth)
+    return value if kind in (*_SEQUENCES, *_MAPPINGS) else UNKNOWN
+
+
+def _items(value: Any, base: Any, depth: int) -> Any:
+    """The items of a list or tuple; the very object where they are all as they are."""
+    if depth <= 0:
+        return UNKNOWN
+    given = list(base.__iter__(value))
+    found = [_data_of(item, depth - 1) for item in given]
+    if any(item is UNKNOWN for item in found):
+        return UNKNOWN
+    is_same = type(value) is base and all(map(operator.is_, given, found))
+    return value if is_same else base(found)
+
+
+def in_place_of(before: Any, value: Any) -> Any:
+    """A value in the class of what stood in its place, if that can be made of it; else the value itself."""
+    kind = type(before)
+    if type(value) in (list, tuple) and issubclass(kind, type(value)):
+        return _sequence(before, value)
+    if value is None or kind is type(value) or kind in _FIXED:
+        return value
+    if _is_exact(before):
+        return _made(kind, value, repr(value)) if type(value) in (int, float) else value
+    if is_of_numpy(before):
+        is_scalar = not is_of_numpy(value) and not before.shape
+        return kind(value) if is_scalar and before.dtype.kind == "f" else value
+    is_subclass = any(issubclass(kind, base) and type(value) is base for base, _ in _PLAINLY)
+    return _made(kind, value, value) if is_subclass else value
+
+
+def _sequence(before: Any, value: Any) -> Any:
+    """The same of each item, where there are as many."""
+    base, kind = type(value), type(before)
+    given = list(base.__iter__(before))
+    if len(given) != len(value):
+        return value
+    items = [in_place_of(old, new) for old, new in zip(given, value, strict=True)]
+    if kind is base:
+        return base(items)
+    return _made(getattr(kind, "_make", kind), value, items)
+
+
+def _made(make: Callable[[Any], Any], value: Any, given: Any) -> Any:
+    """What a class makes of what it is given; the value itself if it does not take that."""
+    try:
+        return make(given)
+    except Exception:  # a class of the user's may do anything
+        return value
+
+
+def fields_of(value: Any) -> dict[str, Any] | None:
+    """The fields of a dataclass or named tuple as they are stored; None for anything else."""
+    kind: Any = type(value)
+    if issubclass(kind, tuple):
+        names = getattr(kind, "_fields", None)
+        return None if type(names) is not tuple else dict(zip(names, tuple.__iter__(value), strict=False))
+    if not is_dataclass(kind):
+        return None
+    try:
+        stored = object.__getattribute__(value, "__dict__")
+    except AttributeError:  # it has slots
+        stored = {}
+    found: dict[str, Any] = {}
+    for name in getattr(kind, "__dataclass_fields__"):  # noqa: B009  # mypy knows it for none
+        found[name] = stored[name] if name in stored else _in_slot(type(value), value, name)
+    return found
+
+
+def _in_slot(kind: type[Any], value: Any, name: str) -> Any:
+    for base in kind.__mro__:
+        slot = vars(base).get(name)
+        if type(slot) is MemberDescriptorType:
+            try:
+                return slot.__get__(value, kind)
+            except AttributeError:  # nothing is in it
+                return None
+    return None
+
+
+def items_of(value: Any) -> Mapping[Any, Any] | list[Any] | None:
+    """The items of a plain container; those of a set in the order of their texts. None for anything else."""
+    kind = type(value)
+    if kind in _MAPPINGS:
+        return dict(value)
+    return list(value) if kind in _SEQUENCES else None
