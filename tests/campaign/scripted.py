@@ -30,6 +30,7 @@ from mutabot.model.events import (
     PlacesReached,
     SessionEnd,
     SiteSeen,
+    TestControls,
     TestEnd,
     TestStart,
     TextsSeen,
@@ -38,7 +39,7 @@ from mutabot.model.events import (
 from mutabot.model.job import Job
 from mutabot.model.mutant import Sighting
 from mutabot.model.source_units import Executed, File, is_test_file
-from mutabot.operators.command import Fatal
+from mutabot.operators.command import Fatal, Identity
 
 #: what a robot answers that is asked for a number
 READING = 0.5
@@ -97,6 +98,7 @@ class Script:
         mutated: how a test ends as a mutant: fields of its ``TestEnd`` that are not those of a survivor.
         original: likewise as the original.
         control: likewise as a control; None for the end that it must have.
+        test_control: likewise as the identity that is forked for one test alone; None for as the original.
         interrupts: whether somebody interrupts the campaign after an event.
         spread: as in ``Executor``.
         tasks: all tasks until now.
@@ -105,6 +107,7 @@ class Script:
     mutated: Callable[[Run], End] = lambda run: {}
     original: Callable[[Run], End] = lambda run: {}
     control: Callable[[Run], End | None] = lambda run: None
+    test_control: Callable[[Run], Mapping[str, Any] | None] = lambda run: None
     interrupts: Callable[[Event], bool] = lambda event: False
     spread: int = 1
     tasks: list[Task] = field(default_factory=list)
@@ -215,6 +218,15 @@ class Scripted:
     ) -> Iterator[Event]:
         """What forks do in one test: from the first on that reaches them, to one that decides."""
         assert job.forking is not None
+        due = [one for one in job.forking.mutants if one.id in found and one.id not in forked]
+        if due := [one for one in due if self.suite.tests[fork_parent.test].hits(one)]:
+            control = replace(due[0], family=CONTROL, operator=Identity.name, variant=fork_parent.test)
+            run = replace(fork_parent, mutant=control, is_fork=True)
+            original = self.script.original(fork_parent)
+            end = self.script.test_control(run) or ({} if isinstance(original, Died) else original)
+            ended = self.suite.end(run, {**UNCHANGED, **end})
+            yield ForkTestEnd(control.id, ended, self.suite.sites)
+            yield TestControls(fork_parent.test, 1)
         for mutant in job.forking.mutants:
             is_due = mutant.id in forked or self.suite.tests[fork_parent.test].hits(mutant)
             left_out = job.left_out(mutant.id)

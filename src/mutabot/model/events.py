@@ -353,6 +353,19 @@ class Undiverged(Event):
 
 
 @frozen
+class TestControls(Event):
+    """A test of the original has ended in which mutants were forked.
+
+    Attributes:
+        test: the test.
+        count: how many identities were forked for it alone, each beside the mutants of one moment.
+    """
+
+    test: str
+    count: int
+
+
+@frozen
 class TokensHeld(Event):
     """How many tokens a fork parent and its forks hold: what the pool gets back if the parent dies."""
 

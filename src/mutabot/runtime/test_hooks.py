@@ -53,7 +53,7 @@ class ForkedRun:
     def __init__(self, tests: TestHooks, parent: ForkParent, mutant: Mutant, home: str) -> None:
         session, tests.fork, tests.members = tests.session, self, None
         self.mutant = mutant
-        self.choices = parent.forking.choices.get(mutant.id, ())
+        self.choices = parent.choices_of(mutant)
         self._tests, self._session, self._parent, self._home = tests, session, parent, home
         self._pid = os.getpid()
         self._shared = session.meter.simulated if session.meter is not None else None
@@ -72,7 +72,8 @@ class ForkedRun:
         try:
             self._report(end)
         finally:
-            if end.is_decided and not self._parent.forking.every_test:
+            is_decided = end.is_decided and not self._parent.forking.every_test
+            if is_decided or self._parent.is_test_control(self.mutant):
                 os._exit(DECIDED)  # whatever happens, nothing must run on in this process
 
     def finish(self, errors: list[str], gone: tuple[str, ...]) -> None:
@@ -181,6 +182,8 @@ class TestHooks:
             self.fork.end_test(end)
         session.end_test()
         if self.fork is None:
+            if session.passing.fork_parent is not None:
+                session.passing.fork_parent.end_test()
             session.pipe.send(end)
         if session.job.stop_at_kill and end.is_decided:
             item.session.shouldstop = "the mutant's verdict is known"

@@ -1,4 +1,4 @@
-"""Controls: where they act, and that one that ends wrongly is tried again in a fresh process."""
+"""Controls: where they act, and what follows from one that ends wrongly."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from mutabot.errors import ControlError
 from mutabot.model import Mutant, Role, Site, Span
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Place
-from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
-from tests.campaign.scripted import Died, Script
+from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+from tests.campaign.scripted import CHECKED, Died, Run, Script
 
 #: hangs in what is neither the baseline nor a fork parent: these are copies of the process that imported it
 MISSION = """
@@ -46,15 +46,12 @@ def project(folder: Path, mission: str) -> None:
     write_project(folder, mission, TESTS, configuration=CONFIGURATION + "    timeout_seconds = 2\n")
 
 
-@pytest.mark.parametrize("engine", ["replay", "fork"])
-def test_a_control_that_hangs_once_does_not_end_the_campaign(
-    tmp_path: Path, script: Script, engine: str
-) -> None:
+def test_a_control_that_hangs_once_does_not_end_the_campaign(tmp_path: Path, script: Script) -> None:
     hangs = Died(overdue="no end after 2 s of wall clock", acted=False)
     script.control = lambda run: None if run.before else hangs
     project(tmp_path, MISSION)
     progress = Quiet()
-    run_campaign(request_for(tmp_path, engine=engine, only=("*:reverse",)), progress)
+    run_campaign(request_for(tmp_path, engine="replay", only=("*:reverse",)), progress)
     lines = [line for line in progress.lines if "ended wrongly once" in line]
     assert {line.partition(" (")[0] for line in lines} == {
         "the identity control of tests/test_mission.py ended wrongly once",
@@ -78,8 +75,76 @@ def test_a_suite_that_waits_for_ever_for_what_the_fatal_control_ended_shows_that
 def test_a_control_that_hangs_twice_ends_the_campaign(tmp_path: Path) -> None:
     project(tmp_path, MISSION)
     with pytest.raises(ControlError, match="no verdict of this campaign could be believed") as caught:
-        run_campaign(request_for(tmp_path, engine="fork", only=("*:reverse",)), Quiet())
+        run_campaign(request_for(tmp_path, engine="auto", only=("*:reverse",)), Quiet())
     assert "no end after 2 s of wall clock" in str(caught.value)
+
+
+IN_ORDER = """
+    import mission
+    from robot import Arm
+
+    def test_first():
+        mission.first(Arm())
+
+    def test_second():
+        mission.second(Arm())
+
+    def test_third():
+        mission.first(Arm())
+"""
+FUNCTIONS = """
+    def first(arm):
+        arm.move_by(0.5)
+
+    def second(arm):
+        arm.move_by(0.5)
+"""
+SECOND, THIRD = "tests/test_mission.py::test_second", "tests/test_mission.py::test_third"
+
+
+def engines_of(folder: Path, script: Script, killed_in: dict[str, str]) -> tuple[dict[str, str], list[str]]:
+    """By the function that it is in, the engine that judged the reversed command, and what was said."""
+    script.mutated = lambda run: CHECKED if run.test == killed_in.get(function_of(run.mutant)) else {}
+    write_project(folder, FUNCTIONS, IN_ORDER)
+    progress = Quiet()
+    path = run_campaign(request_for(folder, engine="auto", only=("*:reverse",)), progress)
+    found = {one.mutant.split(":")[1]: one.engine for one in outcomes(path)}
+    return found, [line for line in progress.lines if "in a fork" in line]
+
+
+def function_of(mutant: Mutant | None) -> str:
+    return mutant.site.span.function if mutant is not None else ""
+
+
+def test_from_the_test_in_which_the_identity_ends_otherwise_no_fork_is_believed(
+    tmp_path: Path, script: Script
+) -> None:
+    script.control = lambda run: CHECKED if run.is_fork and run.test == THIRD and is_identity(run) else None
+    found, said = engines_of(tmp_path, script, {"second": SECOND})
+    assert found == {"first": "replay", "second": "fork"}
+    assert len(said) == 1
+    assert f"ended wrongly in a fork in {THIRD}" in said[0]
+
+
+def is_identity(run: Run) -> bool:
+    return run.mutant is not None and run.mutant.operator == IDENTITY
+
+
+def test_where_the_fatal_control_does_not_end_a_fork_no_fork_is_believed(
+    tmp_path: Path, script: Script
+) -> None:
+    script.control = lambda run: {} if run.is_fork and not is_identity(run) else None
+    found, said = engines_of(tmp_path, script, {})
+    assert found == {"first": "replay", "second": "replay"}
+    assert "what forks tell of any test does not count" in said[0]
+
+
+def test_what_forks_tell_of_a_test_whose_own_control_ended_otherwise_is_left_to_replay(
+    tmp_path: Path, script: Script
+) -> None:
+    script.test_control = lambda run: CHECKED if run.test == SECOND else None
+    found, _ = engines_of(tmp_path, script, {"second": SECOND})
+    assert found == {"first": "fork", "second": "replay"}
 
 
 SUITE = ["a::one", "b::two", "c::three"]
@@ -111,8 +176,12 @@ def acting(baseline: Baseline, mutants: list[Mutant], *, forked: bool) -> list[t
 
 def test_without_imports_controls_act_where_the_quickest_test_is() -> None:
     made = baseline_of({1: ["a::one"], 2: ["b::two"], 3: ["a::one", "c::three"]}, set())
-    for forked in (True, False):
-        assert acting(*made, forked=forked) == [(FATAL, 3, "c"), (IDENTITY, 3, "c")]
+    assert acting(*made, forked=False) == [(FATAL, 3, "c"), (IDENTITY, 3, "c")]
+
+
+def test_the_identity_of_forks_acts_in_the_first_test_that_reaches_a_mutant() -> None:
+    made = baseline_of({2: ["b::two"], 1: ["a::one"], 3: ["a::one", "c::three"]}, set())
+    assert acting(*made, forked=True) == [(FATAL, 3, "c"), (IDENTITY, 1, "a")]
 
 
 def test_beside_an_identity_of_the_imports_the_other_one_is_forked_as_late_as_possible() -> None:

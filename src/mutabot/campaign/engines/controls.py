@@ -1,8 +1,13 @@
 """Controls: mutants of mutabot's own whose end is known.
 
 The identity changes nothing, so it must survive. The fatal mutant raises, so it must die, or make the suite
-wait for ever: turning a mutant on changes something. A control that ends wrongly is tried again in a fresh
-process. One that ends wrongly there too stops the campaign: its verdicts could not be believed.
+wait for ever: turning a mutant on changes something.
+
+A control of replay that ends wrongly is tried again in a process that shares nothing. One that ends wrongly
+there too stops the campaign: its verdicts could not be believed. What a fork shows is overruled by nothing:
+where a control of theirs ended wrongly, forks are not believed from its test on, and replay, which has
+controls of its own, judges. Each test in which mutants are forked has controls of its own, see
+``runtime.isolation.fork_parent``: an identity beside the mutants of each moment, up to the end of the test.
 
 Each way of running has one pair: each provider by each engine, and forks before any test. Controls of the
 program text ask at their place like any alternative: the hits of the identity prove that instrumented text
@@ -11,13 +16,14 @@ runs.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import sys
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.faults.providers import provider
-from mutabot.campaign.request import REPLAY
+from mutabot.campaign.request import FORK, REPLAY
 from mutabot.campaign.verdict import judge, run_of
 from mutabot.errors import ControlError
 from mutabot.families import CALLS, CONTROL
@@ -74,6 +80,11 @@ class Control:
         """The control as what an engine runs."""
         return self.mutant, self.round
 
+    def end(self, outcome: Outcome) -> ControlEnd:
+        """What the journal keeps of its end."""
+        wrong = self.what_is_wrong(outcome)
+        return ControlEnd(self.subject, self.name, wrong is None, wrong or f"{outcome.hits} hits")
+
     def what_is_wrong(self, outcome: Outcome) -> str | None:
         """Why its end is not the one that it must have; None if it is."""
         # a suite that waits for ever for what the fatal one has ended shows as well that it acted
@@ -91,27 +102,33 @@ class _Candidate:
 
     round: int
     is_early: bool
+    has_processes: bool
     seconds: float
     first: int
     place: Place
     test: str
 
     @property
-    def by_time(self) -> tuple[int, bool, float]:
-        """What raises while the program is imported says little about what is reached in a test."""
-        return self.round, self.is_early, self.seconds
+    def by_time(self) -> tuple[int, bool, bool, float]:
+        """What raises while the program is imported, or in another process, says little of other tests."""
+        return self.round, self.is_early, self.has_processes, self.seconds
 
     @property
-    def by_lateness(self) -> tuple[int, int]:
-        return self.round, -self.first
+    def by_lateness(self) -> tuple[int, bool, int]:
+        return self.round, self.has_processes, -self.first
+
+    @property
+    def by_order(self) -> tuple[int, int]:
+        return self.round, self.first
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
     """One pair for each provider, where a mutant is planned, in the quickest test of the first round.
 
     Only a test that passes on the original must fail by the fatal one. ``forked``: for processes that are
-    forked at the place. What is forked before any test has an identity of its own, which runs the whole
-    suite; the other pair is then forked as late as possible, when there is most that a fork could share.
+    forked at the place. Their identity is forked in the first test that reaches one, and runs all that come
+    after. What is forked before any test has an identity of its own, which runs the whole suite; the other
+    pair is then forked as late as possible, when there is most that a fork could share.
     """
     planned = {Place.of(one) for one in mutants if not forked or not baseline.is_apart(one)}
     numbers = [{test: number for number, test in enumerate(tests)} for tests in baseline.tests]
@@ -119,21 +136,25 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     for (round, place), tests in baseline.reaching.items():
         ends = [baseline.ends[round, test] for test in tests]
         passing = [end for end in ends if end.outcome == "passed"]
-        if not passing or place not in planned or (forked and any(end.processes for end in ends)):
+        if not passing or place not in planned:
             continue
         quickest, first = passing[0], min(map(numbers[round].__getitem__, tests))
         is_early = place in baseline.early
-        one = _Candidate(round, is_early, min(end.wall for end in passing), first, place, quickest.test)
+        has_processes = forked and any(end.processes for end in ends)
+        seconds = min(end.wall for end in passing)
+        one = _Candidate(round, is_early, has_processes, seconds, first, place, quickest.test)
         way = (baseline.faults.providers.get(place, CALLS), forked and is_early)
         found.setdefault(way, []).append(one)
     controls: list[Control] = []
     for (by, early), candidates in found.items():
         has_other = (by, not early) in found
-        one = min(candidates, key=attrgetter("by_lateness" if has_other and not early else "by_time"))
-        names = (IDENTITY,) if has_other and early else (IDENTITY, FATAL)
-        subject = IMPORT if early else one.test.partition("::")[0]
-        suite = baseline.suite(one.round)
-        controls += [Control(name, one.place, by, one.round, suite, subject) for name in names]
+        is_late = has_other and not early
+        fatal = min(candidates, key=attrgetter("by_lateness" if is_late else "by_time"))
+        is_first = forked and not early and not is_late
+        identity = min(candidates, key=attrgetter("by_order")) if is_first else fatal
+        for name, one in ((IDENTITY, identity), (FATAL, fatal))[: 1 if has_other and early else 2]:
+            subject = IMPORT if early else one.test.partition("::")[0]
+            controls.append(Control(name, one.place, by, one.round, baseline.suite(one.round), subject))
     return controls
 
 
@@ -147,15 +168,11 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
     if controls:
         campaign.progress.stage("controls", len(controls))
     for control, outcome in _replayed(campaign, controls):
-        yield from settled(campaign, REPLAY, control, outcome, is_step=True)
+        yield from _settled(campaign, control, outcome)
 
 
-def settled(
-    campaign: Campaign, engine: str, control: Control, outcome: Outcome, *, is_step: bool = False
-) -> Iterator[ControlEnd]:
+def _settled(campaign: Campaign, control: Control, outcome: Outcome) -> Iterator[ControlEnd]:
     """The end of a control. One that ended wrongly is tried again in a process that shares nothing.
-
-    ``is_step``: whether the present stage counts controls.
 
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
@@ -172,15 +189,75 @@ def settled(
                 "must when it was tried again"
             )
         outcome = again
-    if is_step:
-        campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'passed'}")
-    yield ControlEnd(control.subject, control.name, wrong is None, wrong or f"{outcome.hits} hits")
+    campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'passed'}")
+    yield control.end(outcome)
     if wrong is not None:
         raise ControlError(
             f"the {control.name} control of {control.subject} at {control.place.site.place} ended wrongly: "
             f"{wrong}; no verdict of this campaign could be believed"
         )
-    campaign.proven.add((engine, *control.way))
+    campaign.proven.add((REPLAY, *control.way))
+
+
+class ForkTrust:
+    """What the controls among forks say of the outcomes of the others.
+
+    Args:
+        campaign: the campaign.
+        controls: those that are forked now, by the ids of their mutants.
+
+    Attributes:
+        is_open: whether an outcome may depend on them; most come when that is over.
+    """
+
+    def __init__(self, campaign: Campaign, controls: Mapping[str, Control]) -> None:
+        self._campaign, self._controls = campaign, controls
+        self._awaited = set(controls)
+        self.is_open = bool(controls)
+        self._first = sys.maxsize  # number of the first test of which forks are not believed
+
+    def take(self, outcome: Outcome) -> Iterator[ControlEnd]:
+        """A control has ended. Of one that ended wrongly nothing is kept: replay has others."""
+        control = self._controls[outcome.mutant]
+        self._awaited.discard(outcome.mutant)
+        wrong = control.what_is_wrong(outcome)
+        if wrong is None:
+            self._campaign.proven.add((FORK, *control.way))
+            self.is_open = bool(self._awaited) or self._first < sys.maxsize
+            yield control.end(outcome)
+            return
+        is_of_test = control.name == IDENTITY and outcome.test in control.tests
+        self._distrust(control.tests.index(outcome.test or "") if is_of_test else 0)
+        where = f" in {outcome.test}" if outcome.test is not None else ""
+        why, which = wrong.partition("\n")[0], "that and later tests" if is_of_test else "any test"
+        self._campaign.progress.note(
+            f"the {control.name} control of {control.subject} ended wrongly in a fork{where} "
+            f"({why}): what forks tell of {which} does not count; their mutants run in processes of their own"
+        )
+
+    def close(self) -> None:
+        """There are no more forks: a control that has told nothing speaks for none."""
+        if self._awaited:
+            self._distrust(0)
+
+    def _distrust(self, number: int) -> None:
+        self._first = min(number, self._first)
+
+    def awaits(self, mutant: Mutant, outcome: Outcome) -> bool:
+        """Whether an outcome depends on what controls have yet to tell.
+
+        It does not if the first test that reaches the mutant has decided: that test has controls of its own.
+        """
+        if not self._awaited:
+            return False
+        judging = self._campaign.baseline.tests_judging(outcome.round, mutant)
+        return not (outcome.verdict.is_killed and outcome.test in judging[:1])
+
+    def believes(self, outcome: Outcome) -> bool:
+        """Whether all tests that it depends on end in a fork as they do in the original."""
+        suite = self._campaign.baseline.suite(outcome.round)
+        last = suite.index(outcome.test) if outcome.test in suite else len(suite) - 1
+        return last < self._first
 
 
 def _replayed(campaign: Campaign, controls: Iterable[Control]) -> Iterator[tuple[Control, Outcome]]:

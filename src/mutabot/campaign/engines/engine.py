@@ -37,7 +37,7 @@ from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
 from mutabot.model.deadline import Limit
 from mutabot.model.job import Forking
 
-from .controls import Control, controls_of, run_controls, settled
+from .controls import IDENTITY, Control, ForkTrust, controls_of, run_controls
 
 if TYPE_CHECKING:
     from mutabot.campaign.comparison import Observation
@@ -54,6 +54,7 @@ _LEAST, _PARTS = 10, 16
 _WORTH, _FEWEST = 4, 2
 #: seconds that a fork takes at least
 _FORK = 0.01
+_UNLIKE = "it ends otherwise in a fork in which nothing was changed"
 _MISSED = "its processes did not all get the mutant from a fork"
 #: the level at which zlib costs least
 _QUICKLY = 1
@@ -146,17 +147,39 @@ def _by_fork(
     controls = _forked_controls(campaign, mutants.values())
     campaign.progress.stage("mutants", len(runs))
     hindered: list[tuple[Mutant, Outcome]] = []
+    trust, held = ForkTrust(campaign, controls), list[Outcome]()
     for outcome in run_forks(campaign, [*(one.run for one in controls.values()), *runs], left):
         if outcome.mutant in controls:
-            yield from settled(campaign, FORK, controls[outcome.mutant], outcome)
+            yield from trust.take(outcome)
+            held, ready = [], held
         elif outcome.beside is not None:
             hindered.append((mutants[outcome.mutant], outcome))
+            continue
         else:
-            yield outcome
+            ready = [outcome]
+        for one in ready:
+            if not trust.is_open:
+                yield one
+            elif trust.awaits(mutants[one.mutant], one):
+                held.append(one)
+            else:
+                yield from _believed(trust, mutants[one.mutant], one, left)
+    trust.close()
+    for one in held:
+        yield from _believed(trust, mutants[one.mutant], one, left)
+    left.runs += [(mutant, one.round) for mutant, one in hindered if not trust.believes(one)]
+    hindered = [(mutant, one) for mutant, one in hindered if trust.believes(one)]
     _tell(campaign, left)
     clear_up(campaign, left.suspects)
     left.runs = [run for run in left.runs if run[0].id not in controls]
     yield from run_alone(campaign, hindered)
+
+
+def _believed(trust: ForkTrust, mutant: Mutant, outcome: Outcome, left: Unhandled) -> Iterator[Outcome]:
+    if trust.believes(outcome):
+        yield outcome
+    else:
+        left.runs.append((mutant, outcome.round))
 
 
 def _forked_controls(campaign: Campaign, mutants: Collection[Mutant]) -> dict[str, Control]:
@@ -175,8 +198,11 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Un
     if FORK in campaign.request.engines:
         controls = _forked_controls(campaign, mutants)
         campaign.progress.stage("controls", len(controls))
+        trust = ForkTrust(campaign, controls)
         for outcome in run_forks(campaign, [one.run for one in controls.values()], left):
-            ended += len(list(settled(campaign, FORK, controls[outcome.mutant], outcome, is_step=True)))
+            ended += len(list(trust.take(outcome)))
+            campaign.progress.advance()
+        left.runs += [one.run for one in controls.values() if (FORK, *one.way) not in campaign.proven]
         apart = [one for one in mutants if campaign.baseline.is_apart(one)]
         rest = mutants if left.runs else apart
     if REPLAY in campaign.request.engines and rest:
@@ -392,6 +418,8 @@ class _ForkParent:
         self._waiting: dict[int, set[str]] = {}
         self._undiverged: dict[str, Mapping[str, int]] = {}
         self._places: dict[int, Place] = {}
+        self._alike: dict[str, int] = {}  # tests to how many of their controls ended as the original
+        self._unlike: set[str] = set()
 
     def add(self, mutant: Mutant) -> None:
         """Add a mutant to fork."""
@@ -499,6 +527,13 @@ class _ForkParent:
             case events.Unforked():
                 self._left.reasons.setdefault(event.test, event.reason)
                 self._leave(self._open.keys() & set(event.mutants))
+            case events.ForkTestEnd() if event.mutant.endswith(f":{IDENTITY}={event.end.test}"):
+                end, original = event.end, self._baseline.ends[self._round, event.end.test]
+                is_alike = end.lasting == original.lasting and not (end.acted or end.is_decided)
+                self._alike[end.test] = self._alike.get(end.test, 0) + is_alike
+            case events.TestControls() if self._alike.get(event.test, 0) < event.count:
+                self._left.reasons.setdefault(event.test, _UNLIKE)
+                self._unlike.add(event.test)
             case events.Undiverged():
                 self._undiverged[event.test] = event.hits
             case events.SiteSeen():
@@ -572,7 +607,10 @@ class _ForkParent:
         # a survivor is compared with the original in all tests: those that the parent runs later, too
         last = forked if fork.is_decided or is_dead else len(self._tests) - 1
         if last < len(self._own_ends):
-            yield from self._judged(fork, max(0, forked))
+            if forked >= 0 and self._tests[forked] in self._unlike:
+                self._leave([mutant])
+            else:
+                yield from self._judged(fork, max(0, forked))
         else:
             self._waiting.setdefault(last, set()).add(mutant)
 

@@ -20,13 +20,14 @@ import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from mutabot.model import Call, Mutant, Span
+from mutabot.model import IDENTITY, Call, Choice, Mutant, Span
 from mutabot.model.clocks import monotonic
 from mutabot.model.deadline import Deadline, Limit
-from mutabot.model.events import ForkDied, ForkEnded, TokensHeld, Undiverged, Unforked
+from mutabot.model.events import ForkDied, ForkEnded, TestControls, TokensHeld, Undiverged, Unforked
 from mutabot.model.job import STOP, Forking
+from mutabot.operators.command import Identity
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation import forkable, namespaces
 from mutabot.runtime.isolation.files import PrivateFiles
@@ -56,6 +57,7 @@ class Child:
 
     Attributes:
         mutant: id of its mutant.
+        is_test_control: whether that is a control of the test alone.
         fork: its number among those that were forked here.
         pids: its process, and what keeps its namespace.
         test: the number of the test that it was in when its time began.
@@ -65,6 +67,7 @@ class Child:
     """
 
     mutant: str
+    is_test_control: bool
     fork: int
     pids: namespaces.ForkedPids
     test: int
@@ -104,6 +107,7 @@ class ForkParent:
 
     def __post_init__(self) -> None:
         self._test, self._number, self._held, self._pid = "", -1, 1, os.getpid()
+        self._test_controls = 0
         self._overtaken = self._forking = self._copied = self._stopped = False
         self._live: dict[Key, list[Mutant]] = {}
         self._gone: set[str] = set()
@@ -113,7 +117,7 @@ class ForkParent:
         self._numbers = {test: number for number, test in enumerate(self.tests)}
         self._slots = {mutant.id: slot for slot, mutant in enumerate(self.forking.mutants)}
         # the board, which children write: whether each has gone to the end, and the number of its test
-        count = max(1, len(self._slots))
+        count = len(self._slots) + 1  # the last is that of the controls that end with their test
         board = memoryview(mmap.mmap(-1, 2 * count * _NUMBER_BYTES)).cast("i")
         self._finished, self._tests = board[:count], board[count:]
         self._known = forkable.open_now()
@@ -127,7 +131,7 @@ class ForkParent:
         """A test is about to begin: fork for the mutants that may be hit in processes below it."""
         self._is_overtaken()  # also if no place is reached before
         self._test, self._number = test, self._numbers[test]
-        self._copied = False
+        self._copied, self._test_controls = False, 0
         self._is_stopped()
         due = set(self.forking.at_start.get(test, ())) - self._gone
         if due and self.has_nodes:
@@ -197,7 +201,39 @@ class ForkParent:
             if (reason := reason or forkable.why_not(own, self._known)) is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             else:
-                self._fork_each(due)
+                self._fork_each([self._test_control_of(due[0]), *due] if self._number >= 0 else due)
+
+    def _test_control_of(self, mutant: Mutant) -> Mutant:
+        """The identity where this mutant is: what it does to the test, forking does."""
+        self._test_controls += 1
+        name = Identity.name
+        return Mutant(
+            0, Identity.family, name, mutant.site, mutant.operation, mutant.pattern, None, self._test, name,
+            provider=mutant.provider,
+        )  # fmt: skip
+
+    def is_test_control(self, mutant: Mutant) -> bool:
+        """Whether it is none of the mutants to fork: a process that is one ends with its test."""
+        return mutant.id not in self._slots
+
+    def choices_of(self, mutant: Mutant) -> tuple[Choice, ...]:
+        """What a mutant is in the program text."""
+        if not self.is_test_control(mutant):
+            return self.forking.choices.get(mutant.id, ())
+        key = (mutant.site.span, mutant.operation, mutant.pattern)
+        mutants = (one for one in self.forking.mutants if (one.site.span, one.operation, one.pattern) == key)
+        return tuple({replace(choice, index=IDENTITY) for one in mutants for choice in self.choices_of(one)})
+
+    def end_test(self) -> None:
+        """The test is over: wait for its controls, holding no token meanwhile, and tell their number."""
+        if any(child.is_test_control for child in self._children.values()):
+            self._give_back()
+            while not self._is_stopped() and any(child.is_test_control for child in self._children.values()):
+                if self._reap(self._wait()):
+                    self._give_back()
+            self._take_token()
+        if self._test_controls:
+            self.pipe.send(TestControls(self._test, self._test_controls))
 
     def _is_overtaken(self) -> bool:
         """Whether processes were started before any test: what they did, they did as the original."""
@@ -219,7 +255,8 @@ class ForkParent:
             if pids is None:
                 return
             deadline = Deadline(self._limit(self._number), is_counted=True)
-            child = Child(mutant.id, self.pipe.forks, pids, self._number, deadline)
+            is_test_control = self.is_test_control(mutant)
+            child = Child(mutant.id, is_test_control, self.pipe.forks, pids, self._number, deadline)
             self._children[pids.fork] = child
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
@@ -228,7 +265,7 @@ class ForkParent:
 
     def _fork_one(self, mutant: Mutant, began: float) -> namespaces.ForkedPids | None:
         """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
-        slot = self._slots[mutant.id]
+        slot = self._slots.get(mutant.id, -1)
         self._finished[slot], self._tests[slot] = 0, self._number
         # random registers a hook that seeds anew in every child
         state, loop = random.getstate(), forkable.running_loop()
@@ -324,7 +361,7 @@ class ForkParent:
         """The parent's token went to the child: wait for another, from the pool or from a child's end."""
         with self._pool() as opened:
             pool = None if self.forking.serial else opened  # then no other child may run meanwhile
-            while pool is None or not self._take_free(pool):
+            while (pool is None and self._children) or (pool is not None and not self._take_free(pool)):
                 if self._is_stopped() or self._reap(self._wait(pool)):
                     return
 
@@ -391,7 +428,8 @@ class ForkParent:
 
     def _note_progress(self, child: Child, now: float) -> None:
         """A child whose time seems to be up may have begun another test meanwhile."""
-        test = self._tests[self._slots[child.mutant]] if now >= child.deadline.until else child.test
+        is_late = now >= child.deadline.until and not child.is_test_control
+        test = self._tests[self._slots[child.mutant]] if is_late else child.test
         if test != child.test:
             child.test, child.deadline = test, Deadline(self._limit(test))
 
@@ -399,13 +437,13 @@ class ForkParent:
         """Tell how a child has ended."""
         _, status = os.waitpid(child.pids.fork, 0)
         namespaces.end_first(child.pids.first)
-        slot, code = self._slots[child.mutant], os.waitstatus_to_exitcode(status)
-        # at the end of the session the exit code is the suite's own
-        is_told = code in (DECIDED, STOPPED) or (code >= 0 and self._finished[slot])
+        code, slot = os.waitstatus_to_exitcode(status), self._slots.get(child.mutant, -1)
+        # at the end of the session the exit code is the suite's own; a control that told nothing is missed
+        is_told = code in (DECIDED, STOPPED) or child.is_test_control or (code >= 0 and self._finished[slot])
         died = None
         if child.is_unwanted and not is_told:
             self.pipe.send(Unforked(self._test, (child.mutant,), _INTERRUPTED))
-        elif not is_told or child.overdue:
+        elif not is_told or (child.overdue and not child.is_test_control):
             test, deadline = self._name_of(self._tests[slot]), child.deadline
             died = ForkDied(
                 child.mutant, test, code, deadline.overdue(test) if child.overdue else None,
