@@ -8,7 +8,7 @@ these mutants does not wait for it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -61,11 +61,12 @@ class SourceFaults(FaultProvider):
         from .refine import merge, plant, planted_of, refine
 
         seen = [seen for _, seen in sorted(original.text.items())]
-        why = _why_not_instrumented(prepared.texts, seen)
+        why = {file: why for one in seen for file, why in one.refused.items()}
         texts, left_out = refine(
             (text for text in prepared.texts if text.file not in why),
             merge(one for found in seen for one in found.sightings),
             self._operators(project),
+            _reached(seen),
         )
         left_out += [
             planted_of(place, index, why[text.file])
@@ -108,9 +109,7 @@ def _note_reached(planned: Planned, round: int, seen: TextSeen) -> None:
                 planned.early.add(where)
 
 
-def _why_not_instrumented(texts: Iterable[ProgramText], seen: Sequence[TextSeen]) -> Mapping[str, str]:
-    """Files whose alternatives cannot run, with the reason."""
-    imported = {file for one in seen for file in one.imported}
-    refused = {file: why for one in seen for file, why in one.refused.items()}
-    never = {text.file: "no test imports it" for text in texts if text.file not in imported}
-    return {**never, **refused}
+def _reached(seen: Sequence[TextSeen]) -> set[int]:
+    """The numbers of the places that any test reached, itself or in processes below it."""
+    found = (tests for one in seen for tests in (one.reached, *one.below.values()))
+    return {number for tests in found for numbers in tests.values() for number in numbers}

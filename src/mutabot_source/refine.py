@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
 from mutabot.faults import Planted
@@ -66,11 +66,16 @@ def merge(sightings: Iterable[Sighting]) -> dict[int, Sighting]:
 
 
 def refine(
-    texts: Iterable[ProgramText], seen: Mapping[int, Sighting], operators: Iterable[str] | None = None
+    texts: Iterable[ProgramText],
+    seen: Mapping[int, Sighting],
+    operators: Iterable[str] | None = None,
+    reached: Container[int] | None = None,
 ) -> tuple[tuple[ProgramText, ...], list[Planted]]:
     """The texts with alternatives for variables added, and what does not fit the types left out.
 
-    ``operators``: names of those whose alternatives these are; all if left out.
+    ``operators``: names of those whose alternatives these are; all if left out. ``reached``: numbers of the
+    places that tests reach, all if left out; of others nothing is known of their types, so nothing is left
+    out that could fit: what stands there is not covered.
 
     Numbers of places stay; places that have no alternative any more are gone.
     """
@@ -79,16 +84,22 @@ def refine(
     left_out: list[Planted] = []
     for text in texts:
         places: list[TextPlace] = []
+        names = _read_in_functions(text)
         for place in text.places:
             alternatives: list[Alternative] = []
+            is_reached = reached is None or place.number in reached
             for index, alternative in enumerate(place.alternatives):
-                reason = _reason(alternative, seen.get(place.number))
+                reason = _reason(alternative, seen.get(place.number)) if is_reached else None
                 if reason is None:
                     alternatives.append(alternative)
                 else:
                     left_out.append(planted_of(place, index, reason))
+            known = seen.get(place.number)
+            around = known.variables if known is not None else ()
+            if not is_reached:  # any of its function's may have the same type
+                around = tuple(name for name in names[place.span.function] if name != place.text)
             declared = text.declared.get(place.span.function, ())
-            alternatives += _variables(asking, place, seen.get(place.number), declared)
+            alternatives += _variables(asking, place, around, declared)
             if alternatives:
                 places.append(replace(place, alternatives=tuple(alternatives)))
         refined.append(replace(text, places=tuple(places)))
@@ -96,12 +107,20 @@ def refine(
 
 
 def _variables(
-    asking: Iterable[ConventionalOperator], place: TextPlace, seen: Sighting | None, declared: tuple[str, ...]
+    asking: Iterable[ConventionalOperator], place: TextPlace, around: Iterable[str], declared: tuple[str, ...]
 ) -> list[Alternative]:
-    if not place.variable or seen is None:
+    if not place.variable:
         return []
-    names = [name for name in seen.variables if name not in declared]
+    names = [name for name in around if name not in declared]
     return [replace(one, family=rule.family) for rule in asking for one in rule.with_variables(names)]
+
+
+def _read_in_functions(text: ProgramText) -> dict[str, list[str]]:
+    """The names of the variables that each function reads."""
+    found: dict[str, set[str]] = {}
+    for place in text.places:
+        found.setdefault(place.span.function, set()).update([place.text] if place.variable else ())
+    return {function: sorted(names) for function, names in found.items()}
 
 
 def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:
@@ -109,7 +128,7 @@ def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:
     if not alternative.needs:
         return None
     if seen is None or not seen.kinds:
-        return "no test reaches it, so its type is not known"
+        return "the type of its value was not seen"
     if FITTING[alternative.needs].isdisjoint(seen.kinds):
         return f"its value is {' or '.join(seen.kinds)}, never {alternative.needs}"
     return None

@@ -23,6 +23,7 @@ from mutabot.families import CONTROL
 from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
 from mutabot.model.events import (
     Acted,
+    CallsAsked,
     Event,
     ForkDied,
     ForkSessionEnd,
@@ -178,6 +179,8 @@ class Scripted:
         found = {one.id: self._count(one, job.round) for one in (job.forking.mutants if job.forking else ())}
         forked: dict[str, int] = {}
         yield from self.suite.sites
+        if job.record and job.mutant is None:
+            yield CallsAsked(self.suite.imported)
         places = self._places(job)
         if places:
             files = {one.span.file for one in places}
@@ -342,6 +345,11 @@ class _Suite:
     def sites(self) -> tuple[SiteSeen, ...]:
         found = {call.site.index: call.site for test in self.tests.values() for call in test.calls}
         return tuple(found[index] for index in sorted(found))
+
+    @property
+    def imported(self) -> tuple[str, ...]:
+        """The files of the program of which a test executes anything."""
+        return tuple(sorted({file for one in self.tests.values() for file in one.executed}))
 
     def end(self, run: Run, end: Mapping[str, Any]) -> TestEnd:
         """The report of a test that ends like this, beside what the text says."""

@@ -265,7 +265,7 @@ def test_a_mutant_without_an_answer_is_left_out_with_the_reason(
 ) -> None:
     assert "stopped:arm.stop#1:call" not in found
     folder = project(tmp_path, USES_HANDLE, TEST_OF_HANDLE, operation("start"))
-    _, left_out = plan_only(request_for(folder), Quiet())
+    _, left_out, *_ = plan_only(request_for(folder), Quiet())
     (reason,) = [one.reason for one in left_out if one.id.endswith(":skip")]
     assert reason == (
         "what it answers cannot be kept (builtins:function); "

@@ -16,6 +16,7 @@ import pytest
 from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart
 from mutabot.journal.journal import Journal
+from mutabot.journal.records import Untested
 from mutabot.model import Diverged, Outcome, Verdict
 from mutabot.model.outcome import Apart
 from mutabot.report.document import document, dumps
@@ -162,7 +163,7 @@ def test_numbers_that_json_cannot_hold_become_null(tmp_path: Path) -> None:
 
 
 def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
-    planned = plan_data(samples.MUTANTS, samples.LEFT_OUT)
+    planned = plan_data(samples.MUTANTS, samples.LEFT_OUT, Untested())
     result = data(tmp_path)["mutants"][0]
     assert planned["mutants"][0].items() <= result.items()
     assert planned["left_out"][0]["reason"] == "it is always 0"

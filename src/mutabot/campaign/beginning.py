@@ -28,6 +28,7 @@ from mutabot.journal.files import at_work, refuse_tracked
 from mutabot.languages.front_end import program_files
 from mutabot.model.codec import to_data
 from mutabot.model.events import Remark
+from mutabot.model.mutant import Place
 from mutabot.model.outcome import by_heading
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.evidence import CampaignEvidence
     from mutabot.config.configuration import Configuration
     from mutabot.execution.task import Executor, Result
+    from mutabot.journal.records import Untested
     from mutabot.model import LeftOut, Mutant, Vocabulary
 
 #: operations that are named of those that no test reaches
@@ -117,7 +119,8 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
     campaign.baseline.add_remarks(ignored)
     for remark in ignored:
         campaign.progress.note(str(remark))
-    if not plan.mutants:
+    reached = {place for _, place in campaign.baseline.reaching}
+    if not any(Place.of(one) in reached for one in plan.mutants):
         raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
     mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
     if not mutants:
@@ -148,26 +151,32 @@ def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
 
 
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
-    reasons = by_heading(plan.left_out)
+    files = ", ".join((*request.configuration.program, *request.configuration.oracle))
+    if any(not one.operation for one in plan.mutants):
+        return f"no test reaches any of the {len(plan.mutants)} mutants of {files}"
+    reasons = by_heading(plan.left_out) if not plan.mutants else {}
     if reasons:
         told = "; ".join(f"{len(those)} {heading}" for heading, those in reasons.items())
         return f"no mutants: all {len(plan.left_out)} are left out: {told}"
-    if baseline.hits:
+    if baseline.hits and not plan.mutants:
         families = ", ".join(request.families)
         return f"no mutants: no operator of the families asked for ({families}) acts on what is called"
-    files = ", ".join((*request.configuration.program, *request.configuration.oracle))
     lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
     lines += [str(remark) for remark in baseline.remarks[:_REMARKS]]
     more = len(baseline.remarks) - _REMARKS
     return "\n".join([*lines, *([f"… and {more} more"] if more > 0 else [])])
 
 
-def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
-    """Take the baseline and plan, without running a mutant."""
+def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut], Untested]:
+    """Take the baseline and plan, without running a mutant.
+
+    Returns the mutants, what is left out, and what no test reaches.
+    """
     with at_it(request, progress) as opened, ExitStack() as stack:
         campaign, _ = begin(request, opened, progress, stack=stack)
     plan = selected(campaign, make_plan(campaign.baseline, request.project))
-    return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
+    part = part_of(plan, request.shard, campaign.baseline)
+    return part.mutants, part.left_out, campaign.baseline.untested
 
 
 def check(request: Request, progress: Progress) -> CheckReport:
@@ -226,6 +235,7 @@ def _report(
             for round, test in nondeterministic
         ),
         *_unused(request.vocabulary, unused),
+        *_untested(baseline.untested),
     ]
     if clock is not None and never_ticks:
         lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
@@ -243,9 +253,18 @@ def _report(
         "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in flaky.items()],
         "nondeterministic": [{"round": r, "test": t} for r, t in nondeterministic],
         "unused": unused,
+        "untested": to_data(baseline.untested),
         "remarks": [to_data(remark) for remark in baseline.remarks],
     }
     return CheckReport(lines, data)
+
+
+def _untested(found: Untested) -> Iterator[str]:
+    """Say what no test reaches of the program."""
+    if found.text:
+        yield f"untested  {found.text}"
+    for what, names in found.named.items():
+        yield f"untested  {what}: {in_short(names, _SHOWN)}"
 
 
 def _unused(vocabulary: Vocabulary, unused: Collection[str]) -> Iterator[str]:

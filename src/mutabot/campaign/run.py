@@ -239,6 +239,7 @@ def _write_beginning(
     journal.set_meta(records.RAN_OVER, request.ran_over)
     journal.set_meta(records.OPERATORS, summaries(plan.mutants))
     journal.set_meta(records.DRAWS, drawing(plan.mutants))
+    journal.set_meta(records.UNTESTED, campaign.baseline.untested)
     journal.set_meta(records.REACHING, reaching(campaign.baseline, plan.mutants))
 
 

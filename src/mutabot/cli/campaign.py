@@ -52,11 +52,11 @@ def list_(
     """List the mutants that would run."""
     request = request_of(context.obj, **given)
     with progress_shown() as progress:
-        mutants, left_out = beginning.plan_only(request, progress)
+        planned = beginning.plan_only(request, progress)
     if json:
-        print_json(plan_data(mutants, left_out))
+        print_json(plan_data(*planned))
     else:
-        print_plan(make_console(), mutants, left_out, everything=all)
+        print_plan(make_console(), *planned, everything=all)
 
 
 def run(

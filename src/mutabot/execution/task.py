@@ -96,6 +96,7 @@ class Result:
         seen: what a recording saw of the program text.
         not_instrumented: files whose mutants cannot run, with the reason.
         known_later: operations by sites at which only some tests tell that they stand there.
+        asked: which calls of the program were asked about, by each of its processes.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
         held: tokens that it and its forks held when it was last heard of.
         running: test that was under way when it ended, or None.
@@ -122,6 +123,7 @@ class Result:
     seen: events.TextsSeen | None = None
     not_instrumented: dict[str, str] = field(default_factory=dict)
     known_later: dict[Span, str] = field(default_factory=dict)
+    asked: list[events.CallsAsked] = field(default_factory=list)
     in_mutated_call: bool = False
     held: int = 0
     running: str | None = None
@@ -162,6 +164,8 @@ class Result:
                 self.not_instrumented[line.file] = line.reason
             case events.KnownLater():
                 self.known_later[line.span] = line.operation
+            case events.CallsAsked():
+                self.asked.append(line)
             case events.TokensHeld():
                 self.held = line.held
             case events.TestEnd():

@@ -33,6 +33,8 @@ INCOMPLETE = "incomplete"
 ALTERED = "altered"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
+#: what no test reaches
+UNTESTED = "untested"
 
 
 @frozen
@@ -50,6 +52,85 @@ class Reaching:
     def at(self, site: str) -> tuple[str, ...]:
         """The tests that reach a site."""
         return tuple(self.tests[index] for index in sorted(set(self.sites.get(site, ()))))
+
+
+@frozen
+class UntestedCall:
+    """A call of an operation in the program that no test reaches, found by its name.
+
+    Attributes:
+        place: ``file:line:column``.
+        text: what is called, as written.
+        operation: target of the operation.
+        doubt: why it may be no such call; empty if nothing says so.
+    """
+
+    place: str
+    text: str
+    operation: str
+    doubt: str = ""
+
+    @property
+    def words(self) -> str:
+        """``cell/b.py:2:5 belt.drive``, with the doubt."""
+        return f"{self.place} {self.text}" + (f" ({self.doubt})" if self.doubt else "")
+
+
+@frozen
+class Untested:
+    """What no test reaches of the program, in any round.
+
+    Attributes:
+        calls: number of calls of operations, those that are in doubt left out.
+        functions: number of functions; 0 if it is not known which are called.
+        files: number of files that hold any code.
+        unreached_calls: those that no test reaches.
+        unreached_functions: the same, as ``file:line name``.
+        unreached_files: files that no test imports.
+        doubtful_calls: calls of an operation's name that no test reaches, and which may be something else.
+    """
+
+    calls: int = 0
+    functions: int = 0
+    files: int = 0
+    unreached_calls: tuple[UntestedCall, ...] = ()
+    unreached_functions: tuple[str, ...] = ()
+    unreached_files: tuple[str, ...] = ()
+    doubtful_calls: tuple[UntestedCall, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """``3 of 7 robot calls and 1 of 4 files are reached by no test``; empty if all are reached."""
+        kinds = (
+            (self.unreached_calls, self.calls, "robot call"),
+            (self.unreached_functions, self.functions, "function"),
+            (self.unreached_files, self.files, "file"),
+        )
+        parts = [
+            f"{len(those)} of {total} {name}{'s' if total != 1 else ''}"
+            for those, total, name in kinds
+            if those
+        ]
+        if not parts:
+            return ""
+        *first, last = parts
+        counted = f"{', '.join(first)} and {last}" if first else last
+        is_one = len(parts) == 1 and sum(len(those) for those, _, _ in kinds) == 1
+        return f"{counted} {'is' if is_one else 'are'} reached by no test"
+
+    @property
+    def named(self) -> dict[str, tuple[str, ...]]:
+        """What no test reaches, by name, under what it is."""
+        calls, doubtful = (
+            tuple(one.words for one in those) for those in (self.unreached_calls, self.doubtful_calls)
+        )
+        found = {
+            "files that no test imports": self.unreached_files,
+            "functions": self.unreached_functions,
+            "robot calls, found by name": calls,
+            "may be robot calls, not counted": doubtful,
+        }
+        return {what: those for what, those in found.items() if those}
 
 
 @frozen
@@ -377,6 +458,7 @@ FACTS: Mapping[str, Any] = {
     BUDGET: Budgeted,
     SHARD: ShardOf,
     REACHING: Reaching,
+    UNTESTED: Untested,
     "vocabulary": Vocabulary,
 }
 

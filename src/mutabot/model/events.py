@@ -248,6 +248,19 @@ class KnownLater(Event):
 
 
 @frozen
+class CallsAsked(Event):
+    """Which calls of the program were asked about where they are written, over all tests.
+
+    Attributes:
+        files: files whose calls of an operation's name are asked about, relative to the root.
+        alone: of these calls, where something stood that is no operation.
+    """
+
+    files: tuple[str, ...]
+    alone: tuple[Span, ...] = ()
+
+
+@frozen
 class ForkTestEnd(Event):
     """A fork has finished a test: the one in which it was forked, or a later one.
 

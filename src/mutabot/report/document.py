@@ -51,7 +51,7 @@ def document(results: Results) -> dict[str, Any]:
             results,
             "rounds=all.rounds# groups mutants graded left_out controls baseline sample=drawing since budget "
             "flaky=flaky.tests verification repeats confirmation shard set_aside altered "
-            "operators draws reaching sources",
+            "operators draws reaching untested sources",
         ),
         "sections": {name: _section(part, results) for name, part in brought("sections").items()},
     }
@@ -158,6 +158,9 @@ data_of = Encoder(
         Estimate: "expected low high level known unknown",
         Confirmed: "outcomes refused confirmed wrong left most level text",
         records.ShardOf: "number of mutants",
+        records.Untested: "text calls functions files unreached_calls unreached_functions unreached_files "
+        "doubtful_calls",
+        records.UntestedCall: "place text operation doubt?",
         records.Replayed: _replayed,
         thresholds.Thresholds: _thresholds,
         ladders.Ladder: _ladder,

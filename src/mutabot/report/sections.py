@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import in_short
 from mutabot.frozen import frozen
-from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated
+from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated, Untested
 from mutabot.model import LeftOut, Mutant, Span, Verdict
 from mutabot.model.outcome import NOTHING, by_heading, first_line
 from mutabot.results.divergence import numbers_text
@@ -16,7 +16,7 @@ from mutabot.results.results import MutantResult, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
 from mutabot.results.thresholds import line_of, thresholds_of
 
-from .texts import OUTSIDE, effect_text, escaped, rounds_text
+from .texts import OUTSIDE, effect_text, escaped, rounds_text, status_of
 
 if TYPE_CHECKING:
     from mutabot.results.score import Group
@@ -56,6 +56,7 @@ def sections(results: Results, place: Place) -> Iterator[Section]:
     yield from _errors(results)
     if results.done:
         yield from _scores(results)
+    yield from untested(results.untested)
     yield from _narrowed(results)
     yield from _survivors(results, place)
     if found := unlooked(results.mutants):
@@ -141,15 +142,37 @@ def _narrowed(results: Results) -> Iterator[Section]:
         yield Section(f"Time limit reached: {done}", lines=lines)
 
 
+#: names that a line gives of what no test reaches
+_NAMES = 5
+
+
+def untested(found: Untested, *, everything: bool = False) -> Iterator[Section]:
+    """What no test reaches of the program; ``everything``: each by name, in a line of its own."""
+    lines = []
+    for what, names in found.named.items():
+        if everything:
+            lines += [f"{what}:", *(f"  {name}" for name in names)]
+        else:
+            lines.append(f"{what}: {in_short(names, _NAMES)}")
+    if lines:
+        yield Section(found.text or "Calls that no test reaches may be robot calls", lines=lines)
+
+
 #: so many survivors are described although none had a measured effect
 _FEW = 10
 
 
 def _survivors(results: Results, place: Place) -> Iterator[Section]:
     """Survivors with an effect, the largest first; the numbers of those without one in a line."""
-    survivors = results.survivors
+    idle = [one.mutant.number for one in results.survivors if status_of(one) is Verdict.NOT_COVERED]
+    if idle:
+        yield Section(
+            f"{plural(len(idle), 'mutant')} not covered, since no test reaches the place",
+            lines=[numbered(idle)],
+        )
+    survivors = [one for one in results.survivors if status_of(one) is not Verdict.NOT_COVERED]
     if not survivors:
-        if results.all.total.valid:
+        if results.all.total.valid > len(idle) * results.rounds:
             yield Section("No survivors" if results.is_complete else "No survivors so far")
         return
     same = [result.mutant.number for result in survivors if result.indistinguishable]

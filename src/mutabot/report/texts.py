@@ -12,7 +12,7 @@ from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from mutabot.journal.records import Reaching
+from mutabot.journal.records import Reaching, Untested
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.outcome import first_line
 from mutabot.results.divergence import numbers_text, worst_of
@@ -83,7 +83,7 @@ _META = (
 def portable(campaign: Results) -> Results:
     """The same campaign, fit for any report."""
     clean = Cleaner(campaign.meta.get("root"))
-    texts = "state mutants graded controls flaky attempt verification left_out"
+    texts = "state mutants graded controls flaky attempt verification left_out untested"
     found: dict[str, Any] = {name: mapped(getattr(campaign, name), clean) for name in texts.split()}
     return replace(
         campaign,
@@ -102,7 +102,7 @@ def portable(campaign: Results) -> Results:
 
 
 #: what says what stands in the program, which stays as it is: it is the user's own text
-_OWN = (Mutant, LeftOut)
+_OWN = (Mutant, LeftOut, Untested)
 
 
 def mapped(value: T, change: Callable[[str], str]) -> T:

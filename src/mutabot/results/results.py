@@ -124,6 +124,7 @@ class Results:
             are missing.
         reaching: which tests reach which sites.
         draws: names of operators that draw a number for each round.
+        untested: what no test reaches of the program.
     """
 
     meta: Mapping[str, Any]
@@ -150,6 +151,7 @@ class Results:
     operators: Mapping[str, str] = field(default_factory=dict)
     reaching: records.Reaching = field(default_factory=records.Reaching)
     draws: tuple[str, ...] = ()
+    untested: records.Untested = field(default_factory=records.Untested)
 
     @property
     def altered(self) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from mutabot.model.events import Acted, Called, Event, KnownLater, Noted, SiteSeen, TextsSeen
+from mutabot.model.events import Acted, Called, CallsAsked, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Idle
 from mutabot.model.operation import owner_of
 from mutabot.runtime.evidence import Evidence, Meter
@@ -391,11 +391,17 @@ class Session:
             stood = self.standing.stood | {seen.span: seen.operation for seen in self.recorder.sites}
             for span in sorted(self.standing.alone & stood.keys()):
                 self._send(KnownLater(span, stood[span]))
+            self._send(self.calls_asked())
         if self.job.inspect:
             self.inspect_targets()
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
+
+    def calls_asked(self) -> CallsAsked:
+        """Which calls of the program were asked about until now, and where something else stood."""
+        files = sorted(map(self.locator.relative, self.call_sites.asked))
+        return CallsAsked(tuple(files), tuple(sorted(self.standing.alone)))
 
     def inspect_targets(self) -> None:
         """Look at every target of the vocabulary, also of what no test has led to."""

@@ -111,8 +111,16 @@ def test_after_the_baseline_only_fitting_types_are_left(tmp_path: Path) -> None:
     ]
     reasons = {(item.mutant.site.text, item.reason) for item in left_out}
     assert ("a + b", "its value is text, never number") in reasons
-    assert ("c", "no test reaches it, so its type is not known") in reasons
+    assert ("c", "the type of its value was not seen") in reasons
     assert left_out[0].as_left_out.id.endswith("a + b#1:ABS=abs")
+
+
+def test_where_no_test_comes_all_is_planted_that_may_fit(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "def f(a, b):\n    return a + b\n", "AOR", "SVR")
+    (refined,), left_out = refine([text], {}, reached=())
+    assert {one.text for _, _, one in choices(refined) if one.operator == "SVR"} == {"a", "b"}
+    assert "a - b" in {one.text for _, _, one in choices(refined)}
+    assert left_out == []
 
 
 def test_an_unknown_operator_is_refused_with_the_nearest(tmp_path: Path) -> None:

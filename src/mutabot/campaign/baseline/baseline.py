@@ -19,6 +19,7 @@ from mutabot.errors import MutabotError
 from mutabot.families import CALLS, CONTROL, MESSAGES
 from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
+from mutabot.journal.records import Untested
 from mutabot.languages.front_end import SiteName, front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.model import FATAL, IDENTITY, Operation, Pattern, Vocabulary
@@ -270,6 +271,8 @@ class Baseline(Original):
         unread: whether nobody uses what the calls of a place return.
         stand_ins: places at which a mock or a fake of the project gets calls.
         shares_files: whether runs see each other's files.
+        untested: what no test reaches of the program.
+        unreached: places of calls in it, found by the names of operations; a mutant there is not covered.
     """
 
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
@@ -299,6 +302,8 @@ class Baseline(Original):
     early: set[Place] = field(default_factory=set)
     shares_files: bool = False
     collected: dict[int, frozenset[str]] = field(default_factory=dict)
+    untested: Untested = field(default_factory=Untested)
+    unreached: tuple[Place, ...] = ()
 
     def suite(self, round: int) -> tuple[str, ...]:
         """The tests that a mutant is run with, in their order: all that can be relied on."""

@@ -30,6 +30,7 @@ from mutabot.model.source_units import ExecutedByTests
 from mutabot.operators import load_all
 
 from .baseline import Baseline, Hit, RecordedAnswers, Sources, observation, refused_of
+from .untested import add_untested
 
 if TYPE_CHECKING:
     from mutabot.model.mutant import Place
@@ -215,6 +216,9 @@ def _read(
             below=first.reached_below,
             refused=first.not_instrumented,
         )
+    add_untested(
+        baseline, request.root, request.configuration.program, request.vocabulary, suite.results.values()
+    )
     refuse_failing(request, failing)
     if not any(baseline.ran(round) for round in range(request.rounds)):
         raise NothingToDoError(_no_tests(baseline))

@@ -27,7 +27,7 @@ from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
 from mutabot.operators.registry import operator as operator_of
 from mutabot.operators.registry import operator as operator_on_calls
-from mutabot.operators.value import NOT_PASSED, NOT_RETURNED
+from mutabot.operators.value import NOT_PASSED, NOT_RETURNED, label
 
 
 def at_moments(
@@ -60,7 +60,8 @@ def _why_not(mutant: Mutant, vocabulary: Vocabulary, baseline: Baseline) -> str 
     if moment.asks_time and vocabulary.clock is None:
         return "the vocabulary names no clock"
     most = max(_calls_at(mutant, baseline).values(), default=0)
-    if moment.first > most and not moment.asks_time:
+    is_reached = Place.of(mutant) in baseline.hits
+    if is_reached and moment.first > most and not moment.asks_time:
         return f"no test makes call {moment.first:g} here; the most are {most}"
     return None
 
@@ -119,6 +120,7 @@ class CallFaults(FaultProvider):
         assert isinstance(original, Baseline)
         operators = [rule for rule in self.rules() if _is_asked_for(rule, project)]
         found = list(_at_places(original, project.vocabulary, operators, self.name))
+        found += _not_covered(original, project.vocabulary, operators, self.name)
         if project.moments != (None,):
             found = at_moments(found, original, project.vocabulary, project.moments)
         return Planned(ladders_last(with_demanded(found, project)))
@@ -183,6 +185,29 @@ def _at_places(
                 except NoAnswerError as error:  # of a statement by itself nobody needs one
                     reason = None if baseline.unread.get(place, False) else str(error)
             yield Planted(mutant, reason, (0, index, ranks[rule.name]))
+
+
+def _not_covered(
+    baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
+) -> list[Planted]:
+    """The mutants of these operators at calls that no test reaches: all that the vocabulary allows.
+
+    What only values could rule out stays: a test that reaches the call must not lower a score.
+    """
+    taken: set[str] = set()
+    ranks = {rule.name: rank for rank, rule in enumerate(load_all())}
+    found = []
+    for index, place in enumerate(baseline.unreached, start=len(baseline.hits)):
+        operation = vocabulary.operation(place.operation)
+        for subject, rule in _subjects(operators, operation, place) if operation is not None else ():
+            unmet = (
+                _why_unmet(need, subject, place, baseline, vocabulary) for need in rule.needs_of(subject)
+            )
+            mutant = _distinct(_mutant(rule, subject, place, provider), taken)
+            text = _description(rule, subject, place, None, is_shared=False)
+            order = (0, index, ranks[rule.name])
+            found.append(Planted(replace(mutant, description=text), next(filter(None, unmet), None), order))
+    return found
 
 
 def _answers(baseline: Baseline, place: Place, *, of_any: bool) -> RecordedAnswers:
@@ -287,7 +312,7 @@ def _why_unmet(
 ) -> str | None:
     """Why what an operator needs is not to be had; None if it is."""
     match need:
-        case Need.ERROR if not baseline.answers[place].has_raised:
+        case Need.ERROR if not _has_raised(baseline, place):
             return "no call raises in the baseline"
         case Need.PLACE if not _is_told(subject, vocabulary):
             return f"{subject.current or 'no reading'} does not tell where it is"
@@ -298,6 +323,17 @@ def _why_unmet(
         case Need.SIGN if not _has_negative(baseline, place, subject):
             return NO_SIGN
     return None
+
+
+def _has_raised(baseline: Baseline, place: Place) -> bool:
+    """Whether a call of a place raised; of one that no test reaches, whether any call of the command did."""
+    if place in baseline.answers:
+        return baseline.answers[place].has_raised
+    command = place.operation, place.pattern
+    of_command = (
+        one for other, one in baseline.answers.items() if (other.operation, other.pattern) == command
+    )
+    return any(one.has_raised for one in of_command)
 
 
 def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
@@ -366,8 +402,15 @@ def _calls(hits: int) -> str:
     return "the call" if hits == 1 else f"any of {hits} calls"
 
 
-def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:
-    """What the mutant does, in one line; ``is_shared``: whether the site reaches several operations."""
+def _description(
+    rule: Operator, subject: Subject, place: Place, seen: _Seen | None, *, is_shared: bool
+) -> str:
+    """What the mutant does, in one line.
+
+    Args:
+        seen: None for a call that no test reaches.
+        is_shared: whether the site reaches several operations.
+    """
     operation, text = subject.operation, place.site.text
     if operation.named is not None:  # what is done on a middleware, and who hears it
         is_callback = text == "lambda" or text.startswith("def ")
@@ -377,7 +420,9 @@ def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *,
     if subject.pattern is not None:
         name = subject.pattern.name
         what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
-    return f"{what}: {rule.describe(subject, *seen)}"
+    if seen is None and subject.quantity is not None and not rule.has_sizes:
+        return f"{what}: {rule.name} of {label(subject.quantity)}"
+    return f"{what}: {rule.describe(subject, *(seen or (None, None)))}"
 
 
 def _names(text: str, qualname: str, *, is_shared: bool) -> bool:

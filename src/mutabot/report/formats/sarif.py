@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from mutabot.errors import in_short
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
 from mutabot.report.texts import survivor_text
@@ -19,6 +20,8 @@ _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sa
 _ROOT = "%SRCROOT%"
 #: part of a name in ``partialFingerprints``; rises if ids of mutants are made in another way
 _FINGERPRINT = "mutabotMutant/v1"
+#: names of each kind that a note gives
+_NAMES = 20
 _HELP = (
     "A survivor is a fault that the test suite lets through. Add a check that notices what the robot does "
     "otherwise, or a case in which the fault matters; `mutabot show ID` tells all about it."
@@ -74,6 +77,10 @@ def _invocation(material: Material) -> dict[str, Any]:
     notes = [] if is_complete else [{"level": "warning", "message": {"text": _message(told)}}]
     if campaign.confirmation is not None:
         notes.append({"level": "note", "message": {"text": _message(f"{campaign.confirmation.text}.")}})
+    untested = campaign.untested
+    if untested.text:
+        named = "; ".join(f"{what}: {in_short(names, _NAMES)}" for what, names in untested.named.items())
+        notes.append({"level": "warning", "message": {"text": _message(f"{untested.text}. {named}")}})
     return {"executionSuccessful": is_complete, "toolExecutionNotifications": notes}
 
 

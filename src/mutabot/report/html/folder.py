@@ -67,7 +67,8 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         **data_of.facts(
             campaign,
             "state attempt done planned rounds groups controls verification repeats drawing tests baseline "
-            "reaching left_out operators flaky=flaky.tests confirmed=confirmation.text",
+            "reaching left_out operators untested named=untested.named flaky=flaky.tests "
+            "confirmed=confirmation.text",
         ),
         "meta": campaign.meta,
         # thousands of rows do not repeat the names of their cells

@@ -15,12 +15,13 @@ from rich.console import Console, RenderableType
 from rich.text import Text
 
 from mutabot.report.document import data_of
-from mutabot.report.sections import Section, plural, sections, size_text, skipped
+from mutabot.report.sections import Section, plural, sections, size_text, skipped, untested
 from mutabot.results.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
 
 from .console import below, heading, legend, letters, make_table, plain, print_section, short_place
 
 if TYPE_CHECKING:
+    from mutabot.journal.records import Untested
     from mutabot.model import LeftOut, Mutant
     from mutabot.results.ladders import Ladder
     from mutabot.results.results import Results
@@ -106,9 +107,17 @@ def _mutants(results: Results) -> Iterator[RenderableType]:
 
 
 def print_plan(
-    console: Console, mutants: Sequence[Mutant], left_out: Sequence[LeftOut], *, everything: bool = False
+    console: Console,
+    mutants: Sequence[Mutant],
+    left_out: Sequence[LeftOut],
+    reach: Untested,
+    *,
+    everything: bool = False,
 ) -> None:
-    """Print every planned mutant, a ladder in one line; ``everything`` adds ids and all that was left out."""
+    """Print every planned mutant, a ladder in one line; and what no test reaches of the program.
+
+    ``everything`` adds ids, all that was left out, and each name of what no test reaches.
+    """
     ladders = Counter(mutant.ladder for mutant in mutants if mutant.ladder)
     others = {name: f", and {count - 1} other magnitudes" for name, count in ladders.items() if count > 1}
     firsts = {mutant.ladder or mutant.id: mutant for mutant in reversed(mutants)}
@@ -126,15 +135,15 @@ def print_plan(
     ]
     columns = (">no.", "role", "place", "operator", "*fault")
     print_section(console, Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows))
-    for section in skipped(left_out):
+    for section in (*untested(reach, everything=everything), *skipped(left_out)):
         print_section(console, section)
     for item in left_out if everything else ():
         console.print(below(f"{item.id}  {item.description}: {item.reason}"))
 
 
-def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut]) -> dict[str, Any]:
-    """Return the plan as JSON-like data."""
-    return {"mutants": data_of(mutants), "left_out": data_of(left_out)}
+def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut], reach: Untested) -> dict[str, Any]:
+    """Return the plan, and what no test reaches of the program, as JSON-like data."""
+    return {"mutants": data_of(mutants), "left_out": data_of(left_out), "untested": data_of(reach)}
 
 
 def print_rules(console: Console, rules: Iterable[Mapping[str, str]]) -> None:

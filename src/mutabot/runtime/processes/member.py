@@ -285,6 +285,8 @@ class Member:
         self._use()
         if self.session.text is not None:
             self.session.text.finish()
+        if not isinstance(self.session, TextOnly) and self.session.job.record:
+            self.file.send(self.session.calls_asked())
         self.file.send(events.Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
         self.file.send(events.SessionEnd())
 

@@ -101,7 +101,7 @@ class Members:
                     for targets in self._session.targets:
                         targets.found_elsewhere(event.targets)
                     self._session.inspection.elsewhere.update(event.modules)
-                case events.NotInstrumented() | events.Problem() | events.Remark():
+                case events.CallsAsked() | events.NotInstrumented() | events.Problem() | events.Remark():
                     self._session.pipe.send(event)
 
     def _with_recorded(self, end: events.TestEnd, here: list[ChildRecord], known: Known) -> events.TestEnd:

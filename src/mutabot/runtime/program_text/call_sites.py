@@ -178,6 +178,11 @@ class CallSites(SourceStep):
             declare_global(tree, CALLS)
             self.loaded.add(path)
 
+    @property
+    def asked(self) -> set[str]:
+        """The files that have questions, as code objects name them."""
+        return {path for path, _, _ in self._numbers}
+
     def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
         key = (path, extent_of(node), form)
         number = self._numbers.get(key)

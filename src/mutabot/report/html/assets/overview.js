@@ -15,12 +15,22 @@
       h("h1", { tabindex: "-1" }, `${things.filter(Boolean).join(" and ")} × ${count(campaign.rounds, "round")}`),
       state(campaign),
       scores(campaign),
+      untested(campaign),
       ...judging.slice(0, 1),
       ...(graded ? [ladders(campaign)] : []),
       ...judging.slice(1),
       trust(campaign),
     );
   });
+
+  /** What no test reaches of the program, by name. */
+  function untested(campaign) {
+    const names = Object.entries(campaign.named);
+    if (!names.length) return "";
+    return h("section", { "aria-labelledby": "untested" }, h("h2", { id: "untested" }, campaign.untested.text || "Calls that no test reaches may be robot calls"),
+      names.map(([what, those]) => h("details", null, h("summary", null, `${what}: ${those.length}`),
+        h("ul", { class: "plain small" }, those.map((one) => h("li", null, h("code", null, mutabot.breakable(one))))))));
+  }
 
   const worstFirst = (mutants) => mutants.filter((one) => one.survives)
     .sort((one, other) => other.worst - one.worst || one.indistinguishable - other.indistinguishable || one.number - other.number);
@@ -103,12 +113,14 @@
       h("span", { class: `mark m-${kind}`, "aria-hidden": "true" }, letter), `${found} ${words}`))));
   }
 
-  function toActOn(survivors, campaign) {
+  function toActOn(all, campaign) {
+    const survivors = all.filter((one) => one.status !== "not covered"), idle = all.length - survivors.length;
+    const more = idle ? h("p", { class: "hint" }, h("a", { href: address(["mutants"], { status: "not covered" }) }, `${count(idle, "mutant")} not covered`), ", since no test reaches the place") : null;
     const [loud, calm] = [false, true].map((is) => survivors.filter((one) => one.indistinguishable === is));
     const heading = h("h2", { id: "survivors" }, survivors.length ? `${count(survivors.length, "survivor")}, largest deviation from the original first` : "Survivors");
     if (!survivors.length) {
-      const judged = campaign.mutants.some((one) => one.valid);
-      return h("section", null, heading, judged
+      const judged = campaign.mutants.some((one) => one.valid && one.status !== "not covered");
+      return h("section", null, heading, more, judged
         ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", "The tests noticed every mutant that was valid. The check score above counts those that an assertion killed.")
         : isUnderWay(campaign) ? empty("Nothing is judged yet.", "A mutant is, as soon as its tests have run as the mutant and as the original.")
         : empty("Nothing was judged.", "No mutant was valid in any round; the list below says why."));
@@ -116,7 +128,8 @@
     return h("section", { "aria-labelledby": "survivors" }, heading,
       h("ol", { class: "findings" }, loud.slice(0, SHOWN).map((one) => finding(one))),
       calm.length ? h("p", { class: "hint" }, `${count(calm.length, "survivor")} without a measured effect on what the robot did: `, calm.slice(0, 3 * SHOWN).map((one, index) => [index ? ", " : "", h("a", { href: address(["mutant", String(one.number)]) }, one.number)])) : null,
-      loud.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived,not covered", sort: "worst" }) }, `All ${survivors.length} survivors`)) : null);
+      loud.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived", sort: "worst" }) }, `All ${survivors.length} survivors`)) : null,
+      more);
   }
 
   function ladders(campaign) {

@@ -1,0 +1,363 @@
+"""Calls of operations in program text that nobody runs: they are found by their names.
+
+What is called there is told by the text alone. A call counts as one of an operation if its last name is the
+operation's, unless the text says that it is something else: a function or method of the program, what was
+imported from elsewhere, a built-in. Where what it is called on comes from elsewhere, or the command depends
+on what is computed, the call is in doubt: it is told, and no mutant is made of it.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from mutabot.frozen import frozen
+from mutabot.languages.python import FRONT_END, extent_of
+from mutabot.model import Operation, Pattern, Role, Site, Span
+from mutabot.model.operation import ANY, owner_of
+from mutabot.model.path import Path
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+#: built-in functions whose value is of the user's making
+_HANDS_THROUGH = {"getattr", "iter", "max", "min", "next", "super", "vars"}
+#: an origin within the program, or of a module that is imported relative to it
+_HERE = "."
+_DEEPEST = 8
+
+
+@frozen
+class NamedCall:
+    """A call that has an operation's name.
+
+    Attributes:
+        site: where it stands.
+        operation: the operation.
+        pattern: the command, if the operation has several.
+        doubt: why it may be none; empty if nothing says so.
+    """
+
+    site: Site
+    operation: str
+    pattern: str | None = None
+    doubt: str = ""
+
+
+@frozen
+class KnownCalls:
+    """What is known of the calls that tests reach.
+
+    Attributes:
+        operations: the operations that can be called, by their last names.
+        own: first parts of the names of the program's modules.
+        reached: the operations that texts of calls stand for where a test reaches them.
+        alone: texts of calls that were no operation's where a test reached them.
+    """
+
+    operations: Mapping[str, Sequence[Operation]]
+    own: Collection[str]
+    reached: Mapping[str, Collection[str]]
+    alone: Collection[str]
+
+
+def calls_in(source: str, file: str, known: KnownCalls) -> Iterator[NamedCall]:
+    """The calls of a file that have an operation's name. Raises SyntaxError or ValueError."""
+    tree = ast.parse(source)
+    origins = _Origins(tree, file)
+    names = FRONT_END.names(source)
+    for call, scope in _calls(tree.body, _Scope()):
+        last = origins.last_name(call.func)
+        if last not in known.operations:
+            continue
+        name = names[extent_of(call)]
+        site = Site(Span(file, *extent_of(call), scope.name), name.text, name.occurrence, Role.PROGRAM)
+        found = _operation(call, last, name.text, scope, origins, known)
+        if found is not None:
+            operation, doubt = found
+            pattern = _pattern(call, operation)
+            if not doubt and pattern is None and operation.patterns:
+                doubt = "which command it is depends on what is computed"
+            text = pattern.text if pattern is not None else None
+            yield NamedCall(site, operation.target, text, doubt)
+
+
+@frozen
+class _Scope:
+    """Where a call stands.
+
+    Attributes:
+        name: as in ``code.co_qualname``.
+        functions: the functions around it, the inner one last.
+        owner: the class whose method it stands in.
+    """
+
+    name: str = "<module>"
+    functions: tuple[_Function, ...] = ()
+    owner: ast.ClassDef | None = None
+    is_class: bool = False
+
+    def inner(self, name: str) -> str:
+        if self.name == "<module>":
+            return name
+        return f"{self.name}.{name}" if self.is_class else f"{self.name}.<locals>.{name}"
+
+
+def _calls(nodes: Sequence[ast.AST], scope: _Scope) -> Iterator[tuple[ast.Call, _Scope]]:
+    """All calls below these nodes, but for annotations and what only type checkers see."""
+    for node in nodes:
+        if isinstance(node, ast.Call):
+            yield node, scope
+        if isinstance(node, _Function):
+            defaults = [one for one in (*node.args.defaults, *node.args.kw_defaults) if one is not None]
+            decorators = [] if isinstance(node, ast.Lambda) else node.decorator_list
+            yield from _calls([*decorators, *defaults], scope)
+            name = "<lambda>" if isinstance(node, ast.Lambda) else node.name
+            inner = _Scope(scope.inner(name), (*scope.functions, node), scope.owner)
+            yield from _calls([node.body] if isinstance(node.body, ast.expr) else node.body, inner)
+        elif isinstance(node, ast.ClassDef):
+            keywords = [one.value for one in node.keywords]
+            yield from _calls([*node.decorator_list, *node.bases, *keywords], scope)
+            yield from _calls(node.body, _Scope(scope.inner(node.name), scope.functions, node, is_class=True))
+        elif isinstance(node, ast.If) and _last(node.test) == "TYPE_CHECKING":
+            yield from _calls(node.orelse, scope)
+        elif isinstance(node, ast.AnnAssign):
+            yield from _calls([node.value] if node.value is not None else [], scope)
+        else:
+            yield from _calls(list(ast.iter_child_nodes(node)), scope)
+
+
+def _last(node: ast.AST) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
+class _Origins:
+    """Where the names of a file come from, as far as its text says."""
+
+    def __init__(self, tree: ast.Module, file: str) -> None:
+        self.file = file
+        self.imported: dict[str, str] = {}
+        self.defined = {one.name for one in tree.body if isinstance(one, _Named)}
+        self._module = tree
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                for one in node.names:
+                    self.imported[one.asname or one.name.partition(".")[0]] = (
+                        one.name if one.asname else one.name.partition(".")[0]
+                    )
+            elif isinstance(node, ast.ImportFrom):
+                module = "." * node.level + (node.module or "")
+                self.imported |= {one.asname or one.name: f"{module}.{one.name}" for one in node.names}
+
+    def last_name(self, function: ast.expr) -> str:
+        """The last name of what is called, before it was imported under another one."""
+        if isinstance(function, ast.Name):
+            return self.imported.get(function.id, function.id).rpartition(".")[2]
+        return _last(function)
+
+    def of(self, node: ast.AST, scope: _Scope, depth: int = 0) -> str | None:
+        """The dotted name of what an expression is made of; None if the text does not tell."""
+        if depth > _DEEPEST:
+            return None
+        match node:
+            case ast.Name(id=name):
+                return self._of_name(name, scope, depth)
+            case ast.Attribute(value=ast.Name(id="self" | "cls"), attr=attribute) if scope.owner is not None:
+                if attribute in _methods(scope.owner):
+                    return _HERE + attribute
+                return self._of_value(_stored(scope.owner, "self." + attribute), scope, depth)
+            case ast.Attribute(value=value, attr=attribute):
+                origin = self.of(value, scope, depth + 1)
+                return f"{origin}.{attribute}" if origin is not None else None
+            case ast.Call(func=function):
+                origin = self.of(function, scope, depth + 1)
+                is_through = origin is not None and origin.removeprefix("builtins.") in _HANDS_THROUGH
+                return None if is_through else origin
+            case ast.Await(value=value):
+                return self.of(value, scope, depth + 1)
+            case ast.Constant(value=str(text)) if depth:  # an annotation may be a text
+                return (
+                    self.of(ast.parse(text, mode="eval").body, scope, depth + 1) if _is_name(text) else None
+                )
+            case ast.Constant() | ast.JoinedStr() | ast.List() | ast.Dict() | ast.Set() | ast.Tuple():
+                return "builtins"
+        return None
+
+    def _of_name(self, name: str, scope: _Scope, depth: int) -> str | None:
+        for function in reversed(scope.functions):
+            arguments = function.args
+            for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+                if one.arg == name:
+                    return self._of_value(one.annotation, scope, depth)
+            stored = _stored(function, name)
+            if stored is not None:
+                return self._of_value(stored, scope, depth)
+        if name in self.imported:
+            return self.imported[name]
+        if name in self.defined:
+            return _HERE + name
+        stored = _stored(self._module, name)
+        if stored is None and hasattr(builtins, name):
+            return f"builtins.{name}"
+        return self._of_value(stored, _Scope(), depth)
+
+    def _of_value(self, value: ast.AST | None, scope: _Scope, depth: int) -> str | None:
+        return self.of(value, scope, depth + 1) if value is not None else None
+
+
+_Named = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+
+
+def _is_name(text: str) -> bool:
+    return all(part.isidentifier() for part in text.split("."))
+
+
+def _methods(owner: ast.ClassDef) -> set[str]:
+    return {one.name for one in owner.body if isinstance(one, _Named)}
+
+
+def _stored(around: ast.AST, name: str) -> ast.expr | None:
+    """The last value, or the annotation, that a name gets in a function, class or module."""
+    found: ast.expr | None = None
+    for node in ast.walk(around):
+        match node:
+            case ast.Assign(targets=targets, value=value) if name in map(ast.unparse, targets):
+                found = value
+            case ast.AnnAssign(target=target, annotation=annotation) if ast.unparse(target) == name:
+                found = annotation
+            case ast.withitem(optional_vars=ast.Name(id=other), context_expr=value) if other == name:
+                found = value
+            case ast.NamedExpr(target=ast.Name(id=other), value=value) if other == name:
+                found = value
+    return found
+
+
+def _operation(
+    call: ast.Call, last: str, text: str, scope: _Scope, origins: _Origins, known: KnownCalls
+) -> tuple[Operation, str] | None:
+    """The operation that a call is of, and why that is in doubt; None if it is of none."""
+    candidates = known.operations[last]
+    told = [one for one in candidates if one.target in known.reached.get(text, ())]
+    if told:
+        return told[0], ""
+    doubts: list[tuple[Operation, str]] = []
+    sure: list[Operation] = []
+    for one in candidates:
+        doubt = _doubt(call, one, scope, origins, known)
+        if doubt == "":
+            sure.append(one)
+        elif doubt is not None:
+            doubts.append((one, doubt))
+    if sure and text in known.alone:
+        return sure[0], "where tests reach this text, it is no operation"
+    if sure:
+        return _best(call, sure, scope, origins), ""
+    return doubts[0] if doubts else None
+
+
+def _doubt(
+    call: ast.Call, operation: Operation, scope: _Scope, origins: _Origins, known: KnownCalls
+) -> str | None:
+    """Why it is in doubt whether a call is of this operation; empty if it is not, None if it is of none."""
+    function = call.func
+    if operation.target.startswith(ANY):
+        return "" if isinstance(function, ast.Attribute) else None
+    module, is_method = operation.module.partition(".")[0], bool(owner_of(operation.target))
+    if isinstance(function, ast.Name):
+        origin = origins.of(function, scope)
+        if origin is None:
+            return "" if not (scope.functions or is_method) else "it is a variable that is called"
+        is_own = function.id in origins.defined and origin == _HERE + function.id
+        return (
+            ""
+            if _is_of(origin, module, known) and not (is_own and not _is_in(operation, origins.file))
+            else None
+        )
+    value = function.value if isinstance(function, ast.Attribute) else function
+    origin = origins.of(function, scope)
+    if origin == _HERE + getattr(function, "attr", "") and _is_self(value):
+        return None  # the program's own method
+    if _is_super(value):
+        return ""
+    origin = origins.of(value, scope)
+    if origin is None:
+        return "" if is_method else "what it is called on is not known"
+    if _is_of(origin, module, known):
+        return ""
+    is_module = isinstance(value, ast.Name | ast.Attribute) and _root(value) in origins.imported
+    if is_module or origin == "builtins":
+        return None
+    return f"what it is called on comes from {origin}"
+
+
+def _is_of(origin: str, module: str, known: KnownCalls) -> bool:
+    """Whether something comes from the operation's package, or from the program."""
+    top = origin.partition(".")[0]
+    return top in ("", module) or top in known.own
+
+
+def _is_in(operation: Operation, file: str) -> bool:
+    """Whether an operation is defined in this file of the program."""
+    return file.removesuffix(".py").replace("/", ".").endswith(operation.module)
+
+
+def _is_self(node: ast.AST) -> bool:
+    return isinstance(node, ast.Name) and node.id in ("self", "cls")
+
+
+def _is_super(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and _last(node.func) == "super"
+
+
+def _root(node: ast.AST) -> str:
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def _best(call: ast.Call, operations: Sequence[Operation], scope: _Scope, origins: _Origins) -> Operation:
+    """Of several operations of one name, the one whose class or arguments fit; the first if none does."""
+    value = call.func.value if isinstance(call.func, ast.Attribute) else call.func
+    origin = origins.of(value, scope) or ""
+    given = {one.arg for one in call.keywords}
+
+    def fits(one: Operation) -> tuple[bool, bool]:
+        owner = owner_of(one.target).rpartition(":")[2]
+        return bool(owner) and origin.endswith(owner), not given.isdisjoint(one.described)
+
+    return max(operations, key=fits)
+
+
+def _pattern(call: ast.Call, operation: Operation) -> Pattern | None:
+    """The command that a call is by the texts that stand in it; None if these do not tell, or it has one."""
+    named = {one.arg: one.value for one in call.keywords if one.arg}
+    root = Path.parse(operation.message, rooted=True).root if operation.message is not None else None
+    values = [named[root]] if root in named else [*call.args, *named.values()]
+    texts = [text for value in values for text in _texts(value)]
+    for pattern in operation.patterns:
+        cases = {Path.parse(one.argument, rooted=True).root or "": one.value for one in pattern.when}
+        if not all(_is_case(named.get(name), value) for name, value in cases.items()):
+            continue
+        if pattern.notation is None or any(pattern_reads(pattern.notation, text) for text in texts):
+            return pattern
+    return None
+
+
+def pattern_reads(notation: str, text: str) -> bool:
+    """Whether a text is a command of this notation."""
+    from mutabot.model.notation import Notation  # noqa: PLC0415  # most programs have no such commands
+
+    return Notation.compile(notation).read(text) is not None
+
+
+def _is_case(value: ast.expr | None, wanted: str) -> bool:
+    return isinstance(value, ast.Constant) and str(value.value).lower() == wanted.lower()
+
+
+def _texts(node: ast.expr) -> Iterator[str]:
+    """What a text may read that stands here, or is put together here, with a number for what is computed."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    elif isinstance(node, ast.JoinedStr):
+        for sample in ("1", "1.0", "a"):
+            parts = (one.value if isinstance(one, ast.Constant) else sample for one in node.values)
+            yield "".join(map(str, parts))

@@ -1,0 +1,173 @@
+"""What no test reaches of the program: files, functions, and calls of operations.
+
+Files and functions are those that no process has executed, as far as all processes could tell. A call of an
+operation's name was reached if it is a site, or if something else was seen to stand there.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mutabot.campaign.baseline.named_calls import KnownCalls, NamedCall, calls_in
+from mutabot.frozen import frozen
+from mutabot.journal.records import Untested, UntestedCall
+from mutabot.languages.front_end import front_end_of, program_files
+from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.model import Operation, Role, Span
+from mutabot.model.mutant import Place
+from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, functions_of, together
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.execution.task import Result
+    from mutabot.model import Vocabulary
+
+#: a call in a file, by where it ends: a chain over several lines begins elsewhere for the interpreter
+_End = tuple[str, int, int]
+#: what a process that cannot be seen is told by
+UNSEEN = "processes"
+_DOUBT = "a process that cannot be seen may reach it"
+
+
+@frozen
+class _Seen:
+    """What all runs of the original tell.
+
+    Attributes:
+        sites: where calls of operations were made.
+        alone: where something else stood that has an operation's name.
+        asked: files in which all calls of such names are asked about.
+        imported: files that were imported, as far as that is known.
+        executed: units that were executed; None if that is not known.
+    """
+
+    sites: frozenset[_End]
+    alone: frozenset[_End]
+    asked: frozenset[str]
+    imported: frozenset[str]
+    executed: Executed | None
+
+    @classmethod
+    def of(cls, results: Iterable[Result]) -> _Seen:
+        results = list(results)
+        sites = [site.span for result in results for site in result.sites]
+        asked = [one for result in results for one in result.asked]
+        executed = together(end.executed for result in results for end in result.ends)
+        imported = {file for result in results if result.seen for file in result.seen.imported}
+        files = {file for one in asked for file in one.files}
+        return cls(
+            frozenset(map(_end, sites)),
+            frozenset(_end(span) for one in asked for span in one.alone),
+            frozenset(files),
+            frozenset({*imported, *files, *(executed or ()), *(span.file for span in sites)}),
+            executed,
+        )
+
+    @property
+    def knows_files(self) -> bool:
+        """Whether a file of which nothing was seen was not imported."""
+        return self.executed is not None and ALL_FILES not in self.executed
+
+    def is_executed(self, file: str, line: int) -> bool:
+        lines = (self.executed or {}).get(file, ())
+        return line in lines or WHOLE in lines
+
+
+def _end(span: Span) -> _End:
+    return span.file, span.end_line, span.end_column
+
+
+def add_untested(
+    baseline: Baseline, root: Path, program: Sequence[str], vocabulary: Vocabulary, results: Iterable[Result]
+) -> None:
+    """Let a baseline know what its tests do not reach."""
+    seen = _Seen.of(results)
+    texts = dict(_texts(root, program_files(root, program)))
+    files = [file for file in texts if file not in seen.imported] if seen.knows_files else []
+    functions, idle = _functions(texts, seen) if seen.knows_files else (0, [])
+    calls, total = _calls(baseline, vocabulary, texts, seen)
+    is_unseen = any(remark.source == UNSEEN for remark in baseline.remarks)
+    doubts = [one.doubt or (_DOUBT if is_unseen else "") for one in calls]
+    baseline.unreached = tuple(
+        Place(one.site, one.operation, one.pattern)
+        for one, doubt in zip(calls, doubts, strict=True)
+        if not doubt
+    )
+    told = [
+        UntestedCall(one.site.place, one.site.text, one.operation, doubt)
+        for one, doubt in zip(calls, doubts, strict=True)
+    ]
+    baseline.untested = Untested(
+        calls=total + len(baseline.unreached),
+        functions=functions,
+        files=len(texts),
+        unreached_calls=tuple(one for one in told if not one.doubt),
+        unreached_functions=tuple(idle),
+        unreached_files=tuple(files),
+        doubtful_calls=tuple(one for one in told if one.doubt),
+    )
+
+
+def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """The files of the program that hold anything but a docstring, with their text."""
+    for file in files:
+        if front_end_of(file) is not PYTHON:
+            continue
+        try:
+            text = (root / file).read_text(encoding="utf-8-sig")
+            body = ast.parse(text).body
+        except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+            continue
+        if any(not isinstance(one, ast.Expr) or not isinstance(one.value, ast.Constant) for one in body):
+            yield file, text
+
+
+def _functions(texts: Mapping[str, str], seen: _Seen) -> tuple[int, list[str]]:
+    """How many functions there are, and which of them nobody has called."""
+    found = [
+        (file, name, node) for file, text in texts.items() for name, node in functions_of(ast.parse(text))
+    ]
+    idle = [
+        f"{file}:{node.lineno} {name}"
+        for file, name, node in found
+        if not seen.is_executed(file, node.lineno)
+    ]
+    return len(found), idle
+
+
+def _calls(
+    baseline: Baseline, vocabulary: Vocabulary, texts: Mapping[str, str], seen: _Seen
+) -> tuple[list[NamedCall], int]:
+    """The calls that no test reaches, and how many sites tests do reach."""
+    operations = [one for one in vocabulary.operations if one.named is None and one.kind in (None, "methods")]
+    targets = {one.target for one in operations}
+    places = [one for one in baseline.hits if one.operation in targets and one.site.role is Role.PROGRAM]
+    known = _known(operations, places, texts, seen)
+    found = []
+    for file, text in texts.items() if operations else ():
+        if file in seen.imported and file not in seen.asked:
+            continue  # whether its calls were made is not known
+        found += [
+            one for one in calls_in(text, file, known) if _end(one.site.span) not in seen.sites | seen.alone
+        ]
+    return found, len({place.site for place in places})
+
+
+def _known(
+    operations: Iterable[Operation], places: Iterable[Place], texts: Mapping[str, str], seen: _Seen
+) -> KnownCalls:
+    by_name: dict[str, list[Operation]] = {}
+    for one in operations:
+        by_name.setdefault(one.qualname.rpartition(".")[2], []).append(one)
+    own = {part.removesuffix(".py") for file in texts for part in file.split("/")}
+    reached: dict[str, set[str]] = {}
+    for place in places:
+        reached.setdefault(place.site.text, set()).add(place.operation)
+    alone: set[str] = set()
+    for file in {file for file, _, _ in seen.alone} & texts.keys():
+        everything = calls_in(texts[file], file, KnownCalls(by_name, own, {}, ()))
+        alone |= {one.site.text for one in everything if _end(one.site.span) in seen.alone}
+    return KnownCalls(by_name, own, reached, alone)

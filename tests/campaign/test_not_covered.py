@@ -1,0 +1,172 @@
+"""What no test reaches stays in the score: files, functions and calls of operations, found by their names."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+import pytest
+
+from mutabot.campaign.beginning import check, plan_only
+from mutabot.campaign.run import run_campaign
+from mutabot.errors import ExitCode, NothingToDoError
+from mutabot.journal.journal import Journal
+from mutabot.model import Verdict
+from mutabot.report.document import document
+from mutabot.results.gate import decide
+from mutabot.results.results import Results, read_results
+from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, request_for, write_project
+from tests.campaign.scripted import Script
+
+PROGRAM = """
+    def ahead(arm):
+        arm.move_by(0.25)
+
+    def back(arm):
+        arm.move_by(-0.25)
+        return open("log").read()
+"""
+AHEAD = """
+    import mission
+    import robot
+
+    def test_ahead():
+        arm = robot.Arm()
+        mission.ahead(arm)
+        assert arm.x == 0.25
+"""
+BACK = """
+    def test_back():
+        arm = robot.Arm()
+        mission.back(arm)
+"""
+OTHER = """
+    def flee(arm):
+        arm.move_by(0.5)
+"""
+
+
+def project(folder: Path, tests: str = AHEAD) -> Path:
+    write_project(folder, PROGRAM, tests)
+    (folder / "other.py").write_text(dedent(OTHER), encoding="utf-8")
+    text = dedent(CONFIGURATION).replace('["mission.py"]', '["mission.py", "other.py"]')
+    (folder / "mutabot.toml").write_text(text, encoding="utf-8")
+    return folder
+
+
+def ran(folder: Path, **changes: Any) -> Results:
+    with Journal.open(run_campaign(request_for(folder, **changes), Quiet())) as journal:
+        return read_results(journal)
+
+
+def score(results: Results) -> float:
+    (group,) = results.groups
+    return group.scores.mean or 0.0
+
+
+def test_calls_that_no_test_reaches_are_not_covered_and_lower_the_score(
+    tmp_path: Path, script: Script
+) -> None:
+    script.kill("move_by")
+    results = ran(project(tmp_path))
+    idle = {one.mutant.site.place for one in results.mutants if Verdict.NOT_COVERED in verdicts(one)}
+    assert idle == {"mission.py:6:5", "other.py:3:5"}
+    assert results.untested.text == "2 of 3 robot calls and 2 of 3 functions are reached by no test"
+    assert decide(results, min_score=0.9).exit_code is ExitCode.SCORE_TOO_LOW
+
+
+def verdicts(result: Any) -> set[Verdict]:
+    return {one.verdict for one in result.outcomes}
+
+
+@pytest.mark.parametrize("words", [("move_by",), ("ahead",), ()])
+@pytest.mark.parametrize("family", ["robot", "conventional"])
+def test_removing_a_test_never_raises_a_score(
+    tmp_path: Path, script: Script, words: tuple[str, ...], family: str
+) -> None:
+    script.kill(*words)
+    with_it = ran(project(tmp_path / "with", AHEAD + BACK), families=(family,))
+    without = ran(project(tmp_path / "without"), families=(family,))
+    assert score(without) <= score(with_it)
+    assert len(without.mutants) >= len(with_it.mutants)
+
+
+def test_a_mutant_keeps_its_id_and_its_outcome_gives_way_once_a_test_comes(
+    tmp_path: Path, script: Script
+) -> None:
+    script.kill("move_by")
+    folder = project(tmp_path)
+    before = ran(folder)
+    (folder / "tests" / "test_mission.py").write_text(dedent(AHEAD) + dedent(BACK), encoding="utf-8")
+    after = ran(folder)
+    assert {one.mutant.id for one in after.mutants} <= {one.mutant.id for one in before.mutants}
+    ends = {one.mutant.id: verdicts(one) for one in after.mutants if ":back:" in one.mutant.id}
+    assert set.union(*ends.values()) == {Verdict.KILLED}
+
+
+def test_mutants_that_run_keep_their_numbers(tmp_path: Path, script: Script) -> None:
+    alone, *_ = plan_only(request_for(write_project(tmp_path / "alone", PROGRAM, AHEAD)), Quiet())
+    both, *_ = plan_only(request_for(project(tmp_path / "both")), Quiet())
+    assert [one.id for one in both[: len(alone)]] == [one.id for one in alone]
+
+
+def test_where_no_test_reaches_anything_there_is_no_campaign(tmp_path: Path, script: Script) -> None:
+    tests = "def test_nothing():\n    import mission\n"
+    with pytest.raises(NothingToDoError, match="no test reaches a call of the vocabulary's operations"):
+        ran(project(tmp_path, tests))
+
+
+def test_a_selection_may_be_of_what_no_test_reaches(tmp_path: Path, script: Script) -> None:
+    results = ran(project(tmp_path), only=("other.py",))
+    assert {one.mutant.site.span.file for one in results.mutants} == {"other.py"}
+    assert score(results) == 0.0
+
+
+def test_all_rounds_and_samples_know_of_them(tmp_path: Path, script: Script) -> None:
+    results = ran(project(tmp_path), rounds=2)
+    assert all(len(one.outcomes) == 2 for one in results.mutants)
+
+
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
+def test_the_text_of_a_real_project_tells(tmp_path: Path, engine: str) -> None:
+    """``open`` is called where a test comes and where none does, and is no operation."""
+    folder = project(tmp_path)
+    results = ran(folder, engine=engine)
+    told = document(results)["untested"]
+    assert [one["place"] for one in told["unreached_calls"]] == ["mission.py:6:5", "other.py:3:5"]
+    assert told["unreached_files"] == ["other.py"]
+    assert told["unreached_functions"] == ["mission.py:5 back", "other.py:2 flee"]
+    assert told["doubtful_calls"] == []
+    assert json.dumps(told)
+    lines = check(request_for(folder, engine=engine), Quiet()).lines
+    assert f"untested  {results.untested.text}" in lines
+
+
+def test_of_a_call_in_a_branch_and_of_one_that_is_no_operation(tmp_path: Path) -> None:
+    program = """
+        def go(arm, log, far=False):
+            log.position()
+            if far:
+                arm.move_by(0.5)
+                log.position()
+            arm.move_by(0.25)
+    """
+    tests = """
+        import mission
+        import robot
+
+        class Log:
+            def position(self):
+                return "none"
+
+        def test_go():
+            arm = robot.Arm()
+            mission.go(arm, Log())
+            assert arm.x == 0.25
+    """
+    results = ran(write_project(tmp_path, program, tests))
+    assert [one.place for one in results.untested.unreached_calls] == ["mission.py:5:9"]
+    assert [one.place for one in results.untested.doubtful_calls] == ["mission.py:6:9"]
+    assert results.untested.text == "1 of 2 robot calls is reached by no test"
