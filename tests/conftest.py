@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from importlib.metadata import PathDistribution
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
@@ -80,3 +81,10 @@ def parsed_once() -> Iterator[None]:
 def plugins(monkeypatch: pytest.MonkeyPatch) -> None:
     """Campaigns load all plug-ins that are installed, as they do for a user."""
     monkeypatch.delenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", raising=False)
+
+
+@pytest.fixture
+def common() -> Iterator[Path]:
+    """A folder that no run keeps to itself: what one writes there, all others see."""
+    with TemporaryDirectory(dir="/var/tmp", ignore_cleanup_errors=True) as folder:
+        yield Path(folder)

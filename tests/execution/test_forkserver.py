@@ -28,18 +28,14 @@ TESTS = """
 """
 
 
-#: in the folder that is not private to a run
-DIARY = "project/.mutabot/diary"
-
-
-def project(folder: Path, *, conftest: str, tests: str = TESTS) -> Path:
-    """A project whose diary says what happened in its processes; it lies where all of them can write."""
+def project(folder: Path, common: Path, *, conftest: str, tests: str = TESTS) -> Path:
+    """A project whose diary, in ``common``, says what happened in its processes."""
     head = f"""
     import atexit, os, random, tempfile, threading, time
     import pytest
 
     def note(text):
-        with open({str(folder / DIARY)!r}, "a") as diary:
+        with open({str(common / "diary")!r}, "a") as diary:
             diary.write(text + chr(10))
     """
     root = folder / "project"
@@ -53,8 +49,8 @@ def project(folder: Path, *, conftest: str, tests: str = TESTS) -> Path:
     )
 
 
-def diary(folder: Path) -> list[str]:
-    return (folder / DIARY).read_text().splitlines()
+def diary(common: Path) -> list[str]:
+    return (common / "diary").read_text().splitlines()
 
 
 def campaign(root: Path, engine: str = "fork") -> tuple[Quiet, dict[tuple[str, int], Verdict]]:
@@ -66,35 +62,40 @@ def campaign(root: Path, engine: str = "fork") -> tuple[Quiet, dict[tuple[str, i
 @pytest.mark.whole
 def test_program_is_imported_once_for_all_rounds_and_mutants_and_draws_the_same_in_both_engines(
     tmp_path: Path,
+    common: Path,
 ) -> None:
-    root = project(tmp_path, conftest="note(str(random.random()))")
+    root = project(tmp_path, common, conftest="note(str(random.random()))")
     _, verdicts = campaign(root)
-    once = diary(tmp_path)
+    once = diary(common)
     assert len(once) == 1
-    (tmp_path / DIARY).unlink()
+    (common / "diary").unlink()
     assert campaign(root, "replay")[1] == verdicts
-    again = diary(tmp_path)
+    again = diary(common)
     assert len(again) > len(verdicts)
     assert set(again) == set(once)
 
 
 @pytest.mark.whole
-def test_tests_that_are_not_safe_to_fork_start_anew_and_the_user_is_told(tmp_path: Path) -> None:
+def test_tests_that_are_not_safe_to_fork_start_anew_and_the_user_is_told(
+    tmp_path: Path, common: Path
+) -> None:
     waiting = "threading.Thread(target=threading.Event().wait, daemon=True, name='spinner').start()"
-    root = project(tmp_path, conftest=f"note('imported')\n    {waiting}")
+    root = project(tmp_path, common, conftest=f"note('imported')\n    {waiting}")
     progress, verdicts = campaign(root, "auto")
     assert any("each run starts anew" in line and "spinner" in line for line in progress.lines)
     assert set(verdicts.values()) == {Verdict.KILLED}
-    assert len(diary(tmp_path)) > 2
+    assert len(diary(common)) > 2
     report = check(request_for(root), Quiet())
     assert report.data
 
 
 def test_what_was_made_before_the_fork_lasts_for_all_runs_and_each_takes_it_down(
     tmp_path: Path,
+    common: Path,
 ) -> None:
     root = project(
         tmp_path,
+        common,
         conftest="""
     FOLDER = tempfile.TemporaryDirectory()
     atexit.register(note, "left")
@@ -110,7 +111,7 @@ def test_what_was_made_before_the_fork_lasts_for_all_runs_and_each_takes_it_down
     )
     _, verdicts = campaign(root)
     assert set(verdicts.values()) == {Verdict.KILLED}
-    found = diary(tmp_path)
+    found = diary(common)
     # every run ends as if it had a process of its own: hooks and exit handlers may decide about its exit code
     assert found.count("finished") > 2
     assert found.count("left") == found.count("finished")
@@ -118,9 +119,10 @@ def test_what_was_made_before_the_fork_lasts_for_all_runs_and_each_takes_it_down
     assert not Path(folder).exists()
 
 
-def test_what_a_run_makes_goes_with_it(tmp_path: Path) -> None:
+def test_what_a_run_makes_goes_with_it(tmp_path: Path, common: Path) -> None:
     root = project(
         tmp_path,
+        common,
         conftest="""
     @pytest.fixture(autouse=True)
     def leaves():
@@ -130,14 +132,15 @@ def test_what_a_run_makes_goes_with_it(tmp_path: Path) -> None:
     progress = Quiet()
     request = request_for(root, engine="fork")
     check(request, progress)
-    found = diary(tmp_path)
+    found = diary(common)
     # two rounds of the original, the fork parent of the controls, and the identity, which goes to the end
     assert found == ["left"] * 4
 
 
-def test_no_run_finds_what_another_one_left_in_the_cache(tmp_path: Path) -> None:
+def test_no_run_finds_what_another_one_left_in_the_cache(tmp_path: Path, common: Path) -> None:
     root = project(
         tmp_path,
+        common,
         conftest="""
     @pytest.fixture(autouse=True)
     def once(cache):
@@ -149,7 +152,7 @@ def test_no_run_finds_what_another_one_left_in_the_cache(tmp_path: Path) -> None
     assert set(verdicts.values()) == {Verdict.KILLED}
 
 
-def test_output_of_a_run_does_not_mix_into_another_ones(tmp_path: Path) -> None:
+def test_output_of_a_run_does_not_mix_into_another_ones(tmp_path: Path, common: Path) -> None:
     tests = """
     import mission
     from robot import Arm
@@ -161,11 +164,11 @@ def test_output_of_a_run_does_not_mix_into_another_ones(tmp_path: Path) -> None:
         assert arm.x == 0.125
         assert capfd.readouterr().out == "begin\\n"
     """
-    _, verdicts = campaign(project(tmp_path, conftest="print('imported')", tests=tests))
+    _, verdicts = campaign(project(tmp_path, common, conftest="print('imported')", tests=tests))
     assert set(verdicts.values()) == {Verdict.KILLED}
 
 
-def test_death_of_the_process_that_collected_the_tests_is_a_clear_error(tmp_path: Path) -> None:
+def test_death_of_the_process_that_collected_the_tests_is_a_clear_error(tmp_path: Path, common: Path) -> None:
     shot = """
     @pytest.fixture(autouse=True)
     def shot():
@@ -173,16 +176,16 @@ def test_death_of_the_process_that_collected_the_tests_is_a_clear_error(tmp_path
             os.kill(HERE, 9)
             time.sleep(60)  # a copy that is quick may be done before it is taken along
     """
-    root = project(tmp_path, conftest="HERE = os.getpid()\n" + shot)
+    root = project(tmp_path, common, conftest="HERE = os.getpid()\n" + shot)
     with pytest.raises(BaselineError, match="killed by signal 9"):
         campaign(root)
     assert not list((root / ".mutabot").glob("work-*"))
 
 
 @pytest.mark.whole
-def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path) -> None:
+def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path, common: Path) -> None:
     tests = TESTS.replace("arm = Arm()", "import pytest; pytest.exit('enough')")
-    root = project(tmp_path, conftest="", tests=tests)
+    root = project(tmp_path, common, conftest="", tests=tests)
     texts = []
     for engine in ("fork", "replay"):
         with pytest.raises(MutabotError) as caught:
@@ -192,8 +195,8 @@ def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path) 
 
 
 @pytest.mark.whole
-def test_error_in_a_test_file_is_told_as_without_sharing(tmp_path: Path) -> None:
-    root = project(tmp_path, conftest="", tests="import nothing_of_that_name")
+def test_error_in_a_test_file_is_told_as_without_sharing(tmp_path: Path, common: Path) -> None:
+    root = project(tmp_path, common, conftest="", tests="import nothing_of_that_name")
     texts = []
     for engine in ("fork", "replay"):
         with pytest.raises(BaselineError, match="cannot be collected") as caught:

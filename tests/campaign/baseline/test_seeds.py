@@ -82,9 +82,9 @@ def expected(round: int) -> set[tuple[str, ...]]:
 
 @pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_a_shared_fixture_gets_the_seed_of_its_scope_and_a_test_its_own(
-    tmp_path: Path, engine: str, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, common: Path, engine: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told = tmp_path / "project" / ".mutabot" / "seeds"  # common to all runs
+    told = common / "seeds"
     monkeypatch.setenv("SEEDS", str(told))
     folder = write_project(tmp_path / "project", MISSION, SHARED)
     request = request_for(folder, engine=engine, rounds=2, only=("*:reverse",))

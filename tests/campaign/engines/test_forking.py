@@ -342,12 +342,11 @@ BUSY = """
     import mission
     from robot import Arm
 
-    FOLDER = pathlib.Path(__file__).parent.parent / ".mutabot" / "busy"
+    FOLDER = pathlib.Path("{folder}")
 
     def test_busy():
         arm = Arm()
         mission.run(arm)
-        FOLDER.mkdir(exist_ok=True)
         mark = FOLDER / str(os.getpid())
         mark.touch()
         running = len(list(FOLDER.iterdir()))
@@ -355,13 +354,14 @@ BUSY = """
         while time.monotonic() < end:
             running = max(running, len(list(FOLDER.iterdir())))
         mark.unlink()
-        assert running <= 2, f"{running} at once"
+        assert running <= 2, f"{{running}} at once"
         assert arm.x == 0.125
 """
 
 
-def test_never_more_processes_compute_than_asked_for(tmp_path: Path) -> None:
-    write_project(tmp_path, MISSION, BUSY, configuration=CONFIGURATION + "    rounds = 3\n")
+def test_never_more_processes_compute_than_asked_for(tmp_path: Path, common: Path) -> None:
+    busy = BUSY.format(folder=common)
+    write_project(tmp_path, MISSION, busy, configuration=CONFIGURATION + "    rounds = 3\n")
     path = run_campaign(request_for(tmp_path, engine="fork", jobs=2), Quiet())
     found = outcomes(path)
     assert len(found) > 20

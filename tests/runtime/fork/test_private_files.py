@@ -35,6 +35,7 @@ def project() -> Iterator[Path]:
         root = Path(folder, "project, with: a strange name")
         (root / ".mutabot/work/home").mkdir(parents=True)
         (root / ".mutabot/work/other home").mkdir()
+        (root / ".mutabot/journal.sqlite").write_text("outcomes")
         (root / "data").mkdir()
         (root / "data/part.csv").write_text("1")
         (root / "data/other.csv").write_text("2")
@@ -50,7 +51,7 @@ from mutabot.runtime.isolation.files import PrivateFiles
 
 root, home = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[1]) / ".mutabot/work/home"
 os.chdir(root)
-files = PrivateFiles(str(root), str(home), str(root / ".mutabot"))
+files = PrivateFiles(str(root), str(home))
 assert not (why_not := files.make()), why_not
 """
 
@@ -67,7 +68,7 @@ ALONE = """
 pathlib.Path("report.txt").write_text("mine")
 (root / "data/part.csv").unlink()
 (root / "data").rename(root / "moved")
-(root / ".mutabot/common.txt").write_text("ours")
+os.truncate(root / ".mutabot/journal.sqlite", 0)
 (home / "report.txt").write_text("ours")
 shutil.rmtree(root / ".mutabot/work/other home")
 pathlib.Path(sys.argv[2]).write_text("temporary")
@@ -82,7 +83,7 @@ def test_what_a_process_does_stays_with_it(project: Path, tmp_path: Path) -> Non
     assert (project / "report.txt").read_text() == "original"
     assert {path.name for path in (project / "data").iterdir()} == {"other.csv", "part.csv"}
     assert not temporary.exists()
-    assert (project / ".mutabot/common.txt").read_text() == "ours"
+    assert (project / ".mutabot/journal.sqlite").read_text() == "outcomes"
     assert (project / ".mutabot/work/home/report.txt").read_text() == "ours"
     # what belongs to other processes cannot be deleted from here
     assert (project / ".mutabot/work/other home").is_dir()

@@ -15,7 +15,7 @@ import re
 import shutil
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -57,8 +57,7 @@ class PrivateFiles:
 
     Args:
         root: absolute path of the project.
-        home: the process's own folder, beside those of other processes, which it cannot touch.
-        shared: the folder that stays common to all processes, but for those folders.
+        home: the process's own folder, in one of the campaign's in that of mutabot, which is private as well.
 
     Attributes:
         why_not: why its files are not private, in words; None if they are.
@@ -66,7 +65,6 @@ class PrivateFiles:
 
     root: str
     home: str
-    shared: str
     why_not: str | None = "private_files is switched off"
     _own: str = ""
     _is_privileged: bool = False
@@ -160,17 +158,16 @@ class PrivateFiles:
 
     def _lay(self) -> None:
         """Lay an overlay over each private folder."""
-        folders = [folder for folder in private_folders(self.root) if not is_below(folder, self.shared)]
+        folders = (*private_folders(self.root), os.path.dirname(os.path.dirname(self.home)))
         if self._below is None:  # the same in all forks, and the list is long
-            self._below = _mounts_below(folders, self.shared)
+            self._below = _mounts_below(folders)
         below = self._below
         numbers = [n for n, folder in enumerate(folders) if not _is_part(folder, folders, below)]
-        beside = os.path.dirname(self.home)
         in_memory = self._has_memory()
-        with _opened([*folders, self.shared, beside, self.home, self._own]) as opened:
-            *lowers, common, others, home, own = opened
+        with _opened([*folders, self.home, self._own]) as opened:
+            *lowers, home, own = opened
             with _opened(below) as kept:
-                again = [*zip(below, kept, strict=True), (self.shared, common)]
+                again = [*zip(below, kept, strict=True), (self.home, home)]
                 for number in numbers:
                     folder, lower = folders[number], lowers[number]
                     is_memory = in_memory and folder == os.path.realpath(_SHARED_MEMORY)
@@ -179,9 +176,6 @@ class PrivateFiles:
                     for inner, descriptor in again:
                         if inner != folder and is_below(inner, folder):
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
-            if beside != self.shared:
-                _lay_over(beside, others, _layers(own, len(folders), in_memory=in_memory))
-                _mount(_path(home), self.home, None, _MS_BIND | _MS_REC)
 
     def _has_memory(self) -> bool:
         """Mount a file system in memory in the process's own folder, if that can hold layers."""
@@ -270,7 +264,7 @@ def _enter_namespace() -> bool:
     return False
 
 
-def _is_part(folder: str, folders: list[str], mounted: list[str]) -> bool:
+def _is_part(folder: str, folders: Collection[str], mounted: list[str]) -> bool:
     """Whether the overlay over one of the other folders covers this one: no file system lies in between."""
     between = [point for point in mounted if is_below(folder, point)]
     return any(
@@ -301,15 +295,14 @@ def _lay_over(folder: str, lower: int, layers: str) -> None:
             _mount("overlay", folder, options + ",userxattr", 0, kind="overlay")
 
 
-def _mounts_below(folders: list[str], shared: str) -> list[str]:
+def _mounts_below(folders: Collection[str]) -> list[str]:
     """File systems that are mounted below these folders, the outer ones first: an overlay would hide them."""
     with open("/proc/self/mountinfo", "rb") as file:
         points = [mount_point(line) for line in file]
     found = dict.fromkeys(
         point
         for point in sorted(points)
-        if not is_below(point, shared)
-        and any(point != folder and is_below(point, folder) for folder in folders)
+        if any(point != folder and is_below(point, folder) for folder in folders)
     )
     return list(found)
 
