@@ -31,7 +31,7 @@ from mutabot.frozen import frozen
 from mutabot.model.event_file import FOLDER, FORKS, SESSION, SUFFIX, EventReader
 from mutabot.model.events import Event, ForkEnded, Serving
 from mutabot.model.files import open_file, read_file
-from mutabot.model.fold import fold_fork
+from mutabot.model.fold import Children, fold_fork
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, STOP, Job, job_file, write_job
 from mutabot.model.keeper import FILE as KEEPER
 from mutabot.model.keeper import LEFT
@@ -244,15 +244,24 @@ class EventStream:
 
     def _of_fork(self, name: str, ended: ForkEnded) -> list[Event]:
         """What a fork told that has ended; nothing if it cannot be relied on."""
-        file = Path(self._home.folder, FORKS, name, FOLDER, name + SUFFIX)
+        folder = Path(self._home.folder, FORKS, name)
+        file = folder / FOLDER / (name + SUFFIX)
         if not file.exists():  # it had no folder of its own yet
             file = Path(self._home.events(name))
         reader = EventReader(str(file), self._home.key)
         events = reader.read(is_last=True)
-        if reader.damage is not None:
+        if reader.damage is not None or (ended.died is not None and self._is_damaged_below(folder)):
             return []
         file.unlink(missing_ok=True)
         return self._with_forks(name, fold_fork(events, ended.exit_code, ended.died))
+
+    def _is_damaged_below(self, fork: Path) -> bool:
+        """Whether that a fork died may be due to what was done to the files of processes below it."""
+        if not (fork / FOLDER).is_dir():
+            return False
+        children = Children(str(fork), self._home.key)
+        children.read()
+        return children.doubt is not None
 
 
 #: seconds that a server may take to answer, and to end, once its tests are collected

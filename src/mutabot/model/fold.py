@@ -7,6 +7,7 @@ controller, if the test process did not get that far.
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -122,9 +123,11 @@ class Children:
     Attributes:
         records: what each of them told, by file.
         doubt: why what they told cannot be relied on, or None.
+        number: that of the running test, as the test process knows it; None elsewhere, and before any test.
     """
 
     def __init__(self, home: str, key: str) -> None:
+        self.number: int | None = None
         self.records: dict[str, ChildRecord] = {}
         self.doubt: str | None = None
         self._folder, self._key = os.path.join(home, FOLDER), key
@@ -137,8 +140,7 @@ class Children:
             for event in self._new_in(name):
                 self._take(name, event)
                 found.append(event)
-        if self._is_unwritten():
-            self._note("one of them could not write what it had to tell; is the disk full?")
+        self._look_at_now()
         return found
 
     def _take(self, name: str, event: events.Event) -> None:
@@ -172,13 +174,18 @@ class Children:
             sleep(_PAUSE)
         return found
 
-    def _is_unwritten(self) -> bool:
+    def _look_at_now(self) -> None:
         try:
-            return any(read_file(os.path.join(self._folder, NOW), 16)[8:])
-        except FileNotFoundError:  # there is none before the first test
-            return False
-        except OSError:
-            return True
+            now = read_file(os.path.join(self._folder, NOW), 16)
+        except OSError as error:
+            if self.number is None and isinstance(error, FileNotFoundError):  # before the first test
+                return
+            now = b""
+        is_number = self.number is None or now[:8] == self.number.to_bytes(8, sys.byteorder)
+        if any(now[8:]):
+            self._note("one of them could not write what it had to tell; is the disk full?")
+        elif len(now) < 16 or not is_number:  # they have read another number, or died of reading
+            self._note("the number of the running test was deleted or changed")
 
     def _note(self, why: str) -> None:
         self.doubt = self.doubt or f"what processes below the tests reported was damaged: {why}"

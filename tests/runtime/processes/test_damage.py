@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mmap
 import os
 import shutil
 import stat
@@ -19,7 +20,7 @@ from mutabot.model.event_file import FOLDER, NOW, SUFFIX, sealed
 from mutabot.model.events import Began, Event, Found, SessionEnd
 from mutabot.model.fold import Children
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.processes.environment import Now
+from mutabot.runtime.processes.environment import Announced, Now
 from tests.campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
 
 KEY = "0123456789abcdef"
@@ -64,14 +65,18 @@ DAMAGE: dict[str, Callable[[Path], object]] = {
     "one removed": lambda folder: append(folder, line_of(SessionEnd(), 4)),
     "one twice": twice,
     "of a process that could not write": lambda folder: Now(str(folder)).note_unwritten(),
+    "no number": lambda folder: (folder / NOW).unlink(),
+    "half a number": lambda folder: os.truncate(folder / NOW, 4),
+    "another number": lambda folder: (folder / NOW).write_bytes(bytes(mmap.PAGESIZE)),
 }
 
 
 @pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
 def test_damage_is_noticed(tmp_path: Path, damage: Callable[[Path], object]) -> None:
     folder = folder_of(tmp_path)
-    Now(str(folder), is_host=True)
+    running = Announced(str(folder))
     file, children = EventFile(str(folder), NAME, KEY), Children(str(tmp_path), KEY)
+    children.number = running.begin("test_moves")
     for event in (BEGAN, Found(nodes=("a",))):
         file.send(event)
     assert children.read() == [BEGAN, Found(nodes=("a",))]
@@ -96,7 +101,7 @@ def test_whatever_is_in_the_place_of_a_file_nobody_waits_for_it(
     tmp_path: Path, other: Callable[[Path], object]
 ) -> None:
     folder = folder_of(tmp_path)
-    Now(str(folder), is_host=True)
+    Announced(str(folder))
     children = Children(str(tmp_path), KEY)
     append(folder, line_of(BEGAN, 1))
     assert children.read() == [BEGAN]
@@ -107,7 +112,7 @@ def test_whatever_is_in_the_place_of_a_file_nobody_waits_for_it(
     assert "was damaged" in (children.doubt or "")
     if other is not OTHERS["something huge"]:
         with pytest.raises(OSError, match=r"\w"):
-            Now(str(folder), is_host=True)
+            Announced(str(folder))
         with pytest.raises(RuntimeError, match="cannot write"):
             EventFile(str(folder), NAME, KEY, fail=cannot_write)
 
@@ -121,7 +126,7 @@ def test_nobody_writes_into_a_file_that_has_another_name(tmp_path: Path) -> None
     precious.write_text("precious")
     (folder / NOW).hardlink_to(precious)
     with pytest.raises(OSError, match="something else is in the place of this file"):
-        Now(str(folder), is_host=True)
+        Announced(str(folder))
     assert precious.read_text() == "precious"
 
 
@@ -178,6 +183,44 @@ def test_damage_is_an_error_of_its_mutant_and_never_a_survivor(tmp_path: Path) -
     found = outcomes(path)
     assert {one.verdict for one in found} == {Verdict.ERROR}
     assert all("what processes below the tests reported was damaged" in str(one.message) for one in found)
+
+
+#: whatever looks which test is running then dies of SIGBUS, as it would not in plain pytest
+SHORT = """
+    import os
+    from robot import Arm
+
+    def run():
+        arm = Arm()
+        arm.move_by(0.25)
+        if arm.x == -0.25:
+            os.truncate(os.environ["MUTABOT_PROCESSES"] + "/now", 0)
+        arm.move_by(0.0)
+        return arm.x
+
+    if __name__ == "__main__":
+        print(run())
+"""
+DIED = """
+    import subprocess, sys
+
+    def test_moves():
+        found = subprocess.run([sys.executable, "mission.py"], capture_output=True, text=True)
+        assert found.returncode == 0
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+def test_a_process_that_dies_since_it_shortened_a_file_of_ours_is_no_kill(
+    tmp_path: Path, engine: str
+) -> None:
+    folder = write_project(tmp_path, SHORT, DIED)
+    path = run_campaign(request_for(folder, engine=engine, only=("*#1:*",)), Quiet())
+    found = {one.mutant: one for one in outcomes(path)}
+    harmful = next(one for one in found if "reverse" in one)
+    assert found[harmful].verdict is Verdict.ERROR
+    assert "the number of the running test was deleted or changed" in str(found[harmful].message)
+    assert {one.verdict for name, one in found.items() if name != harmful} == {Verdict.SURVIVED}
 
 
 #: a mutant fills the disk, as far as its processes are concerned: no file of theirs may grow any more

@@ -166,21 +166,42 @@ def _folders_of(names: Iterable[str]) -> list[str]:
 _NUMBER = struct.Struct("=q")
 
 
-class Now:
-    """The number of the running test, in memory that processes share.
+class Announced:
+    """In the test process: which test is running, for all processes below it.
+
+    It shares no memory with them: whoever makes the file shorter would end this process.
 
     Args:
         folder: the folder of the campaign's processes.
-        is_host: whether this is the test process, which says so.
+
+    Attributes:
+        number: the running test's; the last one's between tests, 0 before any.
     """
 
-    def __init__(self, folder: str, *, is_host: bool = False) -> None:
+    def __init__(self, folder: str) -> None:
+        self.number = 0
+        self._now, self._tests = os.path.join(folder, NOW), os.path.join(folder, TESTS)
+        _write(self._now, bytes(mmap.PAGESIZE), os.O_TRUNC)
+
+    def begin(self, test: str) -> int:
+        """A test begins. Returns its number."""
+        _write(self._tests, json.dumps(test).encode() + b"\n", os.O_APPEND)
+        self.number += 1
+        _write(self._now, _NUMBER.pack(self.number), 0)
+        return self.number
+
+
+class Now:
+    """In a process below the tests: the number of the running test, in memory that such processes share.
+
+    Args:
+        folder: the folder of the campaign's processes.
+    """
+
+    def __init__(self, folder: str) -> None:
         self._folder = folder
         self._names = [""]
-        name = os.path.join(folder, NOW)
-        if is_host:
-            _write(name, bytes(mmap.PAGESIZE), os.O_TRUNC)
-        descriptor = open_file(name, os.O_RDWR)
+        descriptor = open_file(os.path.join(folder, NOW), os.O_RDWR)
         try:
             self._memory = mmap.mmap(descriptor, mmap.PAGESIZE)
         finally:
@@ -195,12 +216,6 @@ class Now:
     def note_unwritten(self) -> None:
         """This process could not: that takes no room on any disk."""
         _NUMBER.pack_into(self._memory, _NUMBER.size, 1)
-
-    def begin(self, test: str) -> int:
-        """In the test process: a test begins. Returns its number."""
-        _write(os.path.join(self._folder, TESTS), json.dumps(test).encode() + b"\n", os.O_APPEND)
-        _NUMBER.pack_into(self._memory, 0, self.number + 1)
-        return self.number
 
     def name_of(self, number: int) -> str:
         """The node id of a test."""

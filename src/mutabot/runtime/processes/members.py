@@ -11,7 +11,7 @@ from mutabot.extensions import brought
 from mutabot.model import events
 from mutabot.model.event_file import FOLDER
 from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
-from mutabot.runtime.processes.environment import Now, ProcessWatch, carry, write_wake
+from mutabot.runtime.processes.environment import Announced, ProcessWatch, carry, write_wake
 
 if TYPE_CHECKING:
     from mutabot.model.job import Job
@@ -39,7 +39,7 @@ class Members:
         os.makedirs(self.folder, exist_ok=True)
         _write_wake(self.folder, session.job)
         self._session = session
-        self._now = Now(self.folder, is_host=True)
+        self._running = Announced(self.folder)
         self.children = Children(home, session.job.key)
         self._present: list[ChildRecord] = []
         self._texts: list[events.TextsSeen] = []
@@ -50,7 +50,7 @@ class Members:
 
     def start_test(self, test: str) -> None:
         """A test begins: some may be there from before."""
-        self._now.begin(test)
+        self.children.number = self._running.begin(test)
         self._present = [one for one in self.children.records.values() if is_alive(one.began.pid)]
 
     def merged(self, end: events.TestEnd) -> events.TestEnd:
@@ -82,7 +82,7 @@ class Members:
     def _here(self) -> Iterable[ChildRecord]:
         """Those that were there during the test."""
         present = {id(one) for one in self._present}
-        number = self._now.number
+        number = self._running.number
         for one in self.children.records.values():
             if id(one) in present or one.began.test == number or one.called or one.did or one.places:
                 yield one
