@@ -213,6 +213,19 @@ def test_where_each_run_writes_into_its_report_the_baseline_says_so(tmp_path: Pa
         run(folder)
 
 
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+def test_no_mutant_reaches_the_journal(tmp_path: Path, harmless: dict[str, Outcome], engine: str) -> None:
+    harm = """
+        import glob, os
+        for name in glob.glob(".mutabot/journal*"):
+            os.truncate(name, 0)
+            os.rename(name, name + ".lost")
+    """
+    found, told, _ = run(project(tmp_path, harm), engine=engine)
+    assert ends(found) == ends(harmless)
+    assert not [line for line in told.lines if "nothing is lost" in line or "was restored" in line]
+
+
 @pytest.mark.whole
 def test_a_mutant_that_deletes_the_folder_of_its_process_is_an_error(
     tmp_path: Path, harmless: dict[str, Outcome]
@@ -232,7 +245,8 @@ def test_a_mutant_that_deletes_the_folder_of_its_process_is_an_error(
 def test_a_mutant_that_deletes_the_job_of_its_process_ends_as_without(
     tmp_path: Path, harmless: dict[str, Outcome]
 ) -> None:
-    found, _, _ = run(project(tmp_path, "import os; os.remove(os.path.join(home(), 'job'))"))
+    harm = "import pathlib; pathlib.Path(home(), 'processes', 'job').unlink(missing_ok=True)"
+    found, _, _ = run(project(tmp_path, harm))
     assert ends(found) == ends(harmless)
 
 
@@ -256,3 +270,66 @@ def test_a_mutant_that_deletes_the_folders_of_all_processes_ends_no_campaign(
     with Journal.open(path) as journal:
         assert read_results(journal).state == "complete"
     assert not list((folder / ".mutabot").glob("work-*"))
+
+
+#: what mutants do to every descriptor that they have, ``n``, one kind each
+DEEDS = (
+    "os.write(n, b'rubbish\\n' * 20)",
+    "os.close(n)",
+    "os.dup2(null, n)",
+    "os.dup2(1, n)",
+    "os.set_blocking(n, False); os.read(n, 1 << 16)",
+    "os.write(os.open(f'/proc/self/fd/{n}', os.O_WRONLY | os.O_NONBLOCK), b'rubbish\\n' * 20)",
+    "os.close(os.open(f'/proc/self/fd/{n}', os.O_WRONLY | os.O_NONBLOCK | os.O_TRUNC))",
+    "os.ftruncate(n, 0)",
+    "os.lseek(n, 0, 0); os.write(n, b'x')",
+    "os.set_blocking(n, True); fcntl.flock(n, fcntl.LOCK_EX | fcntl.LOCK_NB)",
+)
+STEPS = tuple((number + 1) / 64 for number in range(len(DEEDS)))
+HARMFUL = """
+    import fcntl, os
+
+    class Arm:
+        def __init__(self):
+            self.x = 0.0
+
+        def move_by(self, dx):
+            null = os.open(os.devnull, os.O_RDWR)
+            for n in {descriptors}:
+                try:
+                    {deeds}
+                except OSError:
+                    pass
+            os.close(null)
+            self.x += dx
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+def test_what_a_mutant_does_to_descriptors_touches_no_other(tmp_path: Path, engine: str) -> None:
+    deeds = "".join(
+        f"\n                    if dx == {-step}: {deed}" for step, deed in zip(STEPS, DEEDS, strict=True)
+    )
+    every = "[int(name) for name in os.listdir('/proc/self/fd') if int(name) > 2]"
+    moves = "".join(f"def move_{n}(arm):\n    arm.move_by({step})\n" for n, step in enumerate(STEPS))
+    tests = "import mission\nfrom robot import Arm\n" + "".join(
+        f"def test_{n}():\n    arm = Arm()\n    mission.move_{n}(arm)\n    assert arm.x == {step}\n"
+        for n, step in enumerate(STEPS)
+    )
+    robot = HARMFUL.format(descriptors=every, deeds=deeds)
+    vocabulary = """
+        [[operation]]
+        call = "robot:Arm.move_by"
+        arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+    """
+    folder = write_project(tmp_path, moves, tests, robot=robot, vocabulary=vocabulary)
+    path = run_campaign(request_for(folder, engine=engine, only=("*:reverse", "*:skip")), Quiet())
+    found = {one.mutant: one for one in outcomes(path)}
+    harmful = {name for name in found if name.endswith("reverse")}
+    assert len(harmful) == len(DEEDS)
+    assert {found[name].verdict for name in harmful} <= {Verdict.KILLED, Verdict.ERROR}
+    others = [found[name] for name in sorted(found.keys() - harmful)]
+    assert [(one.verdict, one.engine, one.test, (one.message or "")[:14]) for one in others] == [
+        (Verdict.KILLED, engine.replace("auto", "fork"), f"tests/test_mission.py::test_{n}", "assert 0.0 == ")
+        for n in range(len(STEPS))
+    ]
