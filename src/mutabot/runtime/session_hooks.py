@@ -85,8 +85,10 @@ class SessionHooks:
         seeds.seed_all(seeds.derive(job.seed, "import"))
         pipe = EventFile.of_session(home, job.key, descriptor)
         if job.serving is not None:
-            from mutabot.runtime.isolation.fork_server import ForkServer  # noqa: PLC0415  # of no use to others
+            from mutabot.runtime.isolation import collector  # noqa: PLC0415  # of no use to others
+            from mutabot.runtime.isolation.fork_server import ForkServer  # noqa: PLC0415
 
+            collector.watch()
             preload()
             hooks = cls(
                 job, pipe, ForkServer(job.serving, pipe, LOG, home, job.private_files, not _tests_us(job))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -46,11 +47,58 @@ TESTS = """
     def test_runs_again():
         mission.run(Arm())
 """
+ASKS = """
+    import gc
+    import weakref
+    from gc import collect, get_freeze_count
+
+    import mission
+    from robot import Arm
+
+    def test_count_of_frozen_objects():
+        mission.run(Arm())
+        assert gc.get_freeze_count() == get_freeze_count() == 0
+
+    def test_freezing():
+        gc.freeze()
+        mission.run(Arm())
+        assert gc.get_freeze_count()
+        gc.unfreeze()
+        assert not gc.get_freeze_count()
+
+    def test_objects_of_a_generation():
+        mission.run(Arm())
+        assert any(one is mission.__dict__ for one in gc.get_objects(generation=2))
+
+    def test_what_was_made_while_the_program_was_imported_is_collected():
+        known = weakref.ref(mission.TOOL)
+        mission.run(Arm())
+        del mission.TOOL
+        collect()
+        assert known() is None
+"""
+COLLECTS = "test_what_was_made_while_the_program_was_imported_is_collected"
+OTHERS = [test for test in re.findall(r"def (test_\w+)", ASKS) if test != COLLECTS]
+TOOL = """
+    class Tool:
+        def __init__(self):
+            self.itself = self
+
+    TOOL = Tool()
+"""
 
 
 def test_a_fork_has_the_descriptors_of_its_parent_and_what_the_collector_sees(tmp_path: Path) -> None:
     found = run(write_project(tmp_path, MISSION, TESTS), engine="fork", only=("skip", "repeat"))
     assert len(found) == 4
+    assert {one.verdict for one in found.values()} == {Verdict.SURVIVED}
+
+
+@pytest.mark.parametrize("test", [COLLECTS, *(pytest.param(one, marks=pytest.mark.whole) for one in OTHERS)])
+def test_whoever_asks_the_collector_first_finds_nothing_frozen(tmp_path: Path, test: str) -> None:
+    first, *tests = re.split(r"(?=    def test_)", ASKS)
+    (asks,) = (one for one in tests if one.startswith(f"    def {test}("))
+    found = run(write_project(tmp_path, TOOL + MISSION, first + asks), engine="fork", only=("skip", "repeat"))
     assert {one.verdict for one in found.values()} == {Verdict.SURVIVED}
 
 

@@ -8,7 +8,6 @@ before the fork, which is why its files must be private.
 from __future__ import annotations
 
 import contextlib
-import gc
 import os
 import select
 import signal
@@ -21,6 +20,7 @@ from mutabot.frozen import compile_all
 from mutabot.model.events import ForkEnded, Serving
 from mutabot.model.files import open_file
 from mutabot.runtime.event_file import EventFile
+from mutabot.runtime.isolation import collector
 from mutabot.runtime.isolation.files import isolate_files, may_be_private
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
 from mutabot.runtime.isolation.namespaces import die_with_parent
@@ -69,8 +69,7 @@ class ForkServer:
         if self.may_remember:
             shared_memory.share()
         compile_all()
-        gc.collect()
-        gc.freeze()  # what is never looked at stays shared with all copies
+        collector.freeze()
         with socket.socket(fileno=self.descriptor) as jobs:
             while True:
                 if not self._wait(jobs):
@@ -121,7 +120,6 @@ class ForkServer:
         for pidfd in self._copies:
             os.close(pidfd)
         self.pipe.close()
-        gc.unfreeze()  # tests may ask what there is
         return True
 
     def _begin(self, home: str) -> str:

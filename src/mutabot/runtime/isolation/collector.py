@@ -1,0 +1,59 @@
+"""What the garbage collector need not look at in a copy of the fork server, as long as nobody can tell.
+
+The objects that exist before any test are frozen: a collection would write to each, and so take from every
+fork what it shares with its parent. They are thawed before the first question or collection of the program's
+or its tests' that could show that, and then stay so. Pytest itself collects at the end of each session, when
+no test can look any more: that leaves them frozen.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from mutabot.runtime.processes.environment import listen
+
+#: audit events of the questions for objects
+_QUESTIONS = ("gc.get_objects", "gc.get_referrers")
+#: what else could show what is frozen, of which there are no audit events
+_FUNCTIONS = ("collect", "freeze", "get_freeze_count")
+#: pytest's module that collects when all tests are over
+_AT_THE_END = "_pytest.unraisableexception"
+
+_is_frozen = False
+
+
+def watch() -> None:
+    """Thaw, from now on, before anybody can tell. To be called before the user's code is imported."""
+    listen(_QUESTIONS, lambda event, arguments: _thaw())
+    for name in _FUNCTIONS:
+        setattr(gc, name, _thawing(getattr(gc, name)))
+
+
+def freeze() -> None:
+    """Freeze all objects that there are."""
+    global _is_frozen  # noqa: PLW0603  # a process has one collector
+    gc.collect()
+    gc.freeze()
+    _is_frozen = True
+
+
+def _thaw() -> None:
+    global _is_frozen  # noqa: PLW0603
+    if _is_frozen:
+        _is_frozen = False
+        gc.unfreeze()
+
+
+def _thawing(function: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(function)
+    def asked(*arguments: Any, **named: Any) -> Any:
+        caller = sys._getframe().f_back  # a thread may begin here, and has none
+        if caller is None or caller.f_globals.get("__name__") != _AT_THE_END:
+            _thaw()
+        return function(*arguments, **named)
+
+    return asked
