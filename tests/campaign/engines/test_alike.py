@@ -102,6 +102,33 @@ def test_whoever_asks_the_collector_first_finds_nothing_frozen(tmp_path: Path, t
     assert {one.verdict for one in found.values()} == {Verdict.SURVIVED}
 
 
+LEAVES = """
+    from robot import Arm
+
+    class Held(Arm):
+        def __del__(self):
+            if self.x:
+                raise RuntimeError("it is not at home")
+
+    ARM = Held()
+    ARM.itself = ARM
+"""
+THROWS_AWAY = """
+    import mission
+
+    def test_run():
+        mission.run(mission.ARM)
+        del mission.ARM
+"""
+
+
+def test_a_finalizer_that_raises_at_the_end_kills_where_warnings_are_errors(tmp_path: Path) -> None:
+    folder = write_project(tmp_path, LEAVES + MISSION, THROWS_AWAY)
+    (folder / "pytest.ini").write_text("[pytest]\nfilterwarnings = error\n")
+    found = run(folder, engine="fork", only=("skip",))
+    assert [one.verdict for one in found.values()] == [Verdict.KILLED, Verdict.KILLED]
+
+
 UNLIKE = """
     import os
     import time

@@ -3,13 +3,15 @@
 The objects that exist before any test are frozen: a collection would write to each, and so take from every
 fork what it shares with its parent. They are thawed before the first question or collection of the program's
 or its tests' that could show that, and then stay so. Pytest itself collects at the end of each session, when
-no test can look any more: that leaves them frozen.
+no test can look any more: that leaves them frozen, unless warnings are errors, such as of what a finalizer
+raises then.
 """
 
 from __future__ import annotations
 
 import gc
 import sys
+import warnings
 from collections.abc import Callable
 from functools import wraps
 from typing import Any
@@ -52,7 +54,8 @@ def _thawing(function: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(function)
     def asked(*arguments: Any, **named: Any) -> Any:
         caller = sys._getframe().f_back  # a thread may begin here, and has none
-        if caller is None or caller.f_globals.get("__name__") != _AT_THE_END:
+        is_at_end = caller is not None and caller.f_globals.get("__name__") == _AT_THE_END
+        if not is_at_end or any(action == "error" for action, *_ in warnings.filters):
             _thaw()
         return function(*arguments, **named)
 
