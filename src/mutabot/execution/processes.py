@@ -31,7 +31,7 @@ from mutabot.frozen import frozen
 from mutabot.model.event_file import FOLDER, FORKS, SESSION, SUFFIX, EventReader
 from mutabot.model.events import Event, ForkEnded, Serving
 from mutabot.model.files import open_file, read_file
-from mutabot.model.fold import Children, fold_fork
+from mutabot.model.fold import Children, acted_in, fold_fork
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, STOP, Job, job_file, write_job
 from mutabot.model.keeper import FILE as KEEPER
 from mutabot.model.keeper import LEFT
@@ -250,18 +250,14 @@ class EventStream:
             file = Path(self._home.events(name))
         reader = EventReader(str(file), self._home.key)
         events = reader.read(is_last=True)
-        if reader.damage is not None or (ended.died is not None and self._is_damaged_below(folder)):
+        below = Children(str(folder), self._home.key)
+        if ended.died is not None and (folder / FOLDER).is_dir():  # else it has told of them itself
+            below.read()
+        if reader.damage is not None or below.doubt is not None:
             return []
         file.unlink(missing_ok=True)
-        return self._with_forks(name, fold_fork(events, ended.exit_code, ended.died))
-
-    def _is_damaged_below(self, fork: Path) -> bool:
-        """Whether that a fork died may be due to what was done to the files of processes below it."""
-        if not (fork / FOLDER).is_dir():
-            return False
-        children = Children(str(fork), self._home.key)
-        children.read()
-        return children.doubt is not None
+        acted = acted_in(below.records.values())
+        return self._with_forks(name, fold_fork(events, ended.exit_code, ended.died, acted))
 
 
 #: seconds that a server may take to answer, and to end, once its tests are collected

@@ -197,9 +197,12 @@ def acted_in(records: Collection[ChildRecord]) -> list[str]:
 
 
 def fold_fork(
-    seen: Sequence[events.Event], exit_code: int, died: events.ForkDied | None
+    seen: Sequence[events.Event], exit_code: int, died: events.ForkDied | None, below: Collection[str] = ()
 ) -> list[events.Event]:
-    """What is to be known of a fork that has ended, by its events and its parent's word of how it ended."""
+    """What is to be known of a fork that has ended, by its events and its parent's word of how it ended.
+
+    ``below``: tests in which the mutant changed something in a process below it.
+    """
     found: list[events.Event] = [
         replace(event, exit_code=exit_code) if isinstance(event, events.ForkSessionEnd) else event
         for event in seen
@@ -209,7 +212,7 @@ def fold_fork(
         return found
     told = [event.in_call for event in seen if isinstance(event, events.Acted)]
     calls = [one for one in told if one is not None]
-    return [*found, replace(died, acted=None in told, in_mutated_call=calls[-1:] == [True])]
+    return [*found, replace(died, acted=None in told or bool(below), in_mutated_call=calls[-1:] == [True])]
 
 
 @frozen
