@@ -121,7 +121,7 @@
     if (!survivors.length) {
       const judged = campaign.mutants.some((one) => one.valid && one.status !== "not covered");
       return h("section", null, heading, more, judged
-        ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", "The tests noticed every mutant that was valid. The check score above counts those that an assertion killed.")
+        ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", `The tests noticed every mutant ${idle ? "they reach" : "that was valid"}. The check score above counts those that an assertion killed.`)
         : isUnderWay(campaign) ? empty("Nothing is judged yet.", "A mutant is, as soon as its tests have run as the mutant and as the original.")
         : empty("Nothing was judged.", "No mutant was valid in any round; the list below says why."));
     }
