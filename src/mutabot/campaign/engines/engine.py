@@ -438,7 +438,7 @@ class _ForkParent:
 
     @property
     def is_awaited(self) -> bool:
-        """Whether it has yet to end a test that a fork which has ended depends on."""
+        """Whether it has yet to end a test that a fork which has ended depends on, or a control."""
         return not self._is_off and bool(self._awaited())
 
     @property
@@ -448,8 +448,10 @@ class _ForkParent:
         return self._baseline.seconds(self._round, self._tests[len(self._own_ends) : last + 1])
 
     def _awaited(self) -> list[int]:
-        """Numbers of the tests that forks wait for which have ended."""
-        return [number for number, mutants in self._waiting.items() if mutants & self._open.keys()]
+        """Numbers of the tests that forks wait for which have ended, or that controls have yet to end."""
+        awaited = [number for number, mutants in self._waiting.items() if mutants & self._open.keys()]
+        is_controlled = any(one.family == CONTROL for one in self.mutants)
+        return [*awaited, len(self._tests) - 1] if is_controlled else awaited
 
     def parts(self, places: float) -> list[_ForkParent]:
         """Fork parents with a part of the mutants each. What equal tests reach is together."""

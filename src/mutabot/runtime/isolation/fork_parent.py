@@ -57,6 +57,8 @@ class Child:
 
     Attributes:
         mutant: id of its mutant.
+        is_control: whether that is a control, which goes on when the campaign is interrupted: what other
+            forks have told counts by it.
         is_test_control: whether that is a control of the test alone.
         fork: its number among those that were forked here.
         pids: its process, and what keeps its namespace.
@@ -67,6 +69,7 @@ class Child:
     """
 
     mutant: str
+    is_control: bool
     is_test_control: bool
     fork: int
     pids: namespaces.ForkedPids
@@ -196,12 +199,21 @@ class ForkParent:
             for key, here in self._live.items():
                 self._live[key] = [one for one in here if one.id not in self._gone]
             own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
-            reason = _INTERRUPTED if self._is_stopped() else None
-            reason = reason or (forkable.STARTED if self._is_overtaken() else self.files.forbids_fork())
-            if (reason := reason or forkable.why_not(own, self._known)) is not None:
+            due = self._wanted(due)
+            reason = forkable.STARTED if self._is_overtaken() else self.files.forbids_fork()
+            if due and (reason := reason or forkable.why_not(own, self._known)) is not None:
                 self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
-            else:
+            elif due:
                 self._fork_each([self._test_control_of(due[0]), *due] if self._number >= 0 else due)
+
+    def _wanted(self, mutants: list[Mutant]) -> list[Mutant]:
+        """Those to fork: after an interruption the controls alone, by which what forks have told counts."""
+        if not self._is_stopped():
+            return mutants
+        unwanted = tuple(one.id for one in mutants if one.family != Identity.family)
+        if unwanted:
+            self.pipe.send(Unforked(self._test, unwanted, _INTERRUPTED))
+        return [one for one in mutants if one.family == Identity.family]
 
     def _test_control_of(self, mutant: Mutant) -> Mutant:
         """The identity where this mutant is: what it does to the test, forking does."""
@@ -228,7 +240,8 @@ class ForkParent:
         """The test is over: wait for its controls, holding no token meanwhile, and tell their number."""
         if any(child.is_test_control for child in self._children.values()):
             self._give_back()
-            while not self._is_stopped() and any(child.is_test_control for child in self._children.values()):
+            while any(child.is_test_control for child in self._children.values()):
+                self._is_stopped()
                 if self._reap(self._wait()):
                     self._give_back()
             self._take_token()
@@ -244,8 +257,7 @@ class ForkParent:
     def _fork_each(self, mutants: Sequence[Mutant]) -> None:
         began = monotonic()
         for mutant in mutants:
-            if self._stopped:
-                self.pipe.send(Unforked(self._test, (mutant.id,), _INTERRUPTED))
+            if not self._wanted([mutant]):
                 continue
             try:
                 pids = self._fork_one(mutant, began)
@@ -256,7 +268,10 @@ class ForkParent:
                 return
             deadline = Deadline(self._limit(self._number), is_counted=True)
             is_test_control = self.is_test_control(mutant)
-            child = Child(mutant.id, is_test_control, self.pipe.forks, pids, self._number, deadline)
+            is_control = mutant.family == Identity.family
+            child = Child(
+                mutant.id, is_control, is_test_control, self.pipe.forks, pids, self._number, deadline
+            )
             self._children[pids.fork] = child
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
@@ -331,21 +346,26 @@ class ForkParent:
     def finish(self) -> None:
         """All tests are over: wait for the children that still run, holding no token meanwhile."""
         self._give_back()
-        while not self._is_stopped() and self._children:
+        while self._children:
+            self._is_stopped()
             if self._reap(self._wait()):
                 self._give_back()
 
     def _is_stopped(self) -> bool:
-        """Whether the campaign was interrupted: then children that still run are ended, and no more begin."""
+        """Whether the campaign was interrupted: then mutants that still run are ended, and no more begin."""
         if not self._stopped and os.path.exists(os.path.join(self.files.home, STOP)):
             self._stopped = True
-            for child in self._children.values():
+            unwanted = [one for one in self._children.values() if not self._is_to_end(one)]
+            for child in unwanted:
                 child.is_unwanted = True
                 os.kill(child.pids.fork, signal.SIGKILL)
-            for child in self._children.values():
-                self._bury(child)
-            self._children.clear()
+            for child in unwanted:
+                self._bury(self._children.pop(child.pids.fork))
         return self._stopped
+
+    def _is_to_end(self, child: Child) -> bool:
+        """Whether a child may end by itself after an interruption: a control, or what has told all."""
+        return child.is_control or bool(self._finished[self._slots[child.mutant]])
 
     def _limit(self, test: int) -> Limit:
         """What a fork may take for a test, by its number; -1 before any."""
