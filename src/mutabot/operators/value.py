@@ -20,8 +20,8 @@ from .operator import Context, Operator, Subject, Unchanged, quantity_of
 CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _NAMES = re.compile(r"[._]")
 #: why an operator leaves a call alone, or what it reads, that is without its value
-NOT_PASSED = "the call does not pass this argument"
-NOT_RETURNED = "the call does not return this value"
+NOT_PASSED = "the call passes no plain value here"
+NOT_RETURNED = "the call returns no plain value here"
 SAME = "the value would stay the same"
 
 

@@ -82,9 +82,9 @@ def project(folder: Path, vocabulary: str) -> Path:
 def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(tmp_path: Path) -> None:
     report = check(request_for(project(tmp_path, DRIVE), engine="fork", rounds=1), Quiet())
     (note,) = (line for line in report.lines if line.startswith("note "))
-    assert "arguments.speed: its value is no number, such as <mission.Speed object>" in note
-    assert 'name a number in it by its path, such as arguments."speed.y"' in note
-    reason = "speed of Base.drive is no number: name a number in it by its path"
+    assert "arguments.speed: speed is of mission:Speed, which is no plain data" in note
+    assert "describe the part of it that is a number" in note
+    reason = "the call passes no plain value here"
     assert report.data["left_out_because"] == {reason: 1}
     assert f"left out  1: {reason}" in report.lines
 

@@ -390,8 +390,7 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
     if value is None and hits == 1:
         return NOT_PASSED if subject.is_written else NOT_RETURNED
     if value is None:
-        verb, what = ("passes", "argument") if subject.is_written else ("returns", "value")
-        return f"none of the {hits} calls {verb} this {what}"
+        return f"none of the {hits} calls {'passes' if subject.is_written else 'returns'} a plain value here"
     if quantity.is_numeric and not holds_number(value):
         return f"{quantity.name} of {subject.operation.name} is no number: name a number in it by its path"
     within = " within the values that the vocabulary allows" if quantity.range or quantity.values else ""
