@@ -38,8 +38,8 @@ counts as having acted when it is reached.
   `if __name__ == "__main__"`.
 - Alternatives of a type that the value never had in the baseline, listed with the reason.
 - Expressions of more than 1000 characters, and, before Python 3.12, those that stand twice in one f-string.
-- Types are those that the tests saw. Where [no test comes](verdicts.md#what-no-test-reaches), all that may fit
-  counts as *not covered*; a variable becomes each other one that its function reads.
+- Types are those that the tests saw. Where [no test comes](verdicts.md#what-no-test-reaches), all that may
+  fit counts as *not covered*; a variable becomes each other one that its function reads.
 - What is another operator's (a literal's sign is UOI's, not ABS's) or changes nothing.
 - Plain assignments for ASR: the name may have no value yet.
 - Text arguments that do not stand in the call, or are formatted, for the operators on characters.
