@@ -21,7 +21,7 @@ from typing import NoReturn
 FILE = os.path.abspath(__file__)
 #: in the folder of the worker: what it had left running, one process a line
 LEFT = "left"
-#: environment variable that leads to this folder, as ``model.job`` has it
+#: environment variable with the path of the job, in a folder of this one, as ``model.job`` has it
 _JOB = "MUTABOT_JOB"
 #: seconds that what is about to end may take for that, and in which all must be gone
 _GRACE, _PATIENCE = 0.05, 5.0
@@ -36,7 +36,7 @@ _SIGNALS = {signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP}
 def main() -> NoReturn:
     """Run a worker: arguments are the number of the controller and the worker's command line."""
     controller, command = int(sys.argv[1]), sys.argv[2:]
-    guard(os.path.dirname(os.environ[_JOB]), controller)
+    guard(os.path.dirname(os.path.dirname(os.environ[_JOB])), controller)
     os.setsid()
     for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and so would what is executed
         signal.signal(number, signal.SIG_DFL)
