@@ -31,8 +31,8 @@ from mutabot.journal.journal import Journal
 from mutabot.model.codec import to_data
 
 PAPER = Path(__file__).parents[1] / "examples" / "paper"
-#: what differs between equal runs, and whether a fork or a process of its own found it: a lost unit leaves that open
-_ACCIDENTAL = {"wall", "cpu", "shared", "engine"}
+#: what differs between equal runs
+_ACCIDENTAL = {"wall", "cpu"}
 #: marks the processes of a campaign in their environment
 _MARK = "MUTABOT_BENCHMARK"
 _PORT = 8786

@@ -19,9 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.campaign import run
-from mutabot.campaign.engines import controls, engine
+from mutabot.campaign.engines import controls
 from mutabot.cli.app import main
-from mutabot.model import Outcome
 
 
 def spent() -> float:
@@ -57,19 +56,19 @@ def measure(parts: dict[str, float]) -> None:
 
         setattr(run, name, measured)
 
-    def counted(module: Any) -> None:
-        settled: Callable[..., Iterator[Any]] = module.settled
+    def counted(owner: Any, name: str) -> None:
+        settled: Callable[..., Iterator[Any]] = getattr(owner, name)
 
-        def measured(campaign: Any, by: Any, control: Any, outcome: Outcome, **named: Any) -> Iterator[Any]:
-            parts["controls"] += outcome.cpu
-            return settled(campaign, by, control, outcome, **named)
+        def measured(*given: Any) -> Iterator[Any]:
+            parts["controls"] += given[-1].cpu
+            return settled(*given)
 
-        module.settled = measured
+        setattr(owner, name, measured)
 
     for name in ("begin", "run_planned", "rerun"):
         timed(name)
-    for module in (controls, engine):
-        counted(module)
+    counted(controls, "_settled")  # by replay
+    counted(controls.ForkTrust, "take")
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ from mutabot.model.events import (
     PlacesReached,
     Serving,
     SiteSeen,
+    TestControls,
     TestEnd,
     TestStart,
     Undiverged,
@@ -40,6 +41,7 @@ from mutabot.model.events import (
     event_to_data,
 )
 from mutabot.model.job import Job
+from mutabot.operators.command import Identity
 
 #: bytes of an answer, levels of lists in it, and the size of counts: none that makes sense comes near
 MOST_BYTES, _DEEPEST, _MOST = 64 << 20, 64, 10**15
@@ -282,10 +284,11 @@ def check_fit(lines: Iterable[Event], job: Job) -> None:
         if isinstance(line, _NEVER) or (forking is None and isinstance(line, _FORKS)):
             raise Misfit(f"this unit has no {type(line).__name__}")
         for mutant in _mutants(line):
-            if mutant not in mutants:
+            if mutant not in mutants and not _is_test_control(line):
                 raise Misfit(f"{mutant[:100]!r} is no mutant of this unit")
+        makes_tests = job.mutant is not None or isinstance(line, ForkTestEnd | ForkDied)
         for test in _tests(line):
-            if job.tests is not None and test not in job.tests:
+            if job.tests is not None and test not in job.tests and not makes_tests:
                 raise Misfit(f"{test[:100]!r} is no test of this unit")
         for seen in _sites(line):
             _check_file(seen.span.file)
@@ -295,6 +298,11 @@ def check_fit(lines: Iterable[Event], job: Job) -> None:
             _check_end(line, sites)
         elif isinstance(line, ForkTestEnd):
             _check_end(line.end, {seen.index for seen in line.sites})
+
+
+def _is_test_control(line: Event) -> bool:
+    """Whether it is told by the control of a test alone, which is forked beside mutants."""
+    return isinstance(line, ForkTestEnd) and line.mutant.endswith(f":{Identity.name}={line.end.test}")
 
 
 def _mutants(line: Event) -> Iterator[str]:
@@ -309,7 +317,7 @@ def _mutants(line: Event) -> Iterator[str]:
 
 def _tests(line: Event) -> Iterator[str]:
     match line:
-        case TestEnd() | TestStart() | Watched() | ForkDied() | Unforked() | Undiverged():
+        case TestEnd() | TestStart() | TestControls() | Watched() | ForkDied() | Unforked() | Undiverged():
             yield line.test
         case ForkTestEnd():
             yield line.end.test
