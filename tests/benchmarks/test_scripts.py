@@ -40,7 +40,7 @@ SHORT: dict[str, list[str]] = {
     "pick_and_place_seeds": ["1"],
     "processes_in_a_row": ["--count", "1", "--examples", "scales"],
     "published_campaign": [MUTABOT, "1"],
-    "same_results": ["witness", "witness"],
+    "same_results": [str(SCRIPTS / "witness_records")] * 2,
     "sample_coverage": ["--campaigns", "10"],
     "since_edits": ["--edits", "1", "--projects", "scales", "--rounds", "1"],
     "stdlib_corpus": ["colorsys"],
