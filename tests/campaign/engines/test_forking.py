@@ -204,9 +204,9 @@ WHOLE = pytest.mark.whole
 )
 def test_both_engines_agree(tmp_path: Path, suite: str) -> None:
     write_project(tmp_path, MISSION, SUITES[suite])
-    found = both_engines(tmp_path)
-    assert {outcome.engine for outcome in found.values()} == {"fork"}
-    assert {outcome.verdict for outcome in found.values()} & {Verdict.KILLED, Verdict.SURVIVED}
+    found = [one for one in both_engines(tmp_path).values() if one.verdict is not Verdict.NOT_COVERED]
+    assert {outcome.engine for outcome in found} == {"fork"}
+    assert {outcome.verdict for outcome in found} & {Verdict.KILLED, Verdict.SURVIVED}
 
 
 @WHOLE

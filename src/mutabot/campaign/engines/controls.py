@@ -126,9 +126,9 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     """One pair for each provider, where a mutant is planned, in the quickest test of the first round.
 
     Only a test that passes on the original must fail by the fatal one. ``forked``: for processes that are
-    forked at the place. Their identity is forked in the first test that reaches one, and runs all that come
-    after. What is forked before any test has an identity of its own, which runs the whole suite; the other
-    pair is then forked as late as possible, when there is most that a fork could share.
+    forked at the place. Theirs are forked in the first test that reaches one, and the identity runs all that
+    come after. What is forked before any test has an identity of its own, which runs the whole suite; the
+    other pair is then forked as late as possible, when there is most that a fork could share.
     """
     planned = {Place.of(one) for one in mutants if not forked or not baseline.is_apart(one)}
     numbers = [{test: number for number, test in enumerate(tests)} for tests in baseline.tests]
@@ -149,12 +149,13 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     for (by, early), candidates in found.items():
         has_other = (by, not early) in found
         is_late = has_other and not early
-        fatal = min(candidates, key=attrgetter("by_lateness" if is_late else "by_time"))
         is_first = forked and not early and not is_late
-        identity = min(candidates, key=attrgetter("by_order")) if is_first else fatal
-        for name, one in ((IDENTITY, identity), (FATAL, fatal))[: 1 if has_other and early else 2]:
-            subject = IMPORT if early else one.test.partition("::")[0]
-            controls.append(Control(name, one.place, by, one.round, baseline.suite(one.round), subject))
+        one = min(
+            candidates, key=attrgetter("by_order" if is_first else "by_lateness" if is_late else "by_time")
+        )
+        subject, suite = IMPORT if early else one.test.partition("::")[0], baseline.suite(one.round)
+        names = (IDENTITY,) if has_other and early else (IDENTITY, FATAL)
+        controls += [Control(name, one.place, by, one.round, suite, subject) for name in names]
     return controls
 
 
