@@ -12,7 +12,9 @@ from mutabot.cli.output import print_json, progress_shown
 from mutabot.cli.request import request_again
 from mutabot.errors import NothingToDoError
 from mutabot.journal.files import find_journal
+from mutabot.model import Verdict
 from mutabot.report.terminal.console import make_console
+from mutabot.report.texts import status_of
 from mutabot.results.results import MutantResult, Results, results_at
 from mutabot.results.suggested import keep_suggestions
 
@@ -66,7 +68,9 @@ def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) ->
     if not results.done:
         raise NothingToDoError("no mutant has been run yet: continue with `mutabot run`")
     mutants = select([one.mutant for one in results.mutants], tuple(only or ()), tuple(skip or ()), None)
-    survivors = {one.mutant.id: one for one in results.survivors}
+    # where no test comes, no check helps
+    reached = (one for one in results.survivors if status_of(one) is not Verdict.NOT_COVERED)
+    survivors = {one.mutant.id: one for one in reached}
     if not survivors:
         raise NothingToDoError("no mutant survived: there is no check to suggest")
     chosen = [survivors[mutant.id] for mutant in mutants if mutant.id in survivors]
