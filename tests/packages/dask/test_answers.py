@@ -128,7 +128,6 @@ _WRONG: dict[str, bytes] = {
     "an outcome of a mutant of others": changed(
         lambda a: a["lines"].append(event_to_data(ForkTestEnd(mutant(2).id, END)))
     ),
-    "a test of others": changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test")),
     "an outcome that there is not": changed(lambda a: a["lines"][END_LINE].update(outcome="great")),
     "a file of others": changed(lambda a: a["lines"][SITE_LINE]["span"].update(file="/etc/passwd")),
     "a file above": changed(lambda a: a["lines"][SITE_LINE]["span"].update(file="../secret.py")),
@@ -159,6 +158,14 @@ def test_a_fork_parent_tells_of_its_own_mutants_only() -> None:
     data["lines"].append(event_to_data(ForkTestEnd(mutant(2).id, replace(END, trace=()))))
     with pytest.raises(Misfit, match="is no mutant of this unit"):
         UnitAnswer.of(packed(data), fork_parent())
+
+
+def test_the_unmutated_program_has_the_tests_of_its_unit_and_a_mutant_may_make_others() -> None:
+    data = changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test"))
+    with pytest.raises(Misfit, match="is no test of this unit"):
+        UnitAnswer.of(data, fork_parent())
+    _, lines = UnitAnswer.of(data, unit())
+    assert any(isinstance(line, TestEnd) and line.test == "tests/test_other.py::test" for line in lines)
 
 
 def test_texts_can_be_stored() -> None:
