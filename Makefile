@@ -23,7 +23,7 @@ LOCKS  := $(wildcard requirements*.lock)
 CORE    = $(addprefix tests/,model config operators languages results journal campaign/plan plugins \
     test_extensions.py)
 
-of_ros  = $(wildcard $(addsuffix /test_ros$(1)*.py,tests/packages/ros tests/packages/ros/*))
+of_ros  = $(wildcard $(addsuffix /test_ros$(1)*.py,tests/packages/ros tests/packages/ros/* tests/packages/ros_in_process))
 
 .PHONY: demo test whole alone check format docs site pictures comparison bench stress judged shipped foreign audit sbom locks dist clean
 

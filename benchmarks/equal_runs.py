@@ -26,8 +26,8 @@ _NOTES = """
 import os
 from functools import wraps
 
-from mutabot_ros.simulation.machine.scheduler import SCHEDULER, Scheduler
-from mutabot_ros.simulation.middleware import services, topics
+from ros_in_process.machine.scheduler import SCHEDULER, Scheduler
+from ros_in_process.middleware import services, topics
 
 FILE = open(os.environ["NOTES"], "w")
 
@@ -93,7 +93,7 @@ def _run(example: str, place: Path, seed: int, schedule: str) -> str:
         "PYTHONPATH": os.pathsep.join([str(place), os.environ.get("PYTHONPATH", "")]),
         "PYTHONDONTWRITEBYTECODE": "1",
     }
-    plugins = ("no:cacheprovider", "mutabot_ros.simulation.plugin", "_notes")
+    plugins = ("no:cacheprovider", "ros_in_process.plugin", "_notes")
     options = [word for one in plugins for word in ("-p", one)]
     command = [sys.executable, "-m", "pytest", "-q", *options, f"--ros-schedule={schedule}"]
     done = subprocess.run(

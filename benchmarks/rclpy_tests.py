@@ -24,7 +24,7 @@ from xml.etree import ElementTree
 #: seconds for one file
 _PATIENCE = 300
 #: what takes rclpy's C extension away
-_PLUGIN = ("-p", "mutabot_ros.simulation.plugin")
+_PLUGIN = ("-p", "ros_in_process.plugin")
 
 
 def main() -> int:

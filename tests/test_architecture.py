@@ -77,6 +77,12 @@ def test_packages_beside_the_core_import_the_core_and_none_of_each_other() -> No
     assert wrong == []
 
 
+def test_ros_in_process_knows_nothing_of_mutabot() -> None:
+    files = [*SOURCE.parent.glob("ros_in_process/**/*.py")]
+    assert len(files) > 30
+    assert [str(file) for file in files if "mutabot" in file.read_text(encoding="utf-8").lower()] == []
+
+
 def _imported(node: ast.AST) -> list[str]:
     if isinstance(node, ast.Import):
         return [alias.name for alias in node.names]

@@ -6,8 +6,12 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
+
+from mutabot import extensions
+from mutabot.runtime.evidence import failure_in
 
 #: prints what is brought
 ASK = """
@@ -94,3 +98,19 @@ def test_a_file_that_a_package_does_not_have_is_told_where_it_is_used(tmp_path: 
         check=True,
     )
     assert "error: 'arm' of package 'lab-robots': there is no file mutabot_cell:arm.toml" in done.stdout
+
+
+def test_exceptions_that_a_package_names_tell_of_the_tools_in_processes_of_the_tests(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Unsupported(RuntimeError):
+        """Raised by a simulator."""
+
+    module = ModuleType("lab_simulator")
+    module.Unsupported = Unsupported  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "lab_simulator", module)
+    monkeypatch.setattr(extensions._Told, "parts", None)
+    assert "failures" in extensions.told_to_processes()
+    extensions.use({"failures": {"unsupported": "lab_simulator:Unsupported"}})
+    assert failure_in(Unsupported("no contacts"), ()) == "Unsupported: no contacts"
+    assert failure_in(RuntimeError("no contacts"), ()) is None

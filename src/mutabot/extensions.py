@@ -39,7 +39,7 @@ _OF_OWN_PACKAGES = {
     "operators": dict.fromkeys(("catalogue", "middleware"), "mutabot_catalogue"),
 }
 #: kinds of parts that processes of the tests need
-_OF_PROCESSES = ("operators", "middlewares", "environments", "futures")
+_OF_PROCESSES = ("operators", "middlewares", "environments", "futures", "failures")
 #: kinds of parts that are code or data of a package
 _REFERRING = (
     *_OF_PROCESSES, "vocabularies", "executors", "templates", "tables", "commands", "formats", "sections",
@@ -81,6 +81,8 @@ class Extension:
         environments: modules that keep ``runtime.targets.target.Environment``, by any name.
         futures: classes of futures, by the name under which recorded answers keep them: one that is made
             without arguments is not done until somebody completes it.
+        failures: classes of exceptions, by any name, that tell of the tools around a program and never of the
+            program: a run that met one is an error.
         libraries: client libraries, by the name of the top-level package, in which ``*`` stands for any
             text. What a program does through them has names on a middleware: ``mutabot init`` proposes none
             of their callables as operations, but for these functions.
@@ -106,6 +108,7 @@ class Extension:
     middlewares: Mapping[str, str] = field(default_factory=dict)
     environments: Mapping[str, str] = field(default_factory=dict)
     futures: Mapping[str, str] = field(default_factory=dict)
+    failures: Mapping[str, str] = field(default_factory=dict)
     libraries: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     vocabularies: Mapping[str, str] = field(default_factory=dict)
     versions: tuple[str, ...] = ()

@@ -6,6 +6,7 @@ from mutabot.model import Vocabulary
 
 from . import _domain, _master
 from ._speech import speaks_of
+from .simulation.settings import configure
 
 
 def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> bool:
@@ -15,6 +16,7 @@ def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> bool:
     """
     has_domain = speaks_of(root, "rclpy") if vocabulary is None else _domain.is_wanted(vocabulary)
     if has_domain:
+        configure()
         _domain.take(home)
     has_master = _master.is_wanted(root, vocabulary)
     if has_master:

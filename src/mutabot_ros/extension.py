@@ -13,6 +13,7 @@ EXTENSION = Extension(
     environments={"ros": "mutabot_ros.environment"},
     simulations={"ros2": "mutabot_ros.simulation.campaign:Ros2Simulation"},
     tables={"ros": "mutabot_ros.simulation.campaign:RosTable"},
+    failures={"needs-real-ros": "ros_in_process:NeedsRealRos"},
     futures={"rclpy.task.Future": "rclpy.task:Future"},
     libraries={
         "rospy": ("get_param", "get_param_cached", "wait_for_message"),

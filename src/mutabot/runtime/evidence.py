@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.errors import MutabotError
+from mutabot.extensions import brought
 from mutabot.model.clocks import process_time
 from mutabot.model.path import class_name
 
@@ -39,10 +40,11 @@ def everything(error: BaseException) -> Iterator[BaseException]:
 def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
     """What went wrong in the tool or the machine, as far as an exception tells; None if nothing did.
 
-    ``failures``: names of exceptions that the vocabulary says mean nothing else.
+    ``failures``: names of exceptions that the vocabulary says mean nothing else; packages name others.
     """
     from mutabot.runtime.targets.target import is_named  # noqa: PLC0415  # few exceptions are looked at
 
+    failures = (*failures, *(part.reference for part in brought("failures").values()))
     for link in everything(error):
         if isinstance(link, MemoryError):
             return "the memory limit was reached"

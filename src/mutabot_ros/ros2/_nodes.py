@@ -9,9 +9,9 @@ from importlib import import_module
 from types import CodeType
 from typing import Any
 
+import ros_in_process
 from mutabot.runtime.processes.member import note_node
 from mutabot.runtime.targets.target import MiddlewareControls, Names, Where
-from mutabot_ros import simulation
 from mutabot_ros._patches import Patches
 
 from . import _clock
@@ -122,6 +122,6 @@ def where(
         cancel,
         _clock.jump,
         _clock.goes_out(node),
-        end=simulation.end_of_process(),
+        end=ros_in_process.end_of_process(),
     )
     return Where(code, name_of(node), means)

@@ -20,9 +20,10 @@ from mutabot_ros._speech import speaks_of
 
 from .agreement import difference
 
-PLUGIN = "mutabot_ros.simulation.plugin"
+#: the plug-in of campaigns, and that of the simulation alone
+PLUGIN, PLAIN_PLUGIN = "mutabot_ros.simulation.plugin", "ros_in_process.plugin"
 #: makes simulated time the time of budgets and reports, unless the vocabulary has a clock
-CLOCK = Clock("mutabot_ros.simulation.machine.scheduler:Scheduler.advanced", source="the simulation of ROS 2")
+CLOCK = Clock("ros_in_process.machine.scheduler:Scheduler.advanced", source="the simulation of ROS 2")
 _SETTINGS = (
     "pyproject.toml",
     "pytest.ini",
@@ -96,7 +97,8 @@ class Ros2Simulation(SimulatedMiddleware):
         is_own = (root / "rclpy").exists() or (root / "rclpy.py").exists()
         if find_spec("rclpy") is None or is_own or not speaks_of(str(root), "rclpy"):
             return False
-        return not any(PLUGIN in text for text in (*request.arguments, *_settings(root)))
+        named = (*request.arguments, *_settings(root))
+        return not any(plugin in text for text in named for plugin in (PLUGIN, PLAIN_PLUGIN))
 
 
 def _settings(root: Path) -> Iterator[str]:

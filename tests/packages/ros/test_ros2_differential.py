@@ -82,7 +82,7 @@ def test_all_behaviours_over_dds_are_as_they_were_recorded() -> None:
 
 @pytest.mark.whole
 @pytest.mark.skipif(
-    any(find_spec(name) is None for name in ("greenlet", "mutabot_ros.simulation")), reason="no simulation"
+    any(find_spec(name) is None for name in ("greenlet", "ros_in_process")), reason="no simulation"
 )
 def test_all_behaviours_over_the_simulation_are_as_over_dds() -> None:
     assert differences(list(run(over="simulation"))) == []

@@ -49,6 +49,8 @@ async def before(call: Call, at_end: Callable[[], None]) -> None:
     if CallFault.KILLED in call.call_faults or CallFault.RESTARTED in call.call_faults:
         at_end()
         anew = CallFault.RESTARTED in call.call_faults
+        if anew:
+            os.environ[RESTARTED] = str(os.getpid())
         if means.end is not None:
             means.end(anew)
         else:
@@ -161,7 +163,6 @@ def _is_node() -> bool:
 
 def _end(*, anew: bool) -> NoReturn:
     if anew:
-        os.environ[RESTARTED] = str(os.getpid())
         for stream in (sys.stdout, sys.stderr):
             with suppress(Exception):
                 stream.flush()

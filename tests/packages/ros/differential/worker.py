@@ -25,7 +25,7 @@ def behaviours() -> dict[str, Any]:
 def record(name: str, over: str, to: Path) -> int:
     """Let a behaviour happen and write its record; ends the process at once, whatever its threads do."""
     if over == "simulation":
-        simulation = importlib.import_module("mutabot_ros.simulation")
+        simulation = importlib.import_module("ros_in_process")
         simulation.start([str(Path(__file__).with_name("behaviours"))])
     try:
         said = {"record": behaviours()[name].act()}

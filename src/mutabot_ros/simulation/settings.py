@@ -1,0 +1,24 @@
+"""How the simulation runs in mutabot's campaigns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ros_in_process.settings import PACKAGES, SETTINGS
+
+
+def configure() -> None:
+    """Set the simulation up for this process, before it may start; without effect where nothing is simulated.
+
+    What mutabot itself waits for takes place in real time, but for what its hooks let nodes wait for. Each
+    round has orders of its own. A test that met what is not simulated decides nothing.
+    """
+    PACKAGES.update({"mutabot": False, "mutabot_ros": False, "mutabot_ros.ros2": True})
+    SETTINGS.is_strict = True
+    SETTINGS.seed_of = _seed_of_round
+
+
+def _seed_of_round(item: Any) -> int:
+    from mutabot.runtime.pytest_plugin import seed_of  # noqa: PLC0415  # pytest itself imports it first
+
+    return seed_of(item)

@@ -1,0 +1,74 @@
+"""Events of publishers and subscriptions: what has happened since one was last taken."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ros_in_process.middleware import records
+from ros_in_process.middleware.graph import Waitable
+from ros_in_process.middleware.records import MODULE
+
+
+class Status:
+    """What has happened since an event was last taken; counted whether or not anybody asks."""
+
+    def __init__(self, record: Any) -> None:
+        self.values = record()
+        if hasattr(self.values, "last_policy_kind"):
+            self.values.last_policy_kind = records.rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
+        self.has_changed = False
+        self._handles: list[EventHandle] = []
+
+    def tell(self, handle: EventHandle) -> None:
+        """Let a handle know from now on whether something has happened."""
+        self._handles.append(handle)
+        handle.is_ready = self.has_changed
+
+    def forget(self, handle: EventHandle) -> None:
+        self._handles.remove(handle)
+
+    def count(self, **changes: Any) -> None:
+        """Add to the counts; each `name` that counts has a `name_change` beside it."""
+        for name, change in changes.items():
+            if name == "last_policy_kind":
+                self.values.last_policy_kind = change
+                continue
+            setattr(self.values, name, getattr(self.values, name) + change)
+            setattr(self.values, f"{name}_change", getattr(self.values, f"{name}_change") + change)
+        self._set(True)
+        for handle in self._handles:
+            handle.changed()
+
+    def take(self) -> Any:
+        taken = type(self.values)(*(getattr(self.values, field) for field in self.values.fields))
+        for field in self.values.fields:
+            if field.endswith("_change"):
+                setattr(self.values, field, 0)
+        self._set(False)
+        return taken
+
+    def _set(self, has_changed: bool) -> None:
+        self.has_changed = has_changed
+        for handle in self._handles:
+            handle.is_ready = has_changed
+
+
+class EventHandle(Waitable):
+    """Tells of one kind of event of a publisher or a subscription."""
+
+    def __init__(self, end: Any, event: Any) -> None:
+        super().__init__()
+        if event not in end.statuses:
+            raise TypeError(f"__init__(): incompatible constructor arguments: no {event!r} of a {end.role}")
+        self.is_ready = False
+        self._status: Status = end.statuses[event]
+        self._status.tell(self)
+
+    def _release(self) -> None:
+        self._status.forget(self)
+
+    def take_event(self) -> Any:
+        return self._status.take()
+
+
+EventHandle.__module__ = MODULE
