@@ -103,14 +103,14 @@ def test_a_file_that_a_package_does_not_have_is_told_where_it_is_used(tmp_path: 
 def test_exceptions_that_a_package_names_tell_of_the_tools_in_processes_of_the_tests(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    class Unsupported(RuntimeError):
+    class UnsupportedError(RuntimeError):
         """Raised by a simulator."""
 
     module = ModuleType("lab_simulator")
-    module.Unsupported = Unsupported  # type: ignore[attr-defined]
+    module.UnsupportedError = UnsupportedError  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "lab_simulator", module)
     monkeypatch.setattr(extensions._Told, "parts", None)
     assert "failures" in extensions.told_to_processes()
-    extensions.use({"failures": {"unsupported": "lab_simulator:Unsupported"}})
-    assert failure_in(Unsupported("no contacts"), ()) == "Unsupported: no contacts"
+    extensions.use({"failures": {"unsupported": "lab_simulator:UnsupportedError"}})
+    assert failure_in(UnsupportedError("no contacts"), ()) == "UnsupportedError: no contacts"
     assert failure_in(RuntimeError("no contacts"), ()) is None
