@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.engines.controls import FATAL, IDENTITY, IMPORT, controls_of
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.controls import FATAL, IDENTITY, IMPORT, ForkTrust, controls_of
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ControlError
-from mutabot.model import Mutant, Role, Site, Span
+from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Place
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
@@ -189,3 +192,12 @@ def test_beside_an_identity_of_the_imports_the_other_one_is_forked_as_late_as_po
     made = baseline_of(reached, {4})
     assert acting(*made, forked=True) == [(FATAL, 2, "b"), (IDENTITY, 2, "b"), (IDENTITY, 4, IMPORT)]
     assert acting(*made, forked=False) == [(FATAL, 3, "c"), (IDENTITY, 3, "c")]
+
+
+def test_a_kill_by_the_first_test_awaits_controls_if_the_mutant_was_forked_before_any_test() -> None:
+    baseline, (early, late) = baseline_of({1: [], 2: ["a::one"]}, {1})
+    controls = {one.mutant.id: one for one in controls_of(baseline, [early, late], forked=True)}
+    trust = ForkTrust(cast("Campaign", SimpleNamespace(baseline=baseline, progress=Quiet())), controls)
+    kills = {one.id: Outcome(one.id, 0, Verdict.KILLED, test="a::one") for one in (early, late)}
+    assert trust.awaits(early, kills[early.id])
+    assert not trust.awaits(late, kills[late.id])

@@ -247,12 +247,13 @@ class ForkTrust:
     def awaits(self, mutant: Mutant, outcome: Outcome) -> bool:
         """Whether an outcome depends on what controls have yet to tell.
 
-        It does not if the first test that reaches the mutant has decided: that test has controls of its own.
+        It does not if the test in which the mutant was forked has decided: that test has controls of its own.
         """
         if not self._awaited:
             return False
-        judging = self._campaign.baseline.tests_judging(outcome.round, mutant)
-        return not (outcome.verdict.is_killed and outcome.test in judging[:1])
+        baseline = self._campaign.baseline
+        is_decided_there = outcome.test in baseline.tests_judging(outcome.round, mutant)[:1]
+        return not outcome.verdict.is_killed or baseline.is_early(mutant) or not is_decided_there
 
     def believes(self, outcome: Outcome) -> bool:
         """Whether all tests that it depends on end in a fork as they do in the original."""
