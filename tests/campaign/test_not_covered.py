@@ -170,3 +170,16 @@ def test_of_a_call_in_a_branch_and_of_one_that_is_no_operation(tmp_path: Path) -
     assert [one.place for one in results.untested.unreached_calls] == ["mission.py:5:9"]
     assert [one.place for one in results.untested.doubtful_calls] == ["mission.py:6:9"]
     assert results.untested.text == "1 of 2 robot calls is reached by no test"
+
+
+def test_a_file_that_no_test_imports_is_told_whatever_it_is_written_in(tmp_path: Path) -> None:
+    folder = project(tmp_path)
+    text = f'# coding: latin-1\n"""Größe."""\n{dedent(OTHER)}'
+    (folder / "other.py").write_text(text, encoding="latin-1")
+    (folder / "old.py").write_text("print 'Python 2'\n", encoding="utf-8")
+    toml = (folder / "mutabot.toml").read_text(encoding="utf-8")
+    (folder / "mutabot.toml").write_text(toml.replace('"other.py"', '"other.py", "old.py"'), encoding="utf-8")
+    _, _, untested = plan_only(request_for(folder), Quiet())
+    assert [call.place for call in untested.unreached_calls] == ["mission.py:6:5", "other.py:5:5"]
+    assert untested.files == 3
+    assert untested.unreached_files == ("old.py", "other.py")

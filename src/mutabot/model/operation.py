@@ -287,6 +287,11 @@ class Operation:
         return self.qualname
 
     @property
+    def last_name(self) -> str:
+        """What a call of it ends with."""
+        return self.qualname.rpartition(".")[2]
+
+    @property
     def described(self) -> dict[str, str]:
         """The arguments that the vocabulary speaks of, and the key that does."""
         found = {quantity.path.root or "": f"arguments.{quantity.name}" for quantity in self.arguments}

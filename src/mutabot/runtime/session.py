@@ -24,7 +24,7 @@ from mutabot.runtime.observation.probes import Along, Reading, TestRecording, re
 from mutabot.runtime.process_fault import PlacedFault
 from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.instrument import SessionText
-from mutabot.runtime.program_text.standing import Handing, Standing, StandIns, last_name
+from mutabot.runtime.program_text.standing import Handing, Standing, StandIns
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Messages
@@ -147,7 +147,7 @@ class Session:
         called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
         self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
         self._tell_standing()
-        names = {last_name(one.operation) for one in called}
+        names = {one.operation.last_name for one in called}
         handing = Handing(self.standing, self.passing.given)
         self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, handing)
         self.call_sites.install()

@@ -10,15 +10,18 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from mutabot.frozen import frozen
 from mutabot.languages.python import FRONT_END, extent_of
 from mutabot.model import Operation, Pattern, Role, Site, Span
+from mutabot.model.notation import Notation
 from mutabot.model.operation import ANY, owner_of
 from mutabot.model.path import Path
+from mutabot.model.source_units import Function, last_name
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+_Function = Function | ast.Lambda
+_Named = Function | ast.ClassDef
 #: built-in functions whose value is of the user's making
 _HANDS_THROUGH = {"getattr", "iter", "max", "min", "next", "super", "vars"}
 #: an origin within the program, or of a module that is imported relative to it
@@ -118,16 +121,12 @@ def _calls(nodes: Sequence[ast.AST], scope: _Scope) -> Iterator[tuple[ast.Call, 
             keywords = [one.value for one in node.keywords]
             yield from _calls([*node.decorator_list, *node.bases, *keywords], scope)
             yield from _calls(node.body, _Scope(scope.inner(node.name), scope.functions, node, is_class=True))
-        elif isinstance(node, ast.If) and _last(node.test) == "TYPE_CHECKING":
+        elif isinstance(node, ast.If) and last_name(node.test) == "TYPE_CHECKING":
             yield from _calls(node.orelse, scope)
         elif isinstance(node, ast.AnnAssign):
             yield from _calls([node.value] if node.value is not None else [], scope)
         else:
             yield from _calls(list(ast.iter_child_nodes(node)), scope)
-
-
-def _last(node: ast.AST) -> str:
-    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
 class _Origins:
@@ -138,6 +137,7 @@ class _Origins:
         self.imported: dict[str, str] = {}
         self.defined = {one.name for one in tree.body if isinstance(one, _Named)}
         self._module = tree
+        self._values: dict[ast.AST, dict[str, ast.expr]] = {}
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
                 for one in node.names:
@@ -152,7 +152,7 @@ class _Origins:
         """The last name of what is called, before it was imported under another one."""
         if isinstance(function, ast.Name):
             return self.imported.get(function.id, function.id).rpartition(".")[2]
-        return _last(function)
+        return last_name(function) if not isinstance(function, ast.Call) else ""
 
     def of(self, node: ast.AST, scope: _Scope, depth: int = 0) -> str | None:
         """The dotted name of what an expression is made of; None if the text does not tell."""
@@ -164,7 +164,7 @@ class _Origins:
             case ast.Attribute(value=ast.Name(id="self" | "cls"), attr=attribute) if scope.owner is not None:
                 if attribute in _methods(scope.owner):
                     return _HERE + attribute
-                return self._of_value(_stored(scope.owner, "self." + attribute), scope, depth)
+                return self._of_value(self._stored(scope.owner, "self." + attribute), scope, depth)
             case ast.Attribute(value=value, attr=attribute):
                 origin = self.of(value, scope, depth + 1)
                 return f"{origin}.{attribute}" if origin is not None else None
@@ -188,23 +188,25 @@ class _Origins:
             for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
                 if one.arg == name:
                     return self._of_value(one.annotation, scope, depth)
-            stored = _stored(function, name)
+            stored = self._stored(function, name)
             if stored is not None:
                 return self._of_value(stored, scope, depth)
         if name in self.imported:
             return self.imported[name]
         if name in self.defined:
             return _HERE + name
-        stored = _stored(self._module, name)
+        stored = self._stored(self._module, name)
         if stored is None and hasattr(builtins, name):
             return f"builtins.{name}"
         return self._of_value(stored, _Scope(), depth)
 
+    def _stored(self, around: ast.AST, name: str) -> ast.expr | None:
+        if around not in self._values:
+            self._values[around] = _stored_in(around)
+        return self._values[around].get(name)
+
     def _of_value(self, value: ast.AST | None, scope: _Scope, depth: int) -> str | None:
         return self.of(value, scope, depth + 1) if value is not None else None
-
-
-_Named = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 def _is_name(text: str) -> bool:
@@ -215,19 +217,19 @@ def _methods(owner: ast.ClassDef) -> set[str]:
     return {one.name for one in owner.body if isinstance(one, _Named)}
 
 
-def _stored(around: ast.AST, name: str) -> ast.expr | None:
-    """The last value, or the annotation, that a name gets in a function, class or module."""
-    found: ast.expr | None = None
+def _stored_in(around: ast.AST) -> dict[str, ast.expr]:
+    """The last values, or the annotations, that names get in a function, class or module."""
+    found: dict[str, ast.expr] = {}
     for node in ast.walk(around):
         match node:
-            case ast.Assign(targets=targets, value=value) if name in map(ast.unparse, targets):
-                found = value
-            case ast.AnnAssign(target=target, annotation=annotation) if ast.unparse(target) == name:
-                found = annotation
-            case ast.withitem(optional_vars=ast.Name(id=other), context_expr=value) if other == name:
-                found = value
-            case ast.NamedExpr(target=ast.Name(id=other), value=value) if other == name:
-                found = value
+            case ast.Assign(targets=targets, value=value):
+                found |= dict.fromkeys(map(ast.unparse, targets), value)
+            case ast.AnnAssign(target=target, annotation=annotation):
+                found[ast.unparse(target)] = annotation
+            case ast.withitem(optional_vars=ast.Name(id=name), context_expr=value):
+                found[name] = value
+            case ast.NamedExpr(target=ast.Name(id=name), value=value):
+                found[name] = value
     return found
 
 
@@ -305,7 +307,7 @@ def _is_self(node: ast.AST) -> bool:
 
 
 def _is_super(node: ast.AST) -> bool:
-    return isinstance(node, ast.Call) and _last(node.func) == "super"
+    return isinstance(node, ast.Call) and last_name(node.func) == "super"
 
 
 def _root(node: ast.AST) -> str:
@@ -337,16 +339,13 @@ def _pattern(call: ast.Call, operation: Operation) -> Pattern | None:
         cases = {Path.parse(one.argument, rooted=True).root or "": one.value for one in pattern.when}
         if not all(_is_case(named.get(name), value) for name, value in cases.items()):
             continue
-        if pattern.notation is None or any(pattern_reads(pattern.notation, text) for text in texts):
+        if pattern.notation is None or _reads(pattern.notation, texts):
             return pattern
     return None
 
 
-def pattern_reads(notation: str, text: str) -> bool:
-    """Whether a text is a command of this notation."""
-    from mutabot.model.notation import Notation  # noqa: PLC0415  # most programs have no such commands
-
-    return Notation.compile(notation).read(text) is not None
+def _reads(notation: str, texts: Iterable[str]) -> bool:
+    return any(Notation.compile(notation).read(text) is not None for text in texts)
 
 
 def _is_case(value: ast.expr | None, wanted: str) -> bool:

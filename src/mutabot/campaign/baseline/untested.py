@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from importlib.util import decode_source
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -112,14 +113,20 @@ def add_untested(
 
 
 def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """The files of the program that hold anything but a docstring, with their text."""
+    """The files of the program that hold anything but a docstring, with their text.
+
+    A file that cannot be parsed has an empty one: nobody can import it.
+    """
     for file in files:
         if front_end_of(file) is not PYTHON:
             continue
         try:
-            text = (root / file).read_text(encoding="utf-8-sig")
+            text = decode_source((root / file).read_bytes())
             body = ast.parse(text).body
-        except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        except OSError:
+            continue
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            yield file, ""
             continue
         if any(not isinstance(one, ast.Expr) or not isinstance(one.value, ast.Constant) for one in body):
             yield file, text
@@ -161,7 +168,7 @@ def _known(
 ) -> KnownCalls:
     by_name: dict[str, list[Operation]] = {}
     for one in operations:
-        by_name.setdefault(one.qualname.rpartition(".")[2], []).append(one)
+        by_name.setdefault(one.last_name, []).append(one)
     own = {part.removesuffix(".py") for file in texts for part in file.split("/")}
     reached: dict[str, set[str]] = {}
     for place in places:

@@ -174,7 +174,7 @@ class Dispatcher:
 
     def _given(self, frame: FrameType, adapter: Adapter, in_operation: bool) -> Place | None:
         """Where a function of the robot was handed on. An operation that names it calls it by itself."""
-        is_named = adapter.operation.qualname.rpartition(".")[2] in frame.f_code.co_names
+        is_named = adapter.operation.last_name in frame.f_code.co_names
         return None if in_operation and is_named else self.given.get(adapter)
 
     def _is_direct(self, frame: FrameType | None, where: Where) -> bool:

@@ -91,7 +91,7 @@ class StandIns:
     def findings(self, operations: Iterable[Operation]) -> Iterator[tuple[Operation, Finding]]:
         """Say what stood for these operations, what nobody can place, and what was left alone."""
         for operation in operations:
-            target, name, said = operation.target, last_name(operation), []
+            target, name, said = operation.target, operation.last_name, []
             stood = self._standing.get(target, {})
             if stood and not target.startswith(ANY):
                 shown = (f"{what} in {_count(len(tests), 'test')}" for what, tests in stood.items())
@@ -109,11 +109,6 @@ class StandIns:
                 text = f"{_count(len(alone), 'call')} of this name left alone, since nothing says that it is"
                 advice = f'if it is, write method = "{name}"'
                 yield operation, Finding("method", f"{text} meant: {listed}{more}; {advice}", is_remark=True)
-
-
-def last_name(operation: Operation) -> str:
-    """What a call of an operation ends with."""
-    return operation.qualname.rpartition(".")[2]
 
 
 def mock_of(found: Any) -> Any:
@@ -166,7 +161,7 @@ class Standing:
 
     def __post_init__(self) -> None:
         for one in self.adapters:
-            self.by_name.setdefault(last_name(one.operation), []).append(one)
+            self.by_name.setdefault(one.operation.last_name, []).append(one)
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is called at a site: ``found``, or what makes the same call as one of an operation."""
@@ -347,7 +342,7 @@ def _is_of_objects(owner: type | None, one: Adapter) -> bool:
     """Whether an operation is a method of objects, rather than one of their class."""
     if owner is None:
         return False
-    raw = inspect.getattr_static(owner, last_name(one.operation), None)
+    raw = inspect.getattr_static(owner, one.operation.last_name, None)
     return not isinstance(getattr(raw, "__wrapped__", raw), classmethod | staticmethod)
 
 
