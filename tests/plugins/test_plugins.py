@@ -56,8 +56,13 @@ PROJECT = {
     "conftest.py": "",
 }
 
-#: the one that is only found when it is used
-ON_USE = "fails on an operation"
+#: those that are only found when they are used: by what of an operator the plan asks
+ON_USE = {
+    "fails on an operation": "subjects(self, operation, pattern)",
+    "cannot say what it does": "describe(self, subject, before, after)",
+    "has no middleware": "middleware(self, subject, random)",
+    "does not know its needs": "needs_of(self, subject)",
+}
 #: how a plug-in can break the contract: (name in its extension, its code, what the error must tell)
 BROKEN = {
     "raises at import": ("late", "raise RuntimeError('no licence')", "RuntimeError('no licence')"),
@@ -74,16 +79,22 @@ BROKEN = {
         "from mutabot.operators.kinds.commands import Skip\nclass Rule(Skip):\n    name = 'early'",
         "'early'",
     ),
-    ON_USE: (
-        "late",
-        "from mutabot.operators.kinds.commands import Skip\nclass Rule(Skip):\n    name = 'late'\n"
-        "    def subjects(self, operation, pattern):\n        raise KeyError('frame')",
-        "KeyError('frame')",
-    ),
+    **{
+        how: (
+            "late",
+            "from mutabot.operators.kinds.readings import Negate\nclass Rule(Negate):\n    name = 'late'\n"
+            f"    def {asked}:\n        raise KeyError('frame')",
+            "KeyError('frame')",
+        )
+        for how, asked in ON_USE.items()
+    },
 }
 
 #: repeats a call; breaks on a real answer, which the plan's rehearsal does not have
 BREAKS_LATE = """
+import sys
+
+import pytest
 from mutabot.operators.kinds.commands import Repeat
 from mutabot.operators import Subject
 
@@ -98,7 +109,7 @@ class Rule(Repeat):
             await proceed(call)
             reply = await proceed(call)
             if reply.payload is not None:
-                raise ValueError("broken while at work")
+                raise_it()
             return reply
 
         return mutated
@@ -204,7 +215,7 @@ def test_the_plug_ins_examples_do_what_they_say(installed: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("how", [how for how in BROKEN if how != ON_USE])
+@pytest.mark.parametrize("how", [how for how in BROKEN if how not in ON_USE])
 def test_a_broken_plug_in_raises_an_operator_error_that_names_it(how: str, tmp_path: Path) -> None:
     name, code, told = BROKEN[how]
     ask = (
@@ -219,7 +230,7 @@ def test_a_broken_plug_in_raises_an_operator_error_that_names_it(how: str, tmp_p
     assert told in done.stdout
 
 
-@pytest.mark.parametrize("how", ["raises at import", ON_USE])
+@pytest.mark.parametrize("how", ["raises at import", *ON_USE])
 def test_the_command_line_tells_which_plug_in_is_broken(how: str, project: Path, tmp_path: Path) -> None:
     name, code, told = BROKEN[how]
     done = mutabot(broken_plug_in(tmp_path / "site", name, code), project, "list")
@@ -229,14 +240,24 @@ def test_the_command_line_tells_which_plug_in_is_broken(how: str, project: Path,
     assert told in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("raising", "told"),
+    [
+        ("raise ValueError('broken')", "ValueError: broken"),
+        pytest.param("pytest.fail('broken')", "Failed: broken", marks=pytest.mark.whole),
+        pytest.param("pytest.skip('broken')", "Skipped: broken", marks=pytest.mark.whole),
+        pytest.param("sys.exit('broken')", "SystemExit: broken", marks=pytest.mark.whole),
+    ],
+)
 def test_an_operator_that_fails_while_at_work_is_an_error_and_never_a_kill(
-    project: Path, tmp_path: Path
+    raising: str, told: str, project: Path, tmp_path: Path
 ) -> None:
-    site = broken_plug_in(tmp_path / "site", "late", BREAKS_LATE)
+    code = BREAKS_LATE + f"\ndef raise_it():\n    {raising}\n"
+    site = broken_plug_in(tmp_path / "site", "late", code)
     done = mutabot(site, project, "run", "--json", "-o", "repeats=false", "--only", "late")
     end = mutants(done, code=ERRORS)["late"]["rounds"][0]
     assert end["verdict"] == "error"
-    assert end["message"] == "operator late: ValueError: broken while at work"
+    assert end["message"] == f"operator late: {told}"
 
 
 @pytest.mark.whole

@@ -154,6 +154,20 @@ def test_a_test_that_fails_by_chance_in_the_only_round_is_flaky(tmp_path: Path, 
     )
 
 
+@pytest.mark.parametrize("rounds", [1, 2])
+def test_what_fails_in_copies_of_one_process_alone_is_run_in_fresh_ones(
+    tmp_path: Path, script: Script, rounds: int
+) -> None:
+    """Such as a test that compares its process with the one that imported it."""
+    script.original = lambda run: CHECKED if script.tasks[-1].may_share and run.test == CHECKS else {}
+    script.mutated = lambda run: CHECKED
+    write_project(tmp_path, MISSION, TESTS)
+    found, progress = campaign(tmp_path, engine="auto", rounds=rounds)
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED}
+    assert sum("copies of a process that has imported" in line for line in progress.lines) == 1
+    assert not any(task.may_share for task in script.tasks if task.is_fork_parent)
+
+
 def test_a_site_that_only_a_failing_test_reaches_is_not_called_uncovered(
     tmp_path: Path, script: Script
 ) -> None:

@@ -271,6 +271,7 @@ class Baseline(Original):
         unread: whether nobody uses what the calls of a place return.
         stand_ins: places at which a mock or a fake of the project gets calls.
         shares_files: whether runs see each other's files.
+        may_share: whether the original runs alike in copies of one process that has collected the tests.
         untested: what no test reaches of the program.
         unreached: places of calls in it, found by the names of operations; a mutant there is not covered.
     """
@@ -301,6 +302,7 @@ class Baseline(Original):
     known: tuple[tuple[Span, str], ...] = ()
     early: set[Place] = field(default_factory=set)
     shares_files: bool = False
+    may_share: bool = True
     collected: dict[int, frozenset[str]] = field(default_factory=dict)
     untested: Untested = field(default_factory=Untested)
     unreached: tuple[Place, ...] = ()

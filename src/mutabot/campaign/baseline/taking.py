@@ -86,6 +86,10 @@ _KNOWN_LATER = (
     "at {} sites some tests call an operation and others what nothing tells to be one: it counts there "
     "as one, and the tests are recorded again"
 )
+_NOT_IN_COPIES = (
+    "tests fail in copies of a process that has imported and collected them, and not in fresh ones: each "
+    "run of the original begins in a process of its own"
+)
 #: pytest's exit code where tests failed
 _FAILED = 1
 
@@ -98,6 +102,8 @@ class _Suite:
         results: by round and repetition.
         remarks: what is to be known about the vocabulary.
         known: see ``Job.known``.
+        probe_intervals: by round and test, see ``Baseline``.
+        may_share: whether runs may begin as copies of one process that has collected the tests.
     """
 
     request: Request
@@ -106,6 +112,8 @@ class _Suite:
     results: dict[tuple[int, int], Result] = field(default_factory=dict)
     remarks: list[Remark] = field(default_factory=list)
     known: dict[Span, str] = field(default_factory=dict)
+    probe_intervals: Mapping[int, Mapping[str, int]] = field(default_factory=dict)
+    may_share: bool = True
 
     def run(self, tasks: Iterable[Task]) -> None:
         """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
@@ -126,7 +134,7 @@ class _Suite:
     def task(self, round: int, repetition: int, **details: Any) -> Task:
         """A run of the original in a round. With forks, imports and collection are done once for all runs."""
         job = self.request.job(round, record=True, known=tuple(self.known.items()), **details)
-        return Task((round, repetition), job, startup=Limit(300.0), may_share=self.request.forks)
+        return Task((round, repetition), job, startup=Limit(300.0), may_share=self.may_share)
 
     def learns(self) -> bool:
         """Whether the runs so far tell of operations where they did not know of them in all tests."""
@@ -157,7 +165,26 @@ def take_baseline(
     prepared, repetitions = prepared or {}, repetitions or request.repetitions
     _note_prepared(request, prepared, progress)
     progress.stage("baseline", request.rounds * repetitions)
-    suite = _Suite(request, executor, progress)
+    suite = _Suite(request, executor, progress, may_share=request.forks)
+    _run(suite, prepared, repetitions)
+    try:
+        baseline = _read(suite, prepared)
+    except BaselineError:
+        # a copy has another process id, parent and session than the process that has imported the tests
+        suite = _Suite(request, executor, progress, may_share=False)
+        if not request.forks or not _run(suite, prepared, repetitions, if_all_pass=True):
+            raise
+        baseline = _read(suite, prepared)
+        progress.note(_NOT_IN_COPIES)
+    results = suite.results
+    return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
+
+
+def _run(
+    suite: _Suite, prepared: Mapping[str, Preparation], repetitions: int, *, if_all_pass: bool = False
+) -> bool:
+    """Run the suite as often as need be; False if it ends with the first runs, since tests fail in them."""
+    request = suite.request
     texts = tuple(text for one in prepared.values() for text in one.texts)
     recording = Instrumentation(texts, record=True) if texts else None
 
@@ -166,25 +193,25 @@ def take_baseline(
             yield suite.task(round, 0, inspect=round == 0, instrumentation=recording)
 
     suite.run(first_runs())
+    if if_all_pass and any(end.outcome == "failed" for one in suite.results.values() for end in one.ends):
+        return False
     if suite.learns():
-        progress.note(_KNOWN_LATER.format(len(suite.known)))
+        suite.progress.note(_KNOWN_LATER.format(len(suite.known)))
         suite.remarks.clear()
         suite.run(first_runs())
-    probe_intervals = probe_intervals_of(
+    suite.probe_intervals = probe_intervals_of(
         {(run[0], end.test): end for run, result in suite.results.items() for end in result.ends}
     )
     if repetitions > 1:  # of the text as it stands: neither looking at it nor probes may change anything
         suite.run(
-            suite.task(round, repetition, moments=probe_intervals.get(round, {}))
+            suite.task(round, repetition, moments=suite.probe_intervals.get(round, {}))
             for repetition in range(1, repetitions)
             for round in range(request.rounds)
         )
     else:  # was it chance, or the round's seed?
         failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
         suite.run(suite.task(round, 1) for round in failing)
-    baseline = _read(suite, prepared, probe_intervals)
-    results = suite.results
-    return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
+    return True
 
 
 def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progress: Progress) -> None:
@@ -195,14 +222,15 @@ def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progre
             progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
 
 
-def _read(
-    suite: _Suite, prepared: Mapping[str, Preparation], probe_intervals: Mapping[int, Mapping[str, int]]
-) -> Baseline:
+def _read(suite: _Suite, prepared: Mapping[str, Preparation]) -> Baseline:
     """What all runs tell, and what is to be said about it."""
     request, progress = suite.request, suite.progress
     remarks = tuple(dict.fromkeys(suite.remarks))
     known = tuple(suite.known.items())
-    baseline = Baseline(probe_intervals=probe_intervals, remarks=remarks, prepared=prepared, known=known)
+    baseline = Baseline(
+        probe_intervals=suite.probe_intervals, remarks=remarks, prepared=prepared, known=known,
+        may_share=suite.may_share,
+    )  # fmt: skip
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):

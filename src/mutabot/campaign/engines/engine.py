@@ -491,7 +491,8 @@ class _ForkParent:
             fork.left_out = job.left_out(fork.mutant.id)
         # it waits for forks that go to the end
         patience = Limit(2.0 * sum(one.wall for one in limits.values()) + forking.startup.wall + _PATIENCE)
-        may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
+        # else it forks while it imports the program
+        may_share = baseline.may_share and not any(map(baseline.is_early, mutants))
         return Task(
             key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=forking.serial
         )

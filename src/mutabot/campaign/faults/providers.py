@@ -9,13 +9,14 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar
 
 from mutabot.campaign.baseline.baseline import Baseline, Hit, NoAnswerError, RecordedAnswers, idle_of
 from mutabot.campaign.faults.demanded import ladders_last, with_demanded
-from mutabot.errors import ExtensionError, OperatorError, unknown_name_text
+from mutabot.errors import ExtensionError, MutabotError, OperatorError, unknown_name_text
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_CALLS, ROBOT
 from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project, brought_providers
 from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
@@ -163,18 +164,17 @@ def _at_places(
         operation = operation.by_numbers() if place in baseline.stand_ins else operation
         is_shared = operations_at[place.site] > 1
         for subject, rule in _subjects(operators, operation, place):
-            mutant = _distinct(_mutant(rule, subject, place, provider), taken)
-            seen, foreseen = _foresee(rule, subject, hits)
-            needs = rule.needs_of(subject)
+            with _named(rule, operation):
+                seen, foreseen = _foresee(rule, subject, hits)
+                needs, only_reads = rule.needs_of(subject), rule.only_reads(subject)
+                text = _description(rule, subject, place, seen, is_shared=is_shared)
+            mutant = replace(_distinct(_mutant(rule, subject, place, provider), taken), description=text)
             unmet = {need: _why_unmet(need, subject, place, baseline, vocabulary) for need in needs}
             later = (unmet.get(need) for need in (Need.CLOCK, Need.WAIT, Need.SIGN))
             reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), foreseen, *later)
             reason = next(filter(None, reasons), None)
-            if reason is None and baseline.unread.get(place, False) and rule.only_reads(subject):
+            if reason is None and baseline.unread.get(place, False) and only_reads:
                 reason = "nobody reads what the call returns: it is a statement by itself"
-            mutant = replace(
-                mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
-            )
             is_read_alone = subject.quantity in subject.read and subject.quantity not in subject.written
             if place in baseline.written_through and is_read_alone:
                 reason = _LOST_WRITE
@@ -200,11 +200,11 @@ def _not_covered(
     for index, place in enumerate(baseline.unreached, start=len(baseline.hits)):
         operation = vocabulary.operation(place.operation)
         for subject, rule in _subjects(operators, operation, place) if operation is not None else ():
-            unmet = (
-                _why_unmet(need, subject, place, baseline, vocabulary) for need in rule.needs_of(subject)
-            )
+            with _named(rule, subject.operation):
+                needs = rule.needs_of(subject)
+                text = _description(rule, subject, place, None, is_shared=False)
+            unmet = (_why_unmet(need, subject, place, baseline, vocabulary) for need in needs)
             mutant = _distinct(_mutant(rule, subject, place, provider), taken)
-            text = _description(rule, subject, place, None, is_shared=False)
             order = (0, index, ranks[rule.name])
             found.append(Planted(replace(mutant, description=text), next(filter(None, unmet), None), order))
     return found
@@ -235,12 +235,21 @@ def _subjects(
     for rule in operators:
         if place.site.role is Role.ORACLE and Need.PROGRAM in rule.needs:
             continue
-        try:
+        with _named(rule, operation):
             subjects = list(rule.subjects(operation, pattern))
-        except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
-            raise OperatorError(f"operator {rule.name!r} fails on {operation.target}: {error!r}") from error
         for subject in subjects:
             yield subject, rule
+
+
+@contextmanager
+def _named(rule: Operator, operation: Operation) -> Iterator[None]:
+    """Name the operator whose code fails: that of a package may do so in any way."""
+    try:
+        yield
+    except MutabotError:
+        raise
+    except Exception as error:
+        raise OperatorError(f"operator {rule.name!r} fails on {operation.target}: {error!r}") from error
 
 
 def _mutant(rule: Operator, subject: Subject, place: Place, provider: str) -> Mutant:
@@ -347,14 +356,7 @@ def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
 def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> CallRecord:
     payload = object() if Need.MEMORY in rule.needs else None  # no two messages need be the same
     call = Call(subject.operation, subject.pattern, hit.written, idle=Reply(), payload=payload)
-    try:
-        passage = rehearse(middleware, call, hit.read, payload=payload, operator=rule.name)
-    except (LookupError, OperatorError):
-        raise
-    except Exception as error:  # as above: a plug-in's own fault
-        raise OperatorError(
-            f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}"
-        ) from error
+    passage = rehearse(middleware, call, hit.read, payload=payload, operator=rule.name)
     _check_promises(rule, subject, passage)
     return passage
 

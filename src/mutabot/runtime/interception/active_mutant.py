@@ -29,6 +29,8 @@ from mutabot.runtime.interception.live import HandedCopies, copied, is_live
 from mutabot.runtime.interception.trace import LOST
 from mutabot.runtime.targets.target import Place, is_named
 
+#: exceptions by which others end what an operator does: a user, an event loop, the end of a generator
+_FROM_OUTSIDE = frozenset({"KeyboardInterrupt", "CancelledError", "Cancelled", "GeneratorExit"})
 #: a call of a test: its site, operation and pattern, and its number among those of the site
 _Key = tuple[Span, str, str | None]
 
@@ -210,7 +212,9 @@ class ActiveMutant:
         self._forget()
         try:
             self._make_ready(seed)
-        except Exception as error:  # the operator's code may fail in any way: here no program meets it
+        except BaseException as error:  # the operator's code may fail in any way: here no program meets it
+            if type(error).__name__ in _FROM_OUTSIDE:
+                raise
             self._fails(error, " cannot be made ready")
 
     def _make_ready(self, seed: int) -> None:
@@ -474,8 +478,10 @@ class _MutatedCall:
             return False
         if isinstance(error, Exception):
             return True
-        *_, (frame, _) = walk_tb(error.__traceback__)  # others may end a call: pytest, an event loop
-        return frame.f_globals.get("__name__") == type(self.mutant.rule).__module__
+        if type(error).__name__ in _FROM_OUTSIDE:
+            return False
+        own = {kind.__module__ for kind in type(self.mutant.rule).__mro__}
+        return any(frame.f_globals.get("__name__") in own for frame, _ in walk_tb(error.__traceback__))
 
     async def _perform(self, call: Call) -> Any:
         action = partial(self.adapter.perform, call, self.passage.call)
