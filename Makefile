@@ -90,20 +90,18 @@ comparison: $(READY)
 	cd benchmarks && ../$(RUN) -m comparison.page \
 	    $(foreach name,paper pick_and_place scales,$(name)=../$(VENV)/$(name).json)
 
-## measure: the cost of an intercepted call, simulation speed, 200 seeds of each example
+## measure, in an hour: the cost of intercepted calls and of engines, simulation speed, seeds of each example
 bench: $(READY)
 	$(RUN) benchmarks/interception.py
 	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/cell_physics.py
 	$(RUN) benchmarks/paper_seeds.py
-	$(RUN) benchmarks/suggested_checks.py
-	$(RUN) benchmarks/engines.py --output benchmarks/engines.json --page docs/engines.md
-	$(RUN) benchmarks/interval_coverage.py
-	$(RUN) benchmarks/sample_coverage.py
-	$(RUN) benchmarks/pick_and_place_seeds.py
-	$(RUN) benchmarks/tracking_seeds.py
-	$(RUN) benchmarks/palletising_seeds.py
+	$(RUN) benchmarks/suggested_checks.py --seeds 50 paper
+	$(RUN) benchmarks/engines.py --page docs/engines.md
+	$(RUN) benchmarks/pick_and_place_seeds.py 100
+	$(RUN) benchmarks/tracking_seeds.py 30
+	$(RUN) benchmarks/palletising_seeds.py 5
 	$(RUN) benchmarks/html_report.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the

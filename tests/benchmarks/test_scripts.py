@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -31,7 +32,6 @@ SHORT: dict[str, list[str]] = {
     "html_report": ["--mutants", "20", "--rounds", "1", "--repeats", "1"],
     "instrumentation": [],
     "interception": [],
-    "interval_coverage": ["--campaigns", "10"],
     "judged": ["fluent_api", "--conventional", "0"],
     "kill_and_resume": ["--kills", "1"],
     "own_checks": ["--fresh", "--sample", "2", "-j", "1"],
@@ -41,20 +41,17 @@ SHORT: dict[str, list[str]] = {
     "processes_in_a_row": ["--count", "1", "--examples", "scales"],
     "published_campaign": [MUTABOT, "1"],
     "same_results": [str(SCRIPTS / "witness_records")] * 2,
-    "sample_coverage": ["--campaigns", "10"],
     "since_edits": ["--edits", "1", "--projects", "scales", "--rounds", "1"],
     "stdlib_corpus": ["colorsys"],
     "suggested_checks": ["--seeds", "1", "scales"],
     "suite_length": ["--lengths", "50"],
     "ten_thousand": ["--mutants", "4000"],
-    "threshold_coverage": ["--campaigns", "10"],
     "thresholds": ["published", "--rounds", "1"],
     "tracking_seeds": ["1"],
     "witness": ["witness", "fluent_api"],
 }
 #: scripts that measure speed or count draws: a short form says that they run, and its figures nothing
-LOOSE = {"controller", "html_report", "interval_coverage", "sample_coverage", "suite_length", "ten_thousand",
-         "threshold_coverage"}  # fmt: skip
+LOOSE = {"controller", "html_report", "suite_length", "ten_thousand"}
 #: what a short form cannot bring
 ELSEWHERE = {
     "equal_runs": "needs ROS 2: tests/packages/ros runs it",
@@ -70,6 +67,17 @@ IN_EXAMPLE = {"own_checks": "scales", "paper_scores": "paper"}
 
 def test_every_script_has_a_short_form() -> None:
     assert {path.stem for path in SCRIPTS.glob("*.py")} == SHORT.keys() | ELSEWHERE.keys()
+
+
+def test_what_the_makefile_asks_of_a_script_it_understands() -> None:
+    text = (ROOT / "Makefile").read_text().replace("\\\n", " ")
+    asked: dict[str, set[str]] = {}
+    for name, words in re.findall(r"benchmarks/(\w+)\.py([^\n]*)", text):
+        asked.setdefault(name, set()).update(re.findall(r"--[a-z-]+", words))
+    assert len(asked) > 15
+    for name, options in asked.items():
+        script = (SCRIPTS / f"{name}.py").read_text()
+        assert [option for option in options if f'"{option}"' not in script] == [], name
 
 
 @pytest.fixture

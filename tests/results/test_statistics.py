@@ -1,4 +1,4 @@
-"""Intervals, held against simulated campaigns; `benchmarks/interval_coverage.py` does so at length."""
+"""Intervals, held against simulated campaigns."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def test_what_all_rounds_notice_shows_a_share(rounds: int, share: float) -> None
 @pytest.mark.parametrize("rounds", [3, 5, 10, 20])
 @pytest.mark.parametrize("deviation", [0.0005, 0.1, 0.25])
 def test_the_interval_holds_the_median_as_often_as_it_promises(rounds: int, deviation: float) -> None:
-    """A short form of ``benchmarks/threshold_coverage.py``."""
+    """How often the interval covers the median, in a few simulated campaigns."""
     random, held, campaigns = Random(5), 0, 400
     level = 0.0
     for _ in range(campaigns):
