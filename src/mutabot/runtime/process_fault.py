@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from importlib import import_module
 from random import Random
+from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Mutant
@@ -19,10 +20,14 @@ from mutabot.model.job import InProcess
 from mutabot.operators.command import FatalFault
 from mutabot.runtime.evidence import Evidence, everything
 from mutabot.runtime.observation.probes import opaque
-from mutabot.runtime.origin import Origin
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from mutabot.runtime.interception.trace import Locator
+
+#: modules that stand in for the robot in tests
+_MOCKS = "unittest.mock"
 
 
 class ProcessFault(ABC):
@@ -150,14 +155,24 @@ class PlacedFault:
             self._failure = self._failure or f"{mutant.operator} cannot be {what}: {_words(error)}"
 
     def failure_in(self, error: BaseException, robots: Collection[str], locator: Locator) -> str | None:
-        """How its own code failed, if that is where an exception comes from that a test or process met."""
+        """How its own code failed, if that is where an exception comes from that a test or process met.
+
+        Args:
+            error: the exception.
+            robots: the modules of the operations that are mutated.
+            locator: knows the files of the program and its tests.
+        """
         fault = self._fault
         if fault is None or isinstance(fault, ProcessFatal):
             return None
-        origin, meant = Origin(type(fault).__module__, robots, locator), {*map(id, fault.meant)}
-        own = (one for one in everything(error) if id(one) not in meant and origin.is_own(one))
-        found = next(own, None)
-        return f"{fault.mutant.operator} fails at work: {_words(found)}" if found is not None else None
+        meant = {*map(id, fault.meant)}
+        for one in everything(error):
+            frames = (frame for frame, _ in reversed(list(walk_tb(one.__traceback__))))
+            told = (_is_own(frame, type(fault).__module__, robots, locator) for frame in frames)
+            # the nearest to the raise decides that is the fault's, the robot's, the program's or a test's
+            if id(one) not in meant and next((is_own for is_own in told if is_own is not None), False):
+                return f"{fault.mutant.operator} fails at work: {_words(one)}"
+        return None
 
     def _made(self, mutant: Mutant, how: InProcess) -> ProcessFault:
         """The fault, which is made when the first test begins."""
@@ -167,6 +182,23 @@ class PlacedFault:
             raise TypeError(f"{how.reference} is no mutabot.runtime.process_fault.ProcessFault")
         fault.on_act = lambda: self.on_act(mutant.id)
         return fault
+
+
+def _is_own(frame: FrameType, module: str, robots: Collection[str], locator: Locator) -> bool | None:
+    """Whether a frame is of a fault's code, or of its package; None for those that say nothing."""
+    name = str(frame.f_globals.get("__name__", ""))
+    if name in robots:
+        return False
+    if _is_within(name, module.rpartition(".")[0] or module):
+        return True
+    if name.startswith(_MOCKS) or any(_is_within(name, one.partition(".")[0]) for one in robots):
+        return False
+    file = frame.f_code.co_filename
+    return False if locator.is_of_project(file) or locator.role(file) is not None else None
+
+
+def _is_within(name: str, package: str) -> bool:
+    return name == package or name.startswith(f"{package}.")
 
 
 def _checked(evidence: Any) -> Evidence:

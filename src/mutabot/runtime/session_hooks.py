@@ -19,9 +19,10 @@ from mutabot.model import Mutant, Role
 from mutabot.model.events import SessionEnd
 from mutabot.model.job import Job, read_job
 from mutabot.operators.registry import preload
-from mutabot.runtime import FOLDER, seeds
+from mutabot.runtime import seeds
 from mutabot.runtime.event_file import EventFile, Held
 from mutabot.runtime.evidence import limit_memory
+from mutabot.runtime.interception.frames import is_ours
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.isolation.files import LOG, PrivateFiles
 from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -145,9 +146,7 @@ class SessionHooks:
 
     def _is_of_tests(self, path: str) -> bool:
         """Whether a file is the project's own, and not the program's."""
-        relative = self.locator.relative(path)
-        is_foreign = relative.startswith("..") or "site-packages" in relative
-        return not is_foreign and self.locator.role(path) is not Role.PROGRAM
+        return self.locator.is_of_project(path) and self.locator.role(path) is not Role.PROGRAM
 
     def seed_of(self, name: str) -> int:
         """The seed of a test or shared fixture in this round."""
@@ -211,8 +210,7 @@ class SessionHooks:
 
     def pytest_internalerror(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
         """A hook of the suite has failed, which ends the suite: if the mutant did it, it was noticed."""
-        is_ours = excinfo.traceback[-1].frame.code.raw.co_filename.startswith(FOLDER)
-        if not is_ours and not self.session.test:
+        if not is_ours(excinfo.traceback[-1].frame.raw) and not self.session.test:
             self.import_failed(excinfo.value, "")
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:

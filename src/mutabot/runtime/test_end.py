@@ -166,9 +166,8 @@ def _place(error: BaseException, locator: Locator) -> str | None:
     if _is_mismatch(error) and error.test.filename is not None and error.test.lineno is not None:
         lines.append((error.test.filename, error.test.lineno + error.example.lineno + 1))
     for filename, line in lines:
-        relative = locator.relative(filename)
-        if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
-            return f"{relative}:{line}"
+        if locator.is_of_project(filename):
+            return f"{locator.relative(filename)}:{line}"
     return None
 
 

@@ -24,7 +24,8 @@ from mutabot.model import Role, Span
 from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
 from mutabot.model.path import class_name
 from mutabot.runtime.interception.adapter import is_mock
-from mutabot.runtime.interception.trace import Locator, border
+from mutabot.runtime.interception.frames import border
+from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
 from mutabot.runtime.targets.target import NOWHERE, Handler, Messages, Where
 from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls

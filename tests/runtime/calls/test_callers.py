@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.runtime.interception.trace import caller_of
+from mutabot.runtime.interception.dispatcher import caller_of
 
 
 def caller_at(text: str, line: int, *, is_async: bool = False) -> Callable[..., Any]:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Coroutine, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from types import FrameType, FunctionType, MethodType, TracebackType
+from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
 from typing import TYPE_CHECKING, Any, cast
 
 import wrapt
@@ -27,10 +27,10 @@ from mutabot.model.quantity import Value
 from mutabot.operators.passage import Carried, run
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
-from mutabot.runtime.interception.adapter import Adapter, Invocation, SiteCall, is_mock
-from mutabot.runtime.interception.frames import without_ours
+from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
+from mutabot.runtime.interception.frames import OfModules, border, borders, without_ours
 from mutabot.runtime.interception.live import is_live
-from mutabot.runtime.interception.trace import Locator, Recorder, border, caller_of
+from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where
@@ -316,3 +316,61 @@ def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
         return True
     coroutines = sys.modules.get("asyncio.coroutines")
     return coroutines is not None and bool(coroutines.iscoroutinefunction(wrapped))
+
+
+def _call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
+    return wrapped(*args, **kwargs)
+
+
+async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
+    return await wrapped(*args, **kwargs)
+
+
+#: code of callers by code, instruction and whether they await. The latter code is kept, so that no other can
+#: get its address
+_codes: dict[tuple[int, int, bool], tuple[CodeType, CodeType]] = {}
+#: callers likewise, with the global names that they have
+_callers: OfModules[tuple[int, int, bool], tuple[Caller, dict[str, Any]]] = OfModules()
+
+
+def caller_of(frame: FrameType, is_async: bool) -> Caller:
+    """Return what makes a call as if this frame did, where it stands now.
+
+    Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function
+    was called. Between the program and an operation there are frames of ours; the last of them has the
+    program's file, line, function and global names.
+    """
+    code, names = frame.f_code, frame.f_globals
+    key = (id(code), frame.f_lasti, is_async)
+    known = _callers.known.get(key)
+    if known is None or known[1] is not names:
+        if key not in _codes:
+            _codes[key] = (_made(code, frame.f_lasti, is_async), code)
+        made = FunctionType(_codes[key][0], names, code.co_name, (True,))
+        known = _callers.keep(names, key, (made, names))
+    return known[0]
+
+
+def _made(code: CodeType, instruction: int, is_async: bool) -> CodeType:
+    line = list(code.co_positions())[instruction // 2][0] or code.co_firstlineno
+    own = (_async_call if is_async else _call).__code__
+    made = own.replace(
+        co_name=code.co_name,
+        co_qualname=code.co_qualname,
+        co_filename=code.co_filename,
+        co_firstlineno=line,
+        co_linetable=_all_in_line(len(own.co_code) // 2),
+    )
+    borders[id(made)] = made
+    return made
+
+
+def _all_in_line(units: int) -> bytes:
+    """Return a table of places that gives the first line to all of a code, and no columns.
+
+    An entry covers up to eight code units. The format: CPython, Objects/locations.md (3.11 to 3.13). To
+    compile a tree takes ten times as long, and every fork calls from places where nothing has called before.
+    """
+    no_columns, same_line = 13, 0
+    sizes = (min(8, units - first) for first in range(0, units, 8))
+    return b"".join(bytes([1 << 7 | no_columns << 3 | size - 1, same_line]) for size in sizes)

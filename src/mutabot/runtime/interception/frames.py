@@ -1,4 +1,4 @@
-"""Tracebacks without frames of ours.
+"""Frames that carry operations out, and tracebacks without frames of ours.
 
 An exception keeps the frames that it came through, and these what a call was given: ours would keep it longer
 than the robot's own do.
@@ -6,10 +6,63 @@ than the robot's own do.
 
 from __future__ import annotations
 
-from types import FrameType, TracebackType
+import sys
+import weakref
+from types import CodeType, FrameType, FunctionType, ModuleType, TracebackType
+from typing import Any, Generic, TypeVar, cast
 
 from mutabot.extensions import GROUP
-from mutabot.runtime.interception.trace import is_border
+
+F = TypeVar("F")
+K = TypeVar("K")
+V = TypeVar("V")
+#: code whose frames carry an operation out, by identity: that of equal functions is equal
+borders: dict[int, CodeType] = {}
+
+
+def border(function: F) -> F:
+    """Note that what this function calls is the doing of an operation, not of the program."""
+    code = cast("FunctionType", function).__code__
+    borders[id(code)] = code
+    return function
+
+
+def is_border(code: CodeType) -> bool:
+    """Whether frames of this code carry an operation out."""
+    return id(code) in borders
+
+
+def is_within_border(frame: FrameType | None) -> bool:
+    """Whether an operation has led to a frame."""
+    while frame is not None and id(frame.f_code) not in borders:
+        frame = frame.f_back
+    return frame is not None
+
+
+class OfModules(Generic[K, V]):
+    """What is remembered of the names of modules, as long as the modules are there.
+
+    A test may load a module anew, or run a file for its names alone: nothing of these is kept.
+
+    Attributes:
+        known: what is remembered, by keys.
+    """
+
+    def __init__(self) -> None:
+        self.known: dict[K, V] = {}
+        self._keys: dict[weakref.ref[ModuleType], set[K]] = {}
+
+    def keep(self, names: dict[str, Any], key: K, value: V) -> V:
+        """Remember what was found out about ``names``, if they are those of a module."""
+        module = sys.modules.get(names.get("__name__", ""))
+        if type(module) is ModuleType and vars(module) is names:
+            self.known[key] = value
+            self._keys.setdefault(weakref.ref(module, self._forget), set()).add(key)
+        return value
+
+    def _forget(self, module: weakref.ref[ModuleType]) -> None:
+        for key in self._keys.pop(module, ()):
+            self.known.pop(key, None)
 
 
 def without_ours(traceback: TracebackType | None) -> TracebackType | None:
@@ -23,20 +76,17 @@ def without_ours(traceback: TracebackType | None) -> TracebackType | None:
     while traceback is not None:
         frames.append(traceback)
         traceback = traceback.tb_next
-    callers = (number for number, one in enumerate(frames) if _is_caller(one.tb_frame))
+    borders_here = (number for number, one in enumerate(frames) if is_border(one.tb_frame.f_code))
+    callers = (number for number in borders_here if not is_ours(frames[number].tb_frame))
     first, following = next(callers, -1), None
     for number, one in reversed(list(enumerate(frames))):
-        if number <= first or _is_ours(one.tb_frame):
+        if number <= first or is_ours(one.tb_frame):
             one.tb_frame.clear()
         else:
             one.tb_next, following = following, one
     return following
 
 
-def _is_caller(frame: FrameType) -> bool:
-    """Whether it is the last of ours, which calls in the name of the program."""
-    return is_border(frame.f_code) and not _is_ours(frame)
-
-
-def _is_ours(frame: FrameType) -> bool:
+def is_ours(frame: FrameType) -> bool:
+    """Whether it runs code of mutabot."""
     return str(frame.f_globals.get("__name__", "")).partition(".")[0] == GROUP

@@ -6,13 +6,11 @@ Whose call it is, and exactly where it stands: from the frames of the running pr
 from __future__ import annotations
 
 import os
-import sys
-import weakref
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from types import CodeType, FrameType, FunctionType, ModuleType
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+from types import CodeType, FrameType
+from typing import TYPE_CHECKING, Any
 
 from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.front_end import SourcePosition, front_ends
@@ -22,14 +20,12 @@ from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
 from mutabot.runtime import real_path
-from mutabot.runtime.interception.adapter import Caller, SiteCall, call_context
+from mutabot.runtime.interception.adapter import SiteCall, call_context
+from mutabot.runtime.interception.frames import borders, is_within_border
 
 if TYPE_CHECKING:
     from mutabot.runtime.targets.target import Place
 
-F = TypeVar("F")
-K = TypeVar("K")
-V = TypeVar("V")
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
 #: modules whose frames run the tasks of an event loop
@@ -185,55 +181,6 @@ def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: one.tolist() if hasattr(type(one), "tolist") else one for name, one in found.items()}
 
 
-#: code whose frames carry an operation out, by identity: that of equal functions is equal
-_borders: dict[int, CodeType] = {}
-
-
-def border(function: F) -> F:
-    """Note that what this function calls is the doing of an operation, not of the program."""
-    code = cast("FunctionType", function).__code__
-    _borders[id(code)] = code
-    return function
-
-
-def is_border(code: CodeType) -> bool:
-    """Whether frames of this code carry an operation out."""
-    return id(code) in _borders
-
-
-def _is_within_border(frame: FrameType | None) -> bool:
-    """Whether an operation has led to a frame."""
-    while frame is not None and id(frame.f_code) not in _borders:
-        frame = frame.f_back
-    return frame is not None
-
-
-class OfModules(Generic[K, V]):
-    """What is remembered of the names of modules, as long as the modules are there.
-
-    A test may load a module anew, or run a file for its names alone: nothing of these is kept.
-
-    Attributes:
-        known: what is remembered, by keys.
-    """
-
-    def __init__(self) -> None:
-        self.known: dict[K, V] = {}
-        self._keys: dict[weakref.ref[ModuleType], set[K]] = {}
-
-    def keep(self, names: dict[str, Any], key: K, value: V) -> V:
-        """Remember what was found out about ``names``, if they are those of a module."""
-        module = sys.modules.get(names.get("__name__", ""))
-        if type(module) is ModuleType and vars(module) is names:
-            self.known[key] = value
-            self._keys.setdefault(weakref.ref(module, self._forget), set()).add(key)
-        return value
-
-    def _forget(self, module: weakref.ref[ModuleType]) -> None:
-        for key in self._keys.pop(module, ()):
-            self.known.pop(key, None)
-
-
 class Locator:
     """Finds the nearest frame that lies in the configured program or oracle paths.
 
@@ -267,14 +214,14 @@ class Locator:
         interpreted, around_loop = self._interpreted, False
         while frame is not None:
             code = frame.f_code
-            if id(code) in _borders:
+            if id(code) in borders:
                 return None
             found = self._in_interpreter(frame) if interpreted else None
             role = self.role(code.co_filename) if found is None else None
             if role is not None:
                 found = (self._span(frame), role)
             if found is not None:
-                return found if not around_loop or _is_within_border(frame) else None
+                return found if not around_loop or is_within_border(frame) else None
             around_loop = around_loop or (in_operation and frame.f_globals.get("__name__") in _LOOPS)
             frame = frame.f_back
         return None
@@ -289,6 +236,11 @@ class Locator:
     def relative(self, filename: str) -> str:
         """The path relative to the root, with forward slashes."""
         return os.path.relpath(real_path(filename), self._root).replace(os.sep, "/")
+
+    def is_of_project(self, filename: str) -> bool:
+        """Whether a file is the user's own: it lies under the root and is not installed."""
+        relative = self.relative(filename)
+        return not (relative.startswith("..") or "site-packages" in relative or filename.startswith("<"))
 
     def _find_role(self, filename: str) -> Role | None:
         path = real_path(filename)
@@ -318,61 +270,3 @@ class Locator:
 
     def _span_at(self, filename: str, position: SourcePosition) -> Span:
         return Span(self.relative(filename), *position.extent, position.function)
-
-
-def _call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
-    return wrapped(*args, **kwargs)
-
-
-async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: bool = True) -> Any:
-    return await wrapped(*args, **kwargs)
-
-
-#: code of callers by code, instruction and whether they await. The latter code is kept, so that no other can
-#: get its address
-_codes: dict[tuple[int, int, bool], tuple[CodeType, CodeType]] = {}
-#: callers likewise, with the global names that they have
-_callers: OfModules[tuple[int, int, bool], tuple[Caller, dict[str, Any]]] = OfModules()
-
-
-def caller_of(frame: FrameType, is_async: bool) -> Caller:
-    """Return what makes a call as if this frame did, where it stands now.
-
-    Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function
-    was called. Between the program and an operation there are frames of ours; the last of them has the
-    program's file, line, function and global names.
-    """
-    code, names = frame.f_code, frame.f_globals
-    key = (id(code), frame.f_lasti, is_async)
-    known = _callers.known.get(key)
-    if known is None or known[1] is not names:
-        if key not in _codes:
-            _codes[key] = (_made(code, frame.f_lasti, is_async), code)
-        made = FunctionType(_codes[key][0], names, code.co_name, (True,))
-        known = _callers.keep(names, key, (made, names))
-    return known[0]
-
-
-def _made(code: CodeType, instruction: int, is_async: bool) -> CodeType:
-    line = list(code.co_positions())[instruction // 2][0] or code.co_firstlineno
-    own = (_async_call if is_async else _call).__code__
-    made = own.replace(
-        co_name=code.co_name,
-        co_qualname=code.co_qualname,
-        co_filename=code.co_filename,
-        co_firstlineno=line,
-        co_linetable=_all_in_line(len(own.co_code) // 2),
-    )
-    _borders[id(made)] = made
-    return made
-
-
-def _all_in_line(units: int) -> bytes:
-    """Return a table of places that gives the first line to all of a code, and no columns.
-
-    An entry covers up to eight code units. The format: CPython, Objects/locations.md (3.11 to 3.13). To
-    compile a tree takes ten times as long, and every fork calls from places where nothing has called before.
-    """
-    no_columns, same_line = 13, 0
-    sizes = (min(8, units - first) for first in range(0, units, 8))
-    return b"".join(bytes([1 << 7 | no_columns << 3 | size - 1, same_line]) for size in sizes)

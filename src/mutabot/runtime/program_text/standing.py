@@ -48,7 +48,8 @@ from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
-from mutabot.runtime.interception.trace import Locator, OfModules, is_border
+from mutabot.runtime.interception.frames import OfModules, is_border
+from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Place, Where, named_class
@@ -222,8 +223,9 @@ class Standing:
         function = found.__func__ if isinstance(found, MethodType) else found
         if mock_of(function) is not None:
             return True
-        path = function.__code__.co_filename if isinstance(function, FunctionType) else ""
-        return bool(path) and not {"..", "site-packages"} & set(self.locator.relative(path).split("/"))
+        return isinstance(function, FunctionType) and self.locator.is_of_project(
+            function.__code__.co_filename
+        )
 
     def place(self, site: CallSite, frame: FrameType) -> Place:
         """Where a site stands."""
