@@ -23,7 +23,7 @@ from typing import Any
 from mutabot.errors import JournalError
 from mutabot.model.files import copy_file, read_file
 
-from .files import clear, previous_of
+from .files import BESIDE, clear, previous_of
 
 SCHEMA_VERSION = 9
 
@@ -48,8 +48,6 @@ CREATE TABLE text (digest TEXT PRIMARY KEY, data BLOB NOT NULL);
 """
 #: the rows that hold the last outcome of each mutant and round
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
-#: what a database consists of while somebody has it open, and what may lie beside it
-_SUFFIXES = ("", "-wal", "-shm", "-journal")
 #: the index of the log is the connection's own
 _ALONE = "locking_mode = EXCLUSIVE"
 #: bytes with which a log begins, which are others as soon as it begins anew; copies that are tried
@@ -168,7 +166,7 @@ def write_anew(copy: sqlite3.Connection, path: Path) -> None:
     try:
         with closing(sqlite3.connect(new)) as target:
             copy.backup(target)
-        for suffix in _SUFFIXES[1:]:  # they are of the other file: SQLite would read them into this one
+        for suffix in BESIDE[1:]:  # they are of the other file: SQLite would read them into this one
             clear(path.with_name(path.name + suffix))
         if path.is_dir():
             clear(path)
@@ -272,7 +270,7 @@ def set_aside(path: Path) -> Path | None:
         raise  # it is not the content that is wrong: a full disk, a folder that cannot be written
     except sqlite3.DatabaseError:
         pass
-    for suffix in _SUFFIXES:
+    for suffix in BESIDE:
         old, new = path.with_name(path.name + suffix), kept.with_name(kept.name + suffix)
         clear(new)
         if os.path.lexists(old):

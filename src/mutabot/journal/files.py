@@ -47,8 +47,12 @@ def recordings_path(journal: Path) -> Path:
     return journal.with_name(f"{journal.stem}-evidence.sqlite")
 
 
+#: the ends of the names of a database's file and of what SQLite keeps beside it, and reads
+BESIDE = ("", "-wal", "-shm", "-journal")
+
+
 def clear(path: Path) -> None:
-    """Remove what lies there, whatever it is."""
+    """Remove what lies there, whatever it is; of a link the link alone."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     else:
@@ -140,10 +144,6 @@ def at_work(home: Path) -> Iterator[None]:
         yield
     finally:
         os.close(descriptor)
-
-
-#: what SQLite keeps beside a file, and reads
-BESIDE = ("", "-wal", "-shm", "-journal")
 
 
 def refuse_tracked(journal: Path) -> None:

@@ -7,7 +7,6 @@ room, and reports read one without the others. Of a mutant only what differs fro
 from __future__ import annotations
 
 import os
-import shutil
 import sqlite3
 import stat
 from collections.abc import Iterable
@@ -18,7 +17,7 @@ from typing import Any, Self
 from mutabot.errors import JournalError
 
 from .database import connect, connect_to_read, loaded
-from .files import BESIDE, HOME, recordings_path
+from .files import BESIDE, HOME, clear, recordings_path
 from .journal import guarded
 
 _TABLE = """
@@ -225,11 +224,7 @@ def _what_is_there(path: Path) -> str:
 def _remove(path: Path) -> None:
     """Make room for the file; of a link the link alone."""
     for suffix in BESIDE:
-        name = path.with_name(path.name + suffix)
-        if name.is_dir() and not name.is_symlink():
-            shutil.rmtree(name)
-        else:
-            name.unlink(missing_ok=True)
+        clear(path.with_name(path.name + suffix))
 
 
 def _is_foreign(error: sqlite3.DatabaseError) -> bool:

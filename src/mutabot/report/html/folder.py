@@ -7,7 +7,6 @@ points: what a straight line in time keeps within half a millimetre is left out.
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
@@ -20,7 +19,7 @@ from mutabot.errors import UsageError
 from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
 from mutabot.evidence.story import TrackPath
 from mutabot.frozen import frozen
-from mutabot.journal.files import REPORT_MARK
+from mutabot.journal.files import REPORT_MARK, clear
 from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
@@ -155,7 +154,7 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name in (REPORT_MARK, _PAGE, _ASSETS, _DATA):
-            _remove(folder / name)
+            clear(folder / name)  # of a link the link alone, since it leads out of the folder
             if name == REPORT_MARK:
                 (folder / name).write_text(_MARK_TEXT, encoding="utf-8")
         for path in (folder / _ASSETS, *(folder / _DATA / name for name in ("mutants", "originals"))):
@@ -168,14 +167,6 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
         raise UsageError(f"the report {folder} cannot be written: {error.strerror}") from error
     size = sum(one.stat().st_size for one in folder.rglob("*") if one.is_file())
     return Written(folder / _PAGE, size, without)
-
-
-def _remove(path: Path) -> None:
-    """Make room for a part of the report; of a link the link alone, since it leads out of the folder."""
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
 
 
 def _write_data(folder: Path, contents: Contents, limit: int) -> int:
