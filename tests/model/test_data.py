@@ -5,18 +5,21 @@ from __future__ import annotations
 import datetime
 import math
 from array import array
-from collections import namedtuple
+from collections import deque, namedtuple
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import Enum, IntEnum
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import pytest
 
 from mutabot.model import Kind, Path, Quantity
+from mutabot.model.codec import to_json
 from mutabot.model.data import UNKNOWN, data_of, fields_of, in_place_of, is_of_numpy
+from mutabot.runtime.event_file import plain
 
 ASKED: list[str] = []
 
@@ -105,7 +108,8 @@ def test_what_is_data_already_stays_the_very_object(value: Any) -> None:
     "make",
     [
         Touchy, lambda: [0.1, Touchy()], lambda: Pose(0.1), object, lambda: NUMBERS.view(Quantitative),
-        lambda: Pose,
+        lambda: Pose, lambda: {"a": [Touchy()]}, lambda: deque([Touchy()]),
+        lambda: MappingProxyType({1: Touchy()}),
     ],
 )  # fmt: skip
 def test_what_else_there_is_is_asked_for_nothing(make: Any) -> None:
@@ -113,7 +117,14 @@ def test_what_else_there_is_is_asked_for_nothing(make: Any) -> None:
     ASKED.clear()
     assert data_of(value) is UNKNOWN
     assert not is_of_numpy(value)
+    assert to_json({"value": value}, plain).startswith(b'{"value":')
     assert ASKED == []
+
+
+def test_what_holds_itself_is_no_data() -> None:
+    numbers: list[Any] = [1.0]
+    numbers += [numbers, numbers]
+    assert data_of(numbers) is data_of({"all": numbers}) is UNKNOWN
 
 
 def test_fields_are_read_as_they_are_stored() -> None:

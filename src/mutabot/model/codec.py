@@ -194,9 +194,9 @@ def to_json(value: Any, default: Callable[[Any], Any]) -> bytes:
         kind: Any = type(one)
         if _names(kind) is not None:
             return sparse(one)
-        if isinstance(one, Enum):
+        if issubclass(kind, Enum):
             return one.value
-        return dict(one) if isinstance(one, Mapping) else default(one)
+        return dict(one) if issubclass(kind, Mapping) else default(one)
 
     try:
         text = json.dumps(value, default=known, separators=(",", ":"))

@@ -11,7 +11,7 @@ import operator
 import sys
 from array import array
 from collections import OrderedDict, defaultdict, deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import is_dataclass
 from types import MappingProxyType, MemberDescriptorType
 from typing import Any
@@ -79,17 +79,20 @@ def _data_of(value: Any, depth: int) -> Any:
     for base in (list, tuple):
         if issubclass(kind, base):
             return _items(value, base, depth)
-    return value if kind in (*_SEQUENCES, *_MAPPINGS) else UNKNOWN
+    items = items_of(value)
+    if items is None or depth <= 0:
+        return UNKNOWN
+    parts = (*items, *items.values()) if isinstance(items, dict) else items
+    return UNKNOWN if any(_data_of(one, depth - 1) is UNKNOWN for one in parts) else value
 
 
 def _items(value: Any, base: Any, depth: int) -> Any:
     """The items of a list or tuple; the very object where they are all as they are."""
-    if depth <= 0:
-        return UNKNOWN
-    given = list(base.__iter__(value))
-    found = [_data_of(item, depth - 1) for item in given]
-    if any(item is UNKNOWN for item in found):
-        return UNKNOWN
+    given, found = list(base.__iter__(value)), []
+    for item in given if depth > 0 else (UNKNOWN,):
+        found.append(_data_of(item, depth - 1))
+        if found[-1] is UNKNOWN:
+            return UNKNOWN
     is_same = type(value) is base and all(map(operator.is_, given, found))
     return value if is_same else base(found)
 
@@ -159,8 +162,8 @@ def _in_slot(kind: type[Any], value: Any, name: str) -> Any:
     return None
 
 
-def items_of(value: Any) -> Mapping[Any, Any] | list[Any] | None:
-    """The items of a plain container; those of a set in the order of their texts. None for anything else."""
+def items_of(value: Any) -> dict[Any, Any] | list[Any] | None:
+    """The items of a plain container; None for anything else."""
     kind = type(value)
     if kind in _MAPPINGS:
         return dict(value)

@@ -8,7 +8,7 @@ from array import array
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from mutabot.model.data import UNKNOWN, data_of, is_of_numpy
+from mutabot.model.data import UNKNOWN, data_of, is_of_numpy, items_of
 from mutabot.model.event_file import FOLDER, SESSION, SUFFIX, UNWRITTEN, sealed
 from mutabot.model.events import Event, ForkEnded, Serving, TestEnd, TestStart
 from mutabot.model.files import open_file
@@ -151,6 +151,7 @@ def plain(value: Any) -> Any:
         return data.tolist()
     if type(data) is bytes:
         return data.decode("utf-8", "backslashreplace")
-    if type(data) in (set, frozenset, tuple):
-        return list(data)
+    items = items_of(data)
+    if items is not None:
+        return items
     return f"<{class_name(type(value))}>" if data is UNKNOWN else repr(data)

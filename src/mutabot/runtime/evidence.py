@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import resource
 import weakref
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -100,20 +100,7 @@ def _text(error: BaseException) -> str:
         return type(error).__name__
 
 
-class Culprits:
-    """The exceptions by which the robot refused mutated calls, and all that these held."""
-
-    def __init__(self, noted: Iterable[KnownError]) -> None:
-        self._noted = tuple(noted)
-
-    def __bool__(self) -> bool:
-        return bool(self._noted)
-
-    def __contains__(self, error: object) -> bool:
-        return isinstance(error, BaseException) and any(one.is_of(error) for one in self._noted)
-
-
-def is_due_to(error: BaseException, culprits: Culprits) -> bool:
+def is_due_to(error: BaseException, culprits: Sequence[KnownError]) -> bool:
     """Whether an exception is one of the culprits, or caused by them and by nothing else.
 
     A group is so if all that it holds are, or if it was made of one: with ``raise … from``, or while a
@@ -123,11 +110,11 @@ def is_due_to(error: BaseException, culprits: Culprits) -> bool:
     return _is_due(error, culprits, frozenset())
 
 
-def _is_due(error: BaseException | None, culprits: Culprits, above: frozenset[int]) -> bool:
+def _is_due(error: BaseException | None, culprits: Sequence[KnownError], above: frozenset[int]) -> bool:
     """``above``: what led here; a chain of exceptions may be a circle."""
     if error is None or id(error) in above:
         return False
-    if error in culprits:
+    if any(one.is_of(error) for one in culprits):
         return True
     above |= {id(error)}
     held = _held(error)
@@ -136,7 +123,8 @@ def _is_due(error: BaseException | None, culprits: Culprits, above: frozenset[in
     if all(_is_due(one, culprits, above) for one in held) or _is_due(error.__cause__, culprits, above):
         return True
     cause = _cause(error)
-    return cause in culprits and all(cause is not leaf for leaf in leaves(error))
+    is_known = cause is not None and any(one.is_of(cause) for one in culprits)
+    return is_known and all(cause is not leaf for leaf in leaves(error))
 
 
 def _held(error: BaseException) -> tuple[BaseException, ...]:
@@ -188,9 +176,9 @@ class Evidence:
         return replace(self, away=dict(self.away))
 
     @property
-    def culprits(self) -> Culprits:
+    def culprits(self) -> tuple[KnownError, ...]:
         """The refusals and all that they held."""
-        return Culprits(one for refusal in self.refusals for one in refusal.noted)
+        return tuple(one for refusal in self.refusals for one in refusal.noted)
 
     @property
     def refusal(self) -> str | None:

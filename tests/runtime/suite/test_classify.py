@@ -21,7 +21,7 @@ from hypothesis import strategies
 
 from mutabot.model import By, Vocabulary
 from mutabot.model.events import TestEnd
-from mutabot.runtime.evidence import Culprits, Evidence, KnownError, Refusal, TimeExceeded, is_due_to, leaves
+from mutabot.runtime.evidence import Evidence, KnownError, Refusal, TimeExceeded, is_due_to, leaves
 from mutabot.runtime.interception.active_mutant import with_refusal
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.test_end import classify
@@ -166,7 +166,7 @@ def test_a_group_made_while_a_refusal_is_handled_is_due_to_it() -> None:
 def test_a_circle_of_causes_is_gone_round_once() -> None:
     error, other = ValueError(), ValueError()
     error.__cause__, other.__cause__ = other, error
-    assert not is_due_to(error, Culprits([KnownError(REFUSAL)]))
+    assert not is_due_to(error, [KnownError(REFUSAL)])
     assert ending(group(error, other), REFUSAL).refused is None
 
 

@@ -28,7 +28,7 @@ from mutabot.evidence import tape as tapes
 from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.evidence.tape import FilmWriter, Tape
 from mutabot.model.clocks import monotonic, thread_time
-from mutabot.model.data import UNKNOWN, data_of, fields_of, is_of_numpy, is_told, items_of
+from mutabot.model.data import data_of, fields_of, is_of_numpy, is_told, items_of
 from mutabot.model.path import class_name
 from mutabot.runtime.targets.target import resolve
 
@@ -325,17 +325,17 @@ def _data_of(value: Any, depth: int) -> Any:
         return repr(value)
     if is_of_numpy(value):
         return _array(value, depth)
-    items: Mapping[Any, Any] | list[Any] | None = fields_of(value)
+    items = items_of(value) if (stored := fields_of(value)) is None else stored
     if items is None:
-        found = items_of(value) if (data := data_of(value)) is UNKNOWN else data
-        if isinstance(found, int | float):
-            return found
-        if isinstance(found, str | bytes | bytearray):
-            return _text(found)
-        items = items_of(found)
+        data = data_of(value)
+        if isinstance(data, int | float):
+            return data
+        if isinstance(data, str | bytes | bytearray):
+            return _text(data)
+        items = items_of(data)
     if depth > _DEPTH or items is None or len(items) > MOST:
         return opaque(value)
-    if isinstance(items, Mapping):
+    if isinstance(items, dict):
         return {_key(key): _data_of(item, depth + 1) for key, item in items.items()}
     told = [_data_of(item, depth + 1) for item in items]
     return sorted(told, key=json.dumps) if type(value) in (set, frozenset) else told

@@ -330,14 +330,13 @@ class Member:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
             return
         self.poll()
-        culprits = self.session.evidence.culprits
         first = leaves(error)[0]
         if isinstance(first, TimeExceeded):
             return
         self.file.send(
             events.Raised(
                 f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
-                is_refusal=bool(culprits) and is_due_to(error, culprits),
+                is_refusal=is_due_to(error, self.session.evidence.culprits),
                 failure=failure_in(error, self.session.job.vocabulary.failures) or self._own_failure(error),
                 in_thread=in_thread,
             )
