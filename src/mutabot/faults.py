@@ -4,9 +4,9 @@ A provider has two halves. The one here works in the controller: it says what it
 makes the mutants of it. The other lives in the processes of the tests, and is one of three:
 
 - operators change intercepted **calls** (``mutabot/runtime/interception``): the core's own providers;
-- an alternative is switched on in the **program text** (``Planted.choice``, ``runtime.program_text``);
-- anything else is put in place by **code of the provider's own** before each test (``Planted.in_process``,
-  ``mutabot/runtime/process_fault.py``).
+- an alternative is switched on in the **program text** (``PlannedMutant.choice``, ``runtime.program_text``);
+- anything else is put in place by **code of the provider's own** before each test
+  (``PlannedMutant.in_process``, ``mutabot/runtime/process_fault.py``).
 
 A package names its provider under ``faults`` of its ``Extension`` (``mutabot/extensions.py``). Nothing that a
 campaign without its mutants has no use for is to be imported with it.
@@ -102,8 +102,8 @@ class Original:
 
 
 @frozen
-class Planted:
-    """A mutant with what is known of it in the controller alone.
+class PlannedMutant:
+    """A mutant plus data that only the controller needs.
 
     Attributes:
         mutant: the mutant; it gets its number later.
@@ -141,7 +141,7 @@ class Planned:
             for a whole process, and all tests judge it.
     """
 
-    mutants: list[Planted] = field(default_factory=list)
+    mutants: list[PlannedMutant] = field(default_factory=list)
     texts: tuple[ProgramText, ...] = ()
     reached: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
@@ -192,7 +192,7 @@ class FaultProvider(ABC):
 
 @cache
 def brought_providers() -> tuple[FaultProvider, ...]:
-    """The providers of packages. Raises ExtensionError for one that is of no use."""
+    """The fault providers of packages. Raises ExtensionError if a provider cannot be loaded."""
     return tuple(part.make(FaultProvider) for part in brought("faults").values())  # type: ignore[type-abstract]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
-from mutabot.faults import Planted
+from mutabot.faults import PlannedMutant
 from mutabot.model import Mutant
 from mutabot.model.codec import to_data
 from mutabot.model.mutant import FITTING, Alternative, Choice, ProgramText, Sighting, TextPlace
@@ -16,7 +16,7 @@ from .nodes import shortened
 from .operator import ConventionalOperator
 
 
-def plant(texts: Iterable[ProgramText]) -> list[Planted]:
+def plant(texts: Iterable[ProgramText]) -> list[PlannedMutant]:
     """All mutants of these texts, in the order of the text."""
     return [
         planted_of(place, index)
@@ -26,10 +26,10 @@ def plant(texts: Iterable[ProgramText]) -> list[Planted]:
     ]
 
 
-def planted_of(place: TextPlace, index: int, reason: str | None = None) -> Planted:
+def planted_of(place: TextPlace, index: int, reason: str | None = None) -> PlannedMutant:
     """The mutant that an alternative at a place is, or would be were it not left out for a reason."""
     alternative = place.alternatives[index]
-    return Planted(
+    return PlannedMutant(
         _mutant_of(place, alternative),
         reason,
         does=to_data(alternative),
@@ -70,7 +70,7 @@ def refine(
     seen: Mapping[int, Sighting],
     operators: Iterable[str] | None = None,
     reached: Container[int] | None = None,
-) -> tuple[tuple[ProgramText, ...], list[Planted]]:
+) -> tuple[tuple[ProgramText, ...], list[PlannedMutant]]:
     """The texts with alternatives for variables added, and what does not fit the types left out.
 
     ``operators``: names of those whose alternatives these are; all if left out. ``reached``: numbers of the
@@ -81,7 +81,7 @@ def refine(
     """
     asking = [rule for rule in registry.chosen(operators) if rule.asks_variables]
     refined: list[ProgramText] = []
-    left_out: list[Planted] = []
+    left_out: list[PlannedMutant] = []
     for text in texts:
         places: list[TextPlace] = []
         names = _read_in_functions(text)

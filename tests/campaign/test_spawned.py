@@ -112,7 +112,7 @@ def test_it_is_told_in_processes_of_which_origin_calls_were_made_and_mutants_hit
     for number, (is_forked, hits) in enumerate([(False, 1), (True, 0)]):
         record = ChildRecord(events.Began(number, number, ("python",), 0.0, forked=is_forked))
         for event in (site, events.Called(0, {}, {}, None, 0.0), events.Did("a::one", hits=hits)):
-            record.take(event)
+            record.add(event)
         records.append(record)
     job = Job("/", ("m.py",), (), Vocabulary(), 1, 0, record=True)
     end = fold(TestEnd("a::one", "passed"), records, Known(job, lambda seen: 7))

@@ -49,7 +49,7 @@ PACKAGE = {
     "toy_world.py": """
         from mutabot.model.job import InProcess
         from mutabot.extensions import INTERFACE, Extension
-        from mutabot.faults import FaultProvider, Planned, Planted
+        from mutabot.faults import FaultProvider, Planned, PlannedMutant
         from mutabot.model import Mutant, Site
         from mutabot.model.mutant import Place
         from mutabot.operators.operator import Rule
@@ -79,7 +79,7 @@ PACKAGE = {
                         f"world.{name} is {value:g}", provider="toy",
                     )
                     how = InProcess("toy_world_inside:Parameter", {"name": name, "value": value})
-                    planned.mutants.append(Planted(mutant, does=how.data, in_process=how))
+                    planned.mutants.append(PlannedMutant(mutant, does=how.data, in_process=how))
                     for round, tests in enumerate(original.tests):
                         planned.reached[round, Place.of(mutant)] = tests
                 return planned

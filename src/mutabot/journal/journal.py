@@ -100,7 +100,7 @@ class JournalReader:
 
     @property
     def set_aside(self) -> list[str]:
-        """Rows that hold what cannot be, in words, as far as they were read: nobody believes them."""
+        """Descriptions of the invalid rows read so far; they are ignored."""
         return [*self._unfit]
 
     @staticmethod

@@ -62,7 +62,7 @@ FRONT_END = Python()
 
 
 def unused_calls(source: str) -> frozenset[Extent]:
-    """Where calls stand whose value nobody uses: each is a statement by itself, or is awaited in one.
+    """Calls whose result is discarded: each is a statement by itself, or is awaited in one.
 
     Raises SyntaxError or ValueError for a file that cannot be read.
     """

@@ -76,7 +76,7 @@ class Deadline:
             self.is_counted, self.used = True, TimeUsed.from_now(below([process], children()))
             self.until = self.used.began + self.limit.least
             return False
-        wall, processor = self.used.left(self.limit.wall, self.limit.processor, [process])
+        wall, processor = self.used.remaining(self.limit.wall, self.limit.processor, [process])
         left = wall if processor is None else min(wall, processor)
         if left > 0:
             self.until = monotonic() + max(left, _LEAST)

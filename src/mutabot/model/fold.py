@@ -65,8 +65,8 @@ class ChildRecord:
         """How it came to be."""
         return events.FORKED if self.began.forked else events.STARTED
 
-    def take(self, event: events.Event) -> None:
-        """Sort in one event; what is none of a test is nothing to it."""
+    def add(self, event: events.Event) -> None:
+        """Add an event; ignore events outside a test."""
         match event:
             case events.SiteSeen():
                 self.sites[event.index] = event
@@ -152,7 +152,7 @@ class Children:
             elif event.unable is None:
                 self.records[name] = ChildRecord(event)
         elif name in self.records:
-            self.records[name].take(event)
+            self.records[name].add(event)
 
     def _names(self) -> list[str]:
         try:

@@ -154,7 +154,7 @@ class Span:
 
     @property
     def place(self) -> str:
-        """``file:line``; what stands in no line is told by its file alone."""
+        """``file:line``, or the file alone if there is no line."""
         return f"{self.file}:{self.line}" if self.line else self.file
 
 
@@ -250,7 +250,7 @@ class Mutant:
 
     @property
     def ladder(self) -> str:
-        """What all magnitudes of a fault with sizes share: its id without the magnitude; else empty."""
+        """ID shared by all magnitudes of a graded fault; empty for other faults."""
         if not self.has_sizes:
             return ""
         return replace(self, variant=self.direction).id
@@ -277,7 +277,7 @@ class Place:
 
     @classmethod
     def of(cls, mutant: Mutant) -> Place:
-        """Where a mutant of the first order acts."""
+        """Where a mutant acts."""
         return cls(mutant.site, mutant.operation, mutant.pattern)
 
     @property

@@ -156,12 +156,12 @@ class TimeUsed:
         """Seconds since then."""
         return monotonic() - self.began
 
-    def left(
+    def remaining(
         self, wall: float, processor: float | None, processes: Iterable[int]
     ) -> tuple[float, float | None]:
-        """Seconds until so many are used up, of each kind, if the processes are not held up again.
+        """Seconds left in the budgets of wall clock and processor time if processes are not delayed further.
 
-        0 or less: they are used up. Of the wall clock they are also if ``MOST`` times as many have passed.
+        0 or less: used up. The wall clock is also used up once ``MOST`` times its budget has passed.
         """
         passed = self.age
         ran, queued = self._had(processes)
@@ -169,7 +169,7 @@ class TimeUsed:
         return left, None if processor is None else processor - ran
 
     def hindrance(self, processes: Iterable[int] = ()) -> str | None:
-        """Why nobody can say that the time was enough, in words; None if the machine was quiet enough."""
+        """Why the time limit is inconclusive, or None if the machine was quiet enough."""
         passed = self.age
         _, queued = self._had(processes)
         if min(queued, passed) >= _QUEUED * passed:

@@ -390,7 +390,7 @@ def same(one: Value, other: Value) -> bool:
 
 
 def numbers_of(value: Any, names: Sequence[str]) -> Any:
-    """The numbers of an object that has them as attributes of these names; anything else as it is."""
+    """Read the named attributes of an object as numbers; return other values unchanged."""
     if value is None or hasattr(value, "__len__") or not all(hasattr(value, name) for name in names):
         return value
     return [getattr(value, name) for name in names]

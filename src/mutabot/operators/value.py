@@ -103,7 +103,7 @@ class ValueOperator(ValuesOperator):
 
     @abstractmethod
     def change(self, value: Value, context: Context) -> Value | None:
-        """The new value; None if it is none that can be changed. Raises Unchanged to leave it alone."""
+        """The new value, or None if not applicable. Raises Unchanged to leave the value alone."""
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         """Whether the operator has something to say about this quantity of a call."""

@@ -1,7 +1,7 @@
 """Faults that code of their provider puts in place before each test: no calls, and no text of the program.
 
-A provider names its subclass of ``ProcessFault`` in ``mutabot.faults.Planted.in_process``. One is made in
-each process of the tests when the first of them begins. What it raises is an error of its mutant, no kill.
+A provider names its subclass of ``ProcessFault`` in ``mutabot.faults.PlannedMutant.in_process``. One is made
+in each process of the tests when the first of them begins. What it raises is an error of its mutant, no kill.
 """
 
 from __future__ import annotations
@@ -58,11 +58,11 @@ class ProcessFault(ABC):
         """The test and its fixtures are over: take the fault away."""
 
     def reached(self) -> None:
-        """Say that the running test has made use of what the fault is about, and found it as it always is."""
+        """Report that the running test used the fault's target unchanged."""
         self.evidence.hits += 1
 
     def acts(self, before: Any = None, after: Any = None) -> None:
-        """Say that the running test has made use of it, and that it was another than without the fault."""
+        """Report that the running test used the fault's target, and that the fault changed it."""
         self.evidence.hits += 1
         self.evidence.acted += 1
         if self.evidence.acted == 1:

@@ -183,13 +183,15 @@ def test_who_had_too_little_time_is_not_judged() -> None:
 def test_time_in_the_queue_is_not_used() -> None:
     with loops(10) as (one, *_):
         used = TimeUsed.from_now([one])
-        while (used.left(1e9, 1.0, [one])[1] or 0.0) > 0:  # until it has been on the processor for that long
+        while (
+            used.remaining(1e9, 1.0, [one])[1] or 0.0
+        ) > 0:  # until it has run for that long
             pass
         passed = process_time.monotonic() - used.began
         assert passed > 2.0
         assert used.hindrance([one]) is not None
-        assert used.left(2 * passed, None, [one])[0] > 0
-        assert used.left(passed / process_time.MOST, None, [one])[0] <= 0  # whatever it had
+        assert used.remaining(2 * passed, None, [one])[0] > 0
+        assert used.remaining(passed / process_time.MOST, None, [one])[0] <= 0  # whatever it had
 
 
 def test_time_asleep_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -197,7 +199,7 @@ def test_time_asleep_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
     process = subprocess.Popen(["sleep", "600"])
     try:
         used = TimeUsed.from_now([process.pid])
-        while used.left(0.5, None, [process.pid])[0] > 0:
+        while used.remaining(0.5, None, [process.pid])[0] > 0:
             pass
         assert process_time.monotonic() - used.began >= 0.5
     finally:

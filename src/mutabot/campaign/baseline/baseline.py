@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot.campaign.comparison import Observation, TraceCall, as_steady
 from mutabot.errors import MutabotError
 from mutabot.families import CALLS, CONTROL, MESSAGES
-from mutabot.faults import Original, Planned, Planted, Preparation
+from mutabot.faults import Original, Planned, PlannedMutant, Preparation
 from mutabot.frozen import frozen
 from mutabot.journal.records import Untested
 from mutabot.languages.front_end import SiteName, front_end_of
@@ -49,8 +49,8 @@ class PlantedFaults:
         providers: who told of a place, for all places but those of calls.
     """
 
-    by_id: dict[str, Planted] = field(default_factory=dict)
-    left_out_beforehand: list[Planted] = field(default_factory=list)
+    by_id: dict[str, PlannedMutant] = field(default_factory=dict)
+    left_out_beforehand: list[PlannedMutant] = field(default_factory=list)
     texts: tuple[ProgramText, ...] = ()
     providers: dict[Place, str] = field(default_factory=dict)
     _numbers: dict[Place, int] = field(default_factory=dict)

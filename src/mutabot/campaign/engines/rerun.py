@@ -72,12 +72,12 @@ class Doubts:
 
     def in_doubt(self) -> list[Key]:
         """The kills that may be chance and were not repeated by an earlier campaign."""
-        few = self._few_lone_kills()
+        few = self.isolated_kills()
         kills = (key for key in self.kills() if not self.outcomes[key].repeats)
         return [key for key in kills if self._test(key) in self.unreliable or key in few]
 
     def raced(self) -> list[Key]:
-        """Kills and survivors whose operator leaves to chance what happens, likewise."""
+        """Outcomes of racy operators that no earlier campaign has repeated."""
         return [
             key
             for key, one in self.outcomes.items()
@@ -91,8 +91,8 @@ class Doubts:
         is_deterministic = test not in self.unreliable and self._has_clock(test, key[1])
         return bool(self.outcomes[key].repeats) or is_deterministic
 
-    def _few_lone_kills(self) -> set[Key]:
-        """Kills of a mutant in one round alone, by a test without a clock that has few such kills."""
+    def isolated_kills(self) -> set[Key]:
+        """Kills seen in only one round, by tests without a simulated clock that rarely produce them."""
         times = Counter((key[0], self._test(key)) for key in self.kills())
         lone: dict[str, list[Key]] = {}
         for key in self.kills():
@@ -213,9 +213,9 @@ class _Reruns:
         return equal
 
     def repeat(self, seconds: float, most: float) -> None:
-        """Run what is in doubt once more, and what that puts in doubt; what is left to chance several times.
+        """Re-run doubtful outcomes, and any they cast doubt on; those of racy operators several times.
 
-        This takes so many ``seconds``, and at ``most`` as many if one does not come out again.
+        Takes ``seconds`` seconds, or up to ``most`` seconds if an outcome is not reproduced.
         """
         began = self.campaign.request.clock()
         raced, repeated, changed = set(self.doubts.raced()), set[Key](), set[Key]()

@@ -10,7 +10,7 @@ from mutabot.model import Mutant, Vocabulary
 from mutabot.model.graded import Demand, is_same, wanted_magnitudes
 
 if TYPE_CHECKING:
-    from mutabot.faults import Planted, Project
+    from mutabot.faults import PlannedMutant, Project
 
 #: graded faults, each at one site, of one quantity, in one direction: what the ids of its mutants have in
 #: common, and these by rising magnitude
@@ -26,7 +26,7 @@ def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], Ladders]:
     return alone, {name: sorted(those, key=lambda one: one.magnitude or 0.0) for name, those in found.items()}
 
 
-def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]:
+def with_demanded(planted: Sequence[PlannedMutant], project: Project) -> list[PlannedMutant]:
     """These mutants, with one for each demanded magnitude that its ladder lacks.
 
     Where a family was not asked for, the ladders stay of which a demand speaks, and no others of it.
@@ -51,7 +51,7 @@ def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]
     return found
 
 
-def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
+def ladders_last(planted: Sequence[PlannedMutant]) -> list[PlannedMutant]:
     """These mutants with an order by which those with sizes come last, ladder by ladder."""
     _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
     steps = [mutant.id for mutants in ladders.values() for mutant in mutants]

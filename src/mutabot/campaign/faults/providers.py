@@ -18,22 +18,32 @@ from mutabot.campaign.baseline.baseline import Baseline, Hit, NoAnswerError, Rec
 from mutabot.campaign.faults.demanded import ladders_last, with_demanded
 from mutabot.errors import ExtensionError, MutabotError, OperatorError, unknown_name_text
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_CALLS, ROBOT
-from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project, brought_providers
+from mutabot.faults import (
+    FaultProvider,
+    Original,
+    Planned,
+    PlannedMutant,
+    Preparation,
+    Project,
+    brought_providers,
+)
 from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
 from mutabot.model.mutant import Place, When
 from mutabot.model.quantity import holds_number, is_number, is_reading_of
-from mutabot.operators import Need, Operator, Subject, load_all, operator
+from mutabot.operators import Need, Operator, Subject, load_all
 from mutabot.operators.operator import Rule, with_operation
 from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
-from mutabot.operators.registry import operator as operator_of
-from mutabot.operators.registry import operator as operator_on_calls
+from mutabot.operators.registry import operator as operator_named
 from mutabot.operators.value import NOT_PASSED, NOT_RETURNED, label
 
 
 def at_moments(
-    planted: Sequence[Planted], baseline: Baseline, vocabulary: Vocabulary, wanted: Sequence[Moment | None]
-) -> list[Planted]:
+    planted: Sequence[PlannedMutant],
+    baseline: Baseline,
+    vocabulary: Vocabulary,
+    wanted: Sequence[Moment | None],
+) -> list[PlannedMutant]:
     """Each mutant at each of these moments; None is every call."""
     found = [one for one in planted if one.reason is not None]
     for one in planted:
@@ -56,7 +66,7 @@ def _why_not(mutant: Mutant, vocabulary: Vocabulary, baseline: Baseline) -> str 
     moment = mutant.moment
     if moment is None:
         return None
-    if Need.MEMORY in operator(mutant.operator).needs:
+    if Need.MEMORY in operator_named(mutant.operator).needs:
         return "what it does to a call depends on earlier ones, so that it acts at all of them"
     if moment.asks_time and vocabulary.clock is None:
         return "the vocabulary names no clock"
@@ -110,7 +120,7 @@ class CallFaults(FaultProvider):
         return [rule for rule in load_all() if rule.family != MIDDLEWARE]
 
     def is_asked_for(self, project: Project) -> bool:
-        """It may be for an operator that a package brings, whose family is its own; or for a demand."""
+        """True also for operators of packages, which have families of their own, and for those of demands."""
         return any(_is_asked_for(rule, project) for rule in self.rules())
 
     def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
@@ -128,11 +138,11 @@ class CallFaults(FaultProvider):
 
     def draws(self, operator: str) -> bool:
         """Whether an operator of its own draws numbers anew for each round."""
-        return operator_of(operator).draws
+        return operator_named(operator).draws
 
     def is_raced(self, operator: str) -> bool:
         """Whether equal runs with a fault of this operator may end differently."""
-        return operator_of(operator).is_raced
+        return operator_named(operator).is_raced
 
 
 class MessageFaults(CallFaults):
@@ -152,7 +162,7 @@ def _is_asked_for(rule: Operator, project: Project) -> bool:
 
 def _at_places(
     baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
-) -> Iterator[Planted]:
+) -> Iterator[PlannedMutant]:
     """All mutants of these operators at all places that the tests reach, and those that are left out."""
     taken: set[str] = set()
     operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in baseline.hits})
@@ -184,12 +194,12 @@ def _at_places(
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
                 except NoAnswerError as error:  # of a statement by itself nobody needs one
                     reason = None if baseline.unread.get(place, False) else str(error)
-            yield Planted(mutant, reason, (0, index, ranks[rule.name]))
+            yield PlannedMutant(mutant, reason, (0, index, ranks[rule.name]))
 
 
 def _not_covered(
     baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
-) -> list[Planted]:
+) -> list[PlannedMutant]:
     """The mutants of these operators at calls that no test reaches: all that the vocabulary allows.
 
     What only values could rule out stays: a test that reaches the call must not lower a score.
@@ -206,7 +216,9 @@ def _not_covered(
             unmet = (_why_unmet(need, subject, place, baseline, vocabulary) for need in needs)
             mutant = _distinct(_mutant(rule, subject, place, provider), taken)
             order = (0, index, ranks[rule.name])
-            found.append(Planted(replace(mutant, description=text), next(filter(None, unmet), None), order))
+            found.append(
+                PlannedMutant(replace(mutant, description=text), next(filter(None, unmet), None), order)
+            )
     return found
 
 
@@ -470,7 +482,7 @@ def family_of(mutant: str) -> str:
     """The family of the mutant with this id; that of calls where nobody knows its operator any more."""
     operator = mutant.rpartition(":")[2].partition("=")[0].partition("@")[0]
     if operator in operators_on_calls():
-        return operator_on_calls(operator).family
+        return operator_named(operator).family
     return operators_of_packages().get(operator, ROBOT)
 
 

@@ -456,7 +456,7 @@ def _names(was: Was) -> dict[str, set[str] | None]:
 
 
 def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: SourceTree) -> list[str]:
-    """Which of these units say something else in two trees, in words; what is new last."""
+    """Describe the code units that differ between two trees; new ones come last."""
     found, made = [], []
     for name in sorted(names):
         units = names[name]

@@ -57,7 +57,7 @@ class Earlier:
         return in_short(names) if names else None
 
     def row(self, pair: Pair, mutant: Mutant) -> Kept | None:
-        """An outcome as it is now; None if it names a line that nobody can find, or is none at all."""
+        """An outcome with its lines as they are now; None if its source line no longer exists."""
         row = self._journal.row(*pair)
         if row is None:
             return None

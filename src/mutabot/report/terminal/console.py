@@ -253,7 +253,7 @@ class Bar:
         self._task = self._progress.add_task(text, total=total, line="")
 
     def advance(self, line: str | None = None) -> None:
-        """Move the bar on; ``line`` stands beside it."""
+        """Advance the progress bar and show ``line`` beside it."""
         if self._task is not None:
             self._progress.update(self._task, advance=1, line=plain(line or "").partition("\n")[0])
 

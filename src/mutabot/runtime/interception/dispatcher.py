@@ -52,7 +52,7 @@ def is_untracked() -> bool:
 
 
 class Untracked:
-    """Calls of operations in this context, and in this thread alone, are none of the program's.
+    """Context in which calls are not attributed to the program, in this thread alone.
 
     A simulator enters it at every step, so it is no generator.
 

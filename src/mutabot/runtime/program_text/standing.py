@@ -113,7 +113,7 @@ class StandIns:
 
 
 def mock_of(found: Any) -> Any:
-    """Return the mock that a callable is, or stands before; None if it is none."""
+    """The mock that this callable is or wraps; None if there is none."""
     made = vars(found).get("mock") if type(found) is FunctionType else found
     return made if is_mock(made) else None
 
@@ -181,7 +181,7 @@ class Standing:
         return partial(self.call, one, where, found, receiver)
 
     def _guards(self, site: CallSite, frame: FrameType) -> Guards:
-        """What must be as it is for the same to be left alone: all that names an operation, or its class."""
+        """Conditions for skipping this call: the names of operations and their classes are unchanged."""
         here = frame.f_globals
         named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
         for one in self.by_name[site.name]:
