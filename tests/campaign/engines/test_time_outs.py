@@ -183,9 +183,7 @@ def test_who_had_too_little_time_is_not_judged() -> None:
 def test_time_in_the_queue_is_not_used() -> None:
     with loops(10) as (one, *_):
         used = TimeUsed.from_now([one])
-        while (
-            used.remaining(1e9, 1.0, [one])[1] or 0.0
-        ) > 0:  # until it has run for that long
+        while (used.remaining(1e9, 1.0, [one])[1] or 0.0) > 0:  # until it has run for that long
             pass
         passed = process_time.monotonic() - used.began
         assert passed > 2.0
