@@ -40,7 +40,8 @@ from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
-from mutabot.campaign.reuse.snapshot import Snapshot, State
+from mutabot.campaign.reuse.original import OriginalRuns
+from mutabot.campaign.reuse.snapshot import State
 from mutabot.cli.request import request_of
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.journal.journal import Journal
@@ -221,14 +222,14 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
         root, engine=given.engine, rounds=1, family=["robot"], sample=given.sample, evidence=True,
         configured_selection=False,
     )  # fmt: skip
-    before = Snapshot.take(root)
     with (
         open_executor(request, Silent()) as opened,
         Journal.prepare(request.journal_path, meta={"rounds": 1}) as journal,
         recorded(request, Silent()) as evidence,
     ):
         recorder = Recorder(opened)
-        campaign, results = begin(request, recorder, Silent(), evidence)
+        with OriginalRuns(request, None, Silent()) as original:
+            campaign, results = begin(request, recorder, Silent(), evidence, original=original)
         plan = selected(campaign, make_plan(campaign.baseline, request.project))
         for result in results:
             number, repetition = result.task.key
@@ -236,8 +237,8 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
         if evidence is not None:
             runs = [(*one.task.key, one.ends) for one in results]
             evidence.begin(runs, plan.mutants)
-        state = State.now(request, before, Snapshot.take(root, before), None)
-        dependencies = Dependencies(request, campaign.baseline, state)
+        state = State.now(request, original.before, original.after, None)
+        dependencies = Dependencies(request, campaign.baseline, state, original.installed)
         recorder.told.clear()
         began = time.monotonic()
         run_trials(campaign, [(one, 0) for one in plan.mutants], OutcomeWriter(journal))

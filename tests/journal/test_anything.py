@@ -18,7 +18,7 @@ from mutabot.cli.app import main
 from mutabot.errors import ExitCode
 from mutabot.journal.database import columns, decode
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import REACHING, BaselineTest, ControlEnd
+from mutabot.journal.records import REACHING, BaselineTest, ControlEnd, KeptBaseline, OriginalRun
 from mutabot.model.events import TestEnd
 from mutabot.report.format import Material, format_of, names
 from mutabot.report.terminal.campaign import print_results
@@ -49,6 +49,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
         journal.add_control(ControlEnd("tests/test_mission.py", "identity", True, "as it must"))
         journal.add_parts({"digest": {"mission.py": "text"}})
         journal.add_texts({"text": b"import robot"})
+        journal.set_original(KeptBaseline("digest", 1.0, ("a.txt",), (OriginalRun("task", 0, 0.5, b"told"),)))
         for outcome in samples.OUTCOMES:
             journal.add_outcome(outcome, key="a digest c digest")
         journal.finish("complete")
@@ -129,6 +130,7 @@ def read_all(path: Path) -> None:
         assert (found.state == "complete") <= (not found.set_aside)
         for row in journal.found():
             journal.row(*row)
+        journal.original()
         for name in ("digest", "text"):
             journal.parts(name)
             journal.text(name)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mutabot.campaign import simulation
@@ -16,15 +17,17 @@ from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan import Plan, draw, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
+from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import OpenedFiles
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of
-from mutabot.errors import NothingToDoError, in_short
+from mutabot.errors import JournalError, NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.extensions import brought
 from mutabot.families import CALLS, MESSAGES
 from mutabot.journal.files import at_work, refuse_tracked
+from mutabot.journal.journal import Journal, kept_original
 from mutabot.languages.front_end import program_files
 from mutabot.model.codec import to_data
 from mutabot.model.events import Remark
@@ -73,11 +76,13 @@ def begin(
     progress: Progress,
     evidence: CampaignEvidence | None = None,
     *,
+    original: OriginalRuns | None = None,
     stack: ExitStack | None = None,
 ) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
 
-    ``stack``: until when a simulation of the robot's middleware may run tests; None for no simulation.
+    ``original``: the runs of the original that are known; None for none. ``stack``: until when a simulation
+    of the robot's middleware may run tests; None for no simulation.
 
     Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary,
     and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
@@ -88,9 +93,8 @@ def begin(
 
     def take(request: Request, executor: Executor, least: int = 0) -> tuple[Campaign, list[Result]]:
         repetitions = max(request.repetitions, least)
-        baseline, results = take_baseline(
-            request, executor, progress, prepared=prepared, repetitions=repetitions
-        )
+        runs = original.over(executor, request) if original is not None else executor
+        baseline, results = take_baseline(request, runs, progress, prepared=prepared, repetitions=repetitions)
         refuse_unfit(baseline, request.vocabulary)
         return Campaign(request, baseline, executor, progress, evidence), results
 
@@ -172,8 +176,11 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
 
     Returns the mutants, what is left out, and what no test reaches.
     """
+    path = request.journal_path
     with at_it(request, progress) as opened, ExitStack() as stack:
-        campaign, _ = begin(request, opened, progress, stack=stack)
+        with OriginalRuns(request, kept_original(path), progress) as original:
+            campaign, _ = begin(request, opened, progress, original=original, stack=stack)
+        _leave(original, path)
     plan = selected(campaign, make_plan(campaign.baseline, request.project))
     part = part_of(plan, request.shard, campaign.baseline)
     return part.mutants, part.left_out, campaign.baseline.untested
@@ -185,16 +192,23 @@ def check(request: Request, progress: Progress) -> CheckReport:
     previews = dict(_previews(request.configuration))
     with at_it(request, progress) as opened, ExitStack() as stack:
         folders = {folder for one in previews.values() for folder in one.folders_left_out}
-        with OpenedFiles(request.root, folders) as watch:
-            campaign, _ = begin(request, opened, progress, stack=stack)
+        with OpenedFiles(request.root, folders) as watch, OriginalRuns(request, None, progress) as original:
+            campaign, _ = begin(request, opened, progress, original=original, stack=stack)
         plan = make_plan(campaign.baseline, request.project)
         mutants = selected(campaign, plan).mutants
         controls, unhandled = try_controls(campaign, mutants)
+    _leave(original, request.journal_path)
     report = _report(campaign, plan, mutants, controls, unhandled)
     for name, preview in previews.items():
         lines, data = preview.check(watch.opened)
         report = CheckReport([*report.lines, *lines], {name: data, **report.data})
     return report
+
+
+def _leave(original: OriginalRuns, journal: Path) -> None:
+    """Leave the runs of the original to campaigns that come, unless one is under way."""
+    with suppress(JournalError):
+        original.keep(lambda kept: Journal.keep_original(journal, kept))
 
 
 def _previews(configuration: Configuration) -> Iterator[tuple[str, Preview]]:

@@ -29,10 +29,11 @@ from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.faults.providers import family_of, prepare
 from mutabot.campaign.plan import Plan, carry, drawing, make_plan, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
-from mutabot.campaign.reuse.snapshot import OpenedFiles, Snapshot, State
+from mutabot.campaign.reuse.original import OriginalRuns
+from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
-from mutabot.errors import JournalError, SelectionError, in_short
+from mutabot.errors import ControlError, JournalError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.journal import records
 from mutabot.journal.journal import Journal, JournalReader
@@ -99,11 +100,10 @@ def _run(
     """Returns how it ended: a budget may end before all was run."""
     started = request.clock()
     revision = Revision.find(request.root, request.since) if request.since is not None else None
-    before = Snapshot.take(request.root)
-    with OpenedFiles(request.root, before.folders) as watch:
-        campaign, results = begin(request, opened, progress, evidence, stack=stack)
-    request = campaign.request
-    _note_lacking(request, watch, progress)
+    with OriginalRuns(request, journal.original(), progress) as original:
+        campaign, results = begin(request, opened, progress, evidence, original=original, stack=stack)
+    request, before, after = campaign.request, original.before, original.after
+    _note_lacking(request, original, progress)
     baseline, decided = campaign.baseline, earlier_decision(journal)
     whole = make_plan(baseline, request.project)
     plan = selected(campaign, whole)
@@ -120,14 +120,14 @@ def _run(
         progress.note(f"excluded in round {round + 1}: {test} ({reason})")
     refuse_flaky(request, baseline)
     campaign = decide(campaign, plan.mutants, journal, decided)
-    after = Snapshot.take(request.root, before)
+    original.keep(journal.set_original)
     edited = after.edited_programs(before)
     dependencies, found = None, Reused()
     if edited:
         progress.note(f"{in_short(edited)} changed during the baseline: no outcome is reused, now or later")
     else:
-        state = State.now(request, before, after, watch.opened)
-        dependencies = Dependencies(request, baseline, state)
+        state = State.now(request, before, after, original.opened)
+        dependencies = Dependencies(request, baseline, state, original.installed)
         journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
         write_shard(journal, request.shard, part, dependencies)
         note_outdated(journal, request, dependencies)
@@ -137,9 +137,10 @@ def _run(
             part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
     writer = OutcomeWriter(journal, dependencies, plan.mutants)
     try:
-        is_whole = run_planned(campaign, part.mutants, writer, found, started)
-        if is_whole:
-            rerun(campaign.whole, part.mutants, writer, request.clock() - started)
+        with _refutable(campaign, journal):
+            is_whole = run_planned(campaign, part.mutants, writer, found, started)
+            if is_whole:
+                rerun(campaign.whole, part.mutants, writer, request.clock() - started)
     finally:
         if dependencies is not None:
             _forget_if_edited(campaign, journal, dependencies, after)
@@ -148,10 +149,29 @@ def _run(
     return _end(journal, part, request.rounds) if is_whole else OUT_OF_TIME
 
 
-def _note_lacking(request: Request, watch: OpenedFiles, progress: Progress) -> None:
+@contextmanager
+def _refutable(campaign: Campaign, journal: Journal) -> Iterator[None]:
+    """Keep the baseline for no later campaign if the original ends otherwise in a run that comes after it."""
+    baseline = campaign.baseline
+    unstable, is_refuted = len(baseline.unstable), False
+    try:
+        yield
+    except ControlError:
+        is_refuted = True
+        raise
+    finally:
+        if is_refuted or len(baseline.unstable) > unstable:
+            with suppress(JournalError):
+                journal.forget_original()
+            campaign.progress.note(
+                "the original ended otherwise than in the baseline: the next run takes a new one"
+            )
+
+
+def _note_lacking(request: Request, original: OriginalRuns, progress: Progress) -> None:
     """Name what tests need and will not have where they run, before anything goes there."""
     preview = request.executor.preview(request.configuration) if request.executor is not None else None
-    lacking = preview.lacking(watch.opened) if preview is not None else None
+    lacking = preview.lacking(original.opened) if preview is not None else None
     if lacking is not None:
         progress.note(lacking)
 

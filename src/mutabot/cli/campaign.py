@@ -37,7 +37,7 @@ def operators(family: options.Families = None, json: options.Json = False) -> No
 
 def check(context: typer.Context, json: options.Json = False, **given: Unpack[options.Setting]) -> None:
     """Try the set-up without running mutants."""
-    request = request_of(context.obj, **given)
+    request = request_of(context.obj, evidence=True, **given)  # as `run`, which reuses the baseline
     with progress_shown() as progress:
         report = beginning.check(request, progress)
     print_json(report.data) if json else echo("\n".join(report.lines))
@@ -50,7 +50,7 @@ def list_(
     **given: Unpack[options.Planning],
 ) -> None:
     """List the mutants that would run."""
-    request = request_of(context.obj, **given)
+    request = request_of(context.obj, evidence=True, **given)  # as `run`, which reuses the baseline
     with progress_shown() as progress:
         planned = beginning.plan_only(request, progress)
     if json:

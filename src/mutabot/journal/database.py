@@ -25,7 +25,7 @@ from mutabot.model.files import copy_file, read_file
 
 from .files import BESIDE, clear, previous_of
 
-SCHEMA_VERSION = 9
+SCHEMA_VERSION = 10
 
 TABLES = f"""
 PRAGMA user_version = {SCHEMA_VERSION};
@@ -45,6 +45,7 @@ CREATE TABLE kept (
 CREATE TABLE parts (digest TEXT PRIMARY KEY, data TEXT NOT NULL);
 CREATE TABLE known (id TEXT PRIMARY KEY, data TEXT NOT NULL, outdated INTEGER NOT NULL);
 CREATE TABLE text (digest TEXT PRIMARY KEY, data BLOB NOT NULL);
+CREATE TABLE original (task TEXT NOT NULL, data TEXT NOT NULL, events BLOB NOT NULL);
 """
 #: the rows that hold the last outcome of each mutant and round
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
@@ -57,7 +58,7 @@ _MOST, _SHOWN, _LONGEST, _MOST_ROUNDS = 100, 5, 150, 1_000_000
 #: what people call rows of a table
 _WORDS = {
     "meta": "fact", "test": "test of the baseline", "left_out": "mutant that was left out",
-    "kept": "earlier outcome", "known": "earlier mutant",
+    "kept": "earlier outcome", "known": "earlier mutant", "original": "run of the original",
 }  # fmt: skip
 _THINGS = "SELECT type, name, sql FROM main.sqlite_master LIMIT ?"
 

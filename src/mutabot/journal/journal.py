@@ -21,6 +21,7 @@ import os
 import sqlite3
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
@@ -31,13 +32,15 @@ from mutabot.model.codec import from_data, printable, storable, to_data
 from . import database, records
 from .database import LAST, columns
 from .files import WriterLock, previous_of, refuse_tracked
-from .records import UNFIT, BaselineTest, ControlEnd, Kept
+from .records import UNFIT, BaselineTest, ControlEnd, Kept, KeptBaseline, OriginalRun
 
 T = TypeVar("T")
 #: a key of meta that is the journal's own: why the campaign ended
 _FINISHED_KEY = "journal:finished"
 #: of a campaign that has not begun yet: why it ended, null as long as it has not
 _ATTEMPT_KEY = "journal:attempt"
+#: of a journal in which there is a baseline, and no campaign yet
+_NONE_YET_KEY = "journal:none yet"
 #: the tables of the baseline and the plan
 _PLAN = ("test", "mutant", "left_out", "source")
 #: from one campaign to the next
@@ -104,8 +107,11 @@ class JournalReader:
         return [*self._unfit]
 
     @staticmethod
-    def open(path: Path) -> JournalReader:
-        """Open an existing journal, as it is now. It may be written meanwhile."""
+    def open(path: Path, *, of_campaign: bool = True) -> JournalReader:
+        """Open an existing journal, as it is now. It may be written meanwhile.
+
+        ``of_campaign``: whether there must be more in it than a baseline.
+        """
         if not path.is_file():
             raise database.no_journal(path)
         refuse_tracked(path)
@@ -114,8 +120,11 @@ class JournalReader:
                 copy = opened.enter_context(closing(database.loaded(file)))
             database.check_schema(path, copy)
             copy.execute("PRAGMA query_only = ON")
+            journal = JournalReader(path, copy)
+            if of_campaign and journal._is_of_none:
+                raise database.no_journal(path)
             opened.pop_all()
-        return JournalReader(path, copy)
+        return journal
 
     def __enter__(self) -> Self:
         return self
@@ -181,6 +190,19 @@ class JournalReader:
     def source(self, file: str) -> str | None:
         """The text of a mutated file at the time of the campaign, or None if it was not written down."""
         return self._one("source", file, records.text_in)
+
+    def original(self) -> KeptBaseline | None:
+        """The runs of the original that are kept; None if there are none."""
+        head, runs = None, []
+        for task, data, events in self._rows("SELECT task, data, events FROM original ORDER BY rowid"):
+            with self._checked("original", task):
+                row = {"task": task, "data": data}
+                if task:
+                    run = records.held(OriginalRun, row)
+                    runs.append(replace(run, events=bytes(memoryview(events))))
+                else:
+                    head = records.held(KeptBaseline, {"data": data})
+        return replace(head, runs=tuple(runs)) if head is not None else None
 
     # Outcomes
 
@@ -253,6 +275,11 @@ class JournalReader:
 
     # Rows
 
+    @property
+    def _is_of_none(self) -> bool:
+        """Whether no campaign has begun in it yet."""
+        return bool(self._rows("SELECT 1 FROM meta WHERE key = ?", _NONE_YET_KEY))
+
     def _rows(self, statement: str, *values: Any) -> list[Any]:
         """What a question is answered with."""
         with guarded(self.path):
@@ -305,10 +332,11 @@ class Journal(JournalReader):
         self._done: list[tuple[str, tuple[Any, ...]]] | None = None  # in a transaction
         # whether there was nothing in the file: then the first transaction brings the tables into it
         self._is_new = not self._rows("SELECT count(*) FROM sqlite_master")[0][0]
-        self._waits = not self._is_new  # for its campaign to begin: until then it is that of the one before
         self._stamps = database.stamps(path)  # what it looks like when nobody else has written
         if self._is_new:
             copy.executescript(database.TABLES)
+        # for its campaign to begin: until then it is that of the one before
+        self._waits = not self._is_new and not self._is_of_none
 
     @classmethod
     def create(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
@@ -348,6 +376,23 @@ class Journal(JournalReader):
             opened.pop_all()
         return journal
 
+    @classmethod
+    def keep_original(cls, path: Path, kept: KeptBaseline) -> None:
+        """Keep runs of the original for campaigns to come, and change nothing else that is there."""
+        refuse_tracked(path)
+        with guarded(path), ExitStack() as opened:
+            lock = WriterLock.take(path)
+            opened.callback(lock.release)
+            file = opened.enter_context(closing(database.connect(path)))
+            copy = opened.enter_context(closing(database.loaded(file)))
+            journal = cls(path, copy, file, lock)
+            opened.callback(journal.close)
+            if journal._is_new:
+                journal.set_meta(_NONE_YET_KEY, True)
+            else:
+                database.check_schema(path, copy)
+            journal.set_original(kept)
+
     def close(self) -> None:
         """Close the file, and give the lock back."""
         super().close()
@@ -369,9 +414,8 @@ class Journal(JournalReader):
 
     def _begin(self, meta: Mapping[str, Any]) -> None:
         with self._transaction():
-            if self._waits:
-                for statement in _ADOPT.split(";"):
-                    self._write(statement)
+            for statement in _ADOPT.split(";"):
+                self._write(statement)
             for key, value in meta.items():
                 self.set_meta(key, value)
 
@@ -403,6 +447,19 @@ class Journal(JournalReader):
     def add_control(self, control: ControlEnd) -> None:
         """Add the end of one control mutant."""
         self._put("control", control.control, _dump(control))
+
+    def set_original(self, kept: KeptBaseline) -> None:
+        """Write down runs of the original in the place of those that are there, whole or not at all."""
+        with self._transaction():
+            self._write("DELETE FROM original")
+            self._put("original", "", _dump(replace(kept, runs=())), b"")
+            for run in kept.runs:
+                facts = {"task": run.task, "exit_code": run.exit_code, "wall": run.wall}
+                self._put("original", run.task, _dump(facts), run.events)
+
+    def forget_original(self) -> None:
+        """Keep no runs of the original."""
+        self._write("DELETE FROM original")
 
     def set_plan(
         self,
@@ -608,6 +665,13 @@ class Journal(JournalReader):
         database.write_anew(self._copy, self.path)
         self._file, self._is_new = database.connect(self.path), False
         self._stamps = database.stamps(self.path)
+
+
+def kept_original(path: Path) -> KeptBaseline | None:
+    """The runs of the original that a journal keeps; None if there is none, or it cannot be used."""
+    with suppress(JournalError), JournalReader.open(path, of_campaign=False) as journal:
+        return journal.original()
+    return None
 
 
 def _stored(values: tuple[Any, ...]) -> tuple[Any, ...]:

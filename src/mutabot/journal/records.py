@@ -154,6 +154,39 @@ class BaselineTest:
 
 
 @frozen
+class OriginalRun:
+    """A run of the suite on the original.
+
+    Attributes:
+        task: what was run, as a digest.
+        exit_code, wall: as in ``Result``.
+        events: what its process told: the lines of a file of events, compressed.
+    """
+
+    task: str
+    exit_code: int
+    wall: float
+    events: bytes = b""
+
+
+@frozen
+class KeptBaseline:
+    """The runs of the original that a campaign was begun with.
+
+    Attributes:
+        depends: what they depend on, as a digest.
+        taken: when they were made, in seconds since 1970; the first of them, if not all at once.
+        opened: the files that somebody opened meanwhile; None if that is not known.
+        runs: in the order in which they were made.
+    """
+
+    depends: str
+    taken: float
+    opened: tuple[str, ...] | None = None
+    runs: tuple[OriginalRun, ...] = ()
+
+
+@frozen
 class Kept:
     """An outcome of an earlier campaign.
 
@@ -541,7 +574,7 @@ def text_in(value: Any) -> str:
 
 
 #: attributes that are repeated in columns of their own
-_REPEATED = ("id", "mutant", "round", "verdict")
+_REPEATED = ("id", "mutant", "round", "verdict", "task")
 
 
 def held(kind: type[T], row: Mapping[str, Any]) -> T:
@@ -554,6 +587,10 @@ def held(kind: type[T], row: Mapping[str, Any]) -> T:
             span = site.span
             _check_numbers(found.number, span.line, span.end_line, span.column, span.end_column)
             _check_numbers(found.magnitude, least=-math.inf)
+        case KeptBaseline():
+            _check_numbers(found.taken, _LATEST - found.taken)
+        case OriginalRun():
+            _check_numbers(found.wall)
         case BaselineTest():
             round_in(found.round), round_in(found.repetition)
         case Outcome():

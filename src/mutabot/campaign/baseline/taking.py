@@ -10,21 +10,21 @@ import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.comparison import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.mistakes import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.execution.task import ABNORMAL, Executor, Result, Task, death, said_in
+from mutabot.execution.task import ABNORMAL, Result, Task, death, said_in
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
 from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.deadline import Limit
-from mutabot.model.events import Remark, TestEnd
+from mutabot.model.events import Event, Remark, TestEnd
 from mutabot.model.outcome import first_line
 from mutabot.model.source_units import ExecutedByTests
 from mutabot.operators import load_all
@@ -94,6 +94,13 @@ _NOT_IN_COPIES = (
 _FAILED = 1
 
 
+class Runs(Protocol):
+    """Runs the suite on the original: an executor, or who has kept what one told."""
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        """See ``Executor``."""
+
+
 @dataclass(slots=True)
 class _Suite:
     """The suite on the original, run as often as need be.
@@ -107,7 +114,7 @@ class _Suite:
     """
 
     request: Request
-    executor: Executor
+    executor: Runs
     progress: Progress
     results: dict[tuple[int, int], Result] = field(default_factory=dict)
     remarks: list[Remark] = field(default_factory=list)
@@ -145,7 +152,7 @@ class _Suite:
 
 def take_baseline(
     request: Request,
-    executor: Executor,
+    executor: Runs,
     progress: Progress,
     *,
     prepared: Mapping[str, Preparation] | None = None,

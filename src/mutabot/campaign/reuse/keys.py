@@ -135,11 +135,13 @@ class Dependencies:
     Args:
         request, baseline: the campaign.
         state: the project's files.
+        installed: what is installed, see ``installed``.
         read: what a file of the configuration holds.
         absent: tests of the baseline that were not there yet, at a revision.
 
     Attributes:
         request: the campaign.
+        installed: as given.
         files: the files that count, with their digests.
         notes: the others.
         parts: what the digests in keys stand for; grows as keys are made.
@@ -153,10 +155,12 @@ class Dependencies:
         request: Request,
         baseline: Baseline,
         state: State,
+        installed: Parts,
         read: Callable[[Path], bytes | None] = read,
         absent: Collection[str] = (),
     ) -> None:
         self.request, self._baseline, self.absent = request, baseline, absent
+        self.installed = installed
         self.files, self.notes, self.texts = state.files, state.notes, state.texts
         self.parts: dict[str, Parts] = {}
         self._told = 0
@@ -169,15 +173,7 @@ class Dependencies:
         self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self.texts},
             **dict(self._around()),
-            **_pytest_parts(request, read),
-            **_settings(request),
-            **{f"role of {name}": role for name in self.files if (role := role_of(name, request))},
-            **_vocabulary_parts(request.vocabulary),
-            **versions(),
-            **{
-                f"code of {name}": _HASH + _digest(files)
-                for name, files in code_of_packages(request.root).items()
-            },
+            **_around_files(request, self.files, installed, read),
         }
         self._common = self._stored(self.common)
         self._operations = {
@@ -224,11 +220,7 @@ class Dependencies:
     @property
     def everything(self) -> Parts:
         """All that any outcome depends on, but for what a mutant does."""
-        return {
-            **self.common,
-            **self.files,
-            **{k: v for one in self._operations.values() for k, v in one.items()},
-        }
+        return everything_of(self.request, self.files, self.installed)
 
     def key_of(self, outcome: Outcome, mutant: Mutant, executed: str) -> str:
         """The key of an outcome that is found now; ``executed`` is what ``stored`` made of its units."""
@@ -488,6 +480,32 @@ def changes(old: Parts, new: Parts) -> list[str]:
     return [f"{name} {what}" for _, name, what in sorted(found)]
 
 
+def everything_of(request: Request, files: Parts, installed: Parts) -> Parts:
+    """All that runs of the tests depend on, whatever mutant they are.
+
+    Args:
+        files: the files that count, with their digests.
+        installed: what is installed.
+    """
+    vocabulary = request.vocabulary
+    entries = (_operation_parts(vocabulary, one.target) for one in vocabulary.operations)
+    operations = {name: digest for one in entries for name, digest in one.items()}
+    return {**_around_files(request, files, installed, read), **operations, **files}
+
+
+def _around_files(
+    request: Request, files: Parts, installed: Parts, read: Callable[[Path], bytes | None]
+) -> dict[str, str]:
+    """What all outcomes depend on beside what is in the project's files."""
+    return {
+        **_pytest_parts(request, read),
+        **_settings(request),
+        **{f"role of {name}": role for name in files if (role := role_of(name, request))},
+        **_vocabulary_parts(request.vocabulary),
+        **installed,
+    }
+
+
 def _settings(request: Request) -> dict[str, str]:
     configuration = request.configuration
     return {
@@ -561,6 +579,12 @@ def _meaning(value: Any) -> Any:
     if isinstance(data, dict):
         return {key: _meaning(item) for key, item in data.items() if key != "source"}
     return [_meaning(item) for item in data] if isinstance(data, list) else data
+
+
+def installed(root: Path) -> dict[str, str]:
+    """Versions of all that is installed, and what packages hold of which the version does not tell it."""
+    code = code_of_packages(root).items()
+    return {**versions(), **{f"code of {name}": _HASH + _digest(files) for name, files in code}}
 
 
 def versions() -> dict[str, str]:

@@ -332,7 +332,7 @@ def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependen
     tree = SourceTree({name: files[name] for name in texts}, lambda name, digest: texts[name])
     absent = {test for _, test in campaign.baseline.ends if not now.is_of(test, tree)}
     state = State(files, digests_then(now.notes), texts)
-    return Dependencies(campaign.request, campaign.baseline, state, revision.read, absent)
+    return Dependencies(campaign.request, campaign.baseline, state, now.installed, revision.read, absent)
 
 
 def _other_configuration(revision: Revision, request: Request) -> str | None:

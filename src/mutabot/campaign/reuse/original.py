@@ -1,0 +1,219 @@
+"""Runs of the original that an earlier campaign made: those that still hold are not made again.
+
+A run is kept as the events that its process told, so a baseline is taken from it as from a process. It
+depends on its job and on all that any outcome depends on. As every mutant is compared with it, it also
+depends on what outcomes leave to the user: environment variables, and the machine, by whose speed the limits
+of time are set.
+"""
+
+from __future__ import annotations
+
+import platform
+import time
+import zlib
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from mutabot.execution.processes import usual_environment
+from mutabot.execution.task import Executor, Result, Task
+from mutabot.journal.records import KeptBaseline, OriginalRun
+from mutabot.model.codec import to_data
+from mutabot.model.event_file import MOST_BYTES, sealed, unsealed
+
+from .keys import Parts, _digest, everything_of, installed
+from .snapshot import OpenedFiles, Snapshot, State
+
+if TYPE_CHECKING:
+    from mutabot.campaign.baseline.taking import Runs
+    from mutabot.campaign.request import Progress, Request
+    from mutabot.model.events import Event
+
+#: environment variables by which shells keep their own books
+_OF_SHELLS = {"_", "OLDPWD", "SHLVL"}
+#: the seal shows that a line is whole and of this run; who could change it could seal it as well
+_KEY = ""
+#: the level at which zlib costs least, and bytes that are unpacked at once
+_QUICKLY, _AT_ONCE = 1, 1 << 20
+
+
+class OriginalRuns:
+    """The runs with which a campaign begins; use as a context manager around the baseline.
+
+    Args:
+        request: the campaign.
+        kept: what an earlier one left; None for nothing.
+        progress: told from when the runs are that are reused.
+
+    Attributes:
+        installed: see ``keys.installed``, as it is before the baseline.
+        before, after: the project's files before and after the baseline.
+        opened: the files that its runs open, also those that are reused; None if that is not known.
+    """
+
+    def __init__(self, request: Request, kept: KeptBaseline | None, progress: Progress) -> None:
+        self._request, self._progress = request, progress
+        self.installed = installed(request.root)
+        self._beside = {"environment": _environment(), "machine": platform.node()}
+        self.before = self.after = Snapshot.take(request.root)
+        self.opened: set[str] | None = None
+        self._watch = OpenedFiles(request.root, self.before.folders)
+        self._kept = kept if kept is not None and self._is_as_now(kept) else None
+        self._held = defaultdict[str, deque[OriginalRun]](deque)
+        for run in self._kept.runs if self._kept is not None else ():
+            self._held[run.task].append(run)
+        self._reused: list[OriginalRun] = []
+        self._made: list[OriginalRun] = []
+
+    def __enter__(self) -> Self:
+        self._watch.__enter__()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._watch.__exit__(kind, error, trace)
+        self.opened = self._watch.opened
+        if self._kept is not None and self._reused and self.opened is not None:
+            known = self._kept.opened
+            self.opened = None if known is None else self.opened | {*known}
+        self.after = Snapshot.take(self._request.root, self.before)
+
+    def over(self, executor: Executor, request: Request) -> Runs:
+        """What runs the original: this executor, unless a run that is asked for is kept.
+
+        What is installed elsewhere is not known here: what other machines ran is not kept.
+
+        Args:
+            request: the campaign, or the same over a simulation.
+        """
+        return _Runs(self, executor, request) if request.executor is None else executor
+
+    def keep(self, write: Callable[[KeptBaseline], object]) -> None:
+        """Leave to later campaigns what there is new.
+
+        That is nothing if files of the project changed meanwhile: nobody knows which of them tests have seen.
+        """
+        if not self._made or self.after != self.before:
+            return
+        depends = self._depends(self.opened)
+        taken = self._kept.taken if self._kept is not None and self._reused else time.time()
+        opened = None if self.opened is None else tuple(sorted(self.opened))
+        write(KeptBaseline(depends, taken, opened, (*self._reused, *self._made)))
+
+    def held(self, name: str, task: Task) -> tuple[list[Event], Result] | None:
+        """What a kept run told, and what became of it; None if there is no such run that can be read."""
+        runs = self._held.get(name)
+        if not runs:
+            return None
+        run = runs.popleft()
+        try:
+            told = _read(run)
+        except ValueError:
+            return None
+        if not self._reused and self._kept is not None:
+            when = time.strftime("%Y-%m-%d %H:%M", time.localtime(self._kept.taken))
+            self._progress.note(f"the baseline of {when} still holds; `mutabot run --fresh` takes a new one")
+        self._reused.append(run)
+        result = Result(task, exit_code=run.exit_code, wall=run.wall)
+        for event in told:
+            result.take(event)
+        return told, result
+
+    def made(self, run: OriginalRun) -> None:
+        """A run has ended in an orderly way."""
+        self._made.append(run)
+
+    def _is_as_now(self, kept: KeptBaseline) -> bool:
+        if self._request.fresh:
+            return False
+        return kept.depends == self._depends(None if kept.opened is None else set(kept.opened))
+
+    def _depends(self, opened: set[str] | None) -> str:
+        state = State.now(self._request, self.before, self.before, opened)
+        parts: Parts = {**everything_of(self._request, state.files, self.installed), **self._beside}
+        return _digest(parts)
+
+
+@dataclass(frozen=True, slots=True)
+class _Runs:
+    """Kept runs, and for all else an executor."""
+
+    original: OriginalRuns
+    executor: Executor
+    request: Request
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        """As those of an executor."""
+        left, notes = [], {}
+        for task in tasks:
+            name = self._name_of(task)
+            found = self.original.held(name, task)
+            if found is None:
+                left.append(task)
+                notes[task.key] = _Note(name)
+                continue
+            events, result = found
+            yield from ((task, event) for event in events)
+            yield result
+        for one in self.executor.events(left):
+            if isinstance(one, Result):
+                run = notes.pop(one.task.key).run(one)
+                if run is not None:
+                    self.original.made(run)
+            else:
+                notes[one[0].key].add(one[1])
+            yield one
+
+    def _name_of(self, task: Task) -> str:
+        """The same for tasks that do the same."""
+        request = self.request
+        return _digest([to_data(task.job), task.may_share, request.arguments, request.simulation])
+
+
+class _Note:
+    """Keeps what a process tells of a run."""
+
+    def __init__(self, name: str) -> None:
+        self._name, self._number = name, 0
+        self._packing, self._packed = zlib.compressobj(_QUICKLY), list[bytes]()
+
+    def add(self, event: Event) -> None:
+        self._number += 1
+        self._packed.append(self._packing.compress(sealed(event, self._number, self._name, _KEY)))
+
+    def run(self, result: Result) -> OriginalRun | None:
+        """The run that has ended; None if it was no whole one."""
+        faults = (result.overdue, result.hindered, result.lost, result.untrusted)
+        if result.end is None or result.problems or any(faults):
+            return None
+        events = b"".join((*self._packed, self._packing.flush()))
+        return OriginalRun(self._name, result.exit_code, result.wall, events)
+
+
+def _read(run: OriginalRun) -> list[Event]:
+    """What was told in a run. Raises ValueError if that is not what was written."""
+    unpacking, rest = zlib.decompressobj(), run.events
+    found: list[Event] = []
+    line = b""
+    try:
+        while len(line) <= MOST_BYTES and (part := unpacking.decompress(rest, _AT_ONCE)):
+            rest = unpacking.unconsumed_tail
+            *lines, line = (line + part).split(b"\n")
+            for text in lines:
+                number, event = unsealed(text, run.task, _KEY)
+                found.append(event)
+                if number != len(found):
+                    raise ValueError("an event is missing")
+    except zlib.error as error:
+        raise ValueError(str(error)) from error
+    if line or not unpacking.eof:
+        raise ValueError("the end is missing")
+    return found
+
+
+def _environment() -> str:
+    """All environment variables that tests can see, as a digest."""
+    return _digest({name: text for name, text in usual_environment().items() if name not in _OF_SHELLS})
