@@ -165,7 +165,7 @@ class PathError(MutabotError):
 
 
 class StrangeValueError(PathError):
-    """A value of the user's is no plain data, so nobody looks into it."""
+    """A value of the user's program is no plain data, so it is neither read nor changed."""
 
 
 class ExtensionError(MutabotError):

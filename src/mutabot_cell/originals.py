@@ -19,7 +19,7 @@ _Names = Mapping[str, Any]
 
 
 class Originals:
-    """What the code of some modules depends on.
+    """Notes what the code of some modules depends on, and compares it later.
 
     Args:
         modules: names of modules, and of packages with a dot behind, of which all that is loaded counts.
@@ -79,7 +79,7 @@ _known: dict[tuple[str, ...], Originals] = {}
 
 
 def note(*libraries: ModuleType) -> None:
-    """All of it is imported: note it, and what it mentions of these libraries."""
+    """Note all of it, once it is imported, and what it uses of these libraries."""
     for names in (STRETCHES, MOTIONS):
         _known[names] = Originals(names, libraries)
 

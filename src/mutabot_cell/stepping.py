@@ -109,7 +109,7 @@ def _measure_no_time() -> None:
 
 
 class _Pointers:
-    """What MuJoCo itself holds to call: somebody may set it from C as well, behind the bindings' back."""
+    """The callbacks and collision functions that MuJoCo holds: C code may set them without the bindings."""
 
     def __init__(self) -> None:
         self._callbacks: list[ctypes.c_void_p] = []
@@ -123,7 +123,7 @@ class _Pointers:
         self._known = bytes(self._collisions)
 
     def are_original(self) -> bool:
-        """Whether there are no callbacks, and shapes collide as MuJoCo has it."""
+        """Whether there are no callbacks, and all collision functions are MuJoCo's own."""
         known = self._known
         return bool(known) and not any(map(_is_set, self._callbacks)) and bytes(self._collisions) == known
 

@@ -121,7 +121,7 @@ class Dispatch:
             self._running[number] = worker, trial
 
     def _due(self, worker: str, fit: Collection[str]) -> _Trial | None:
-        """The next for a worker: what was lost once at once, what was lost more often when all has begun.
+        """The next trial for a worker: one lost once comes first, one lost more often when all have begun.
 
         Losses come together, as where a cluster is taken away piece by piece: later tries are better later.
         What was lost at this worker waits for another, if there is one.

@@ -146,14 +146,14 @@ class Roster:
             self._tell_once(shown(f"worker {address} is not used: {why}"))
 
     def has_run(self, address: str) -> None:
-        """A worker has run a unit."""
+        """Note that a worker has run a unit."""
         worker = self._workers.get(address)
         if worker is not None:
             worker.is_proven = True
             worker.failed.clear()
 
     def has_failed(self, address: str, unit: int, tried: Collection[str], why: str) -> None:
-        """A unit, by its number, failed at a worker. One at which two fail in a row is left out.
+        """Note that a unit, by its number, failed at a worker. After two in a row the worker is left out.
 
         What fails at two workers that have run others says nothing of them.
 

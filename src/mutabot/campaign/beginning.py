@@ -136,7 +136,7 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
 
 
 def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
-    """What the configuration asks for and no provider of faults heeds."""
+    """Settings of the configuration that have no effect on any provider of faults."""
     configuration, mutants = request.configuration, plan.mutants
     others = sorted({one.family for one in mutants if one.provider not in (CALLS, MESSAGES)})
     if request.moments != (None,) and others:

@@ -130,14 +130,14 @@ class Campaign:
         return found
 
     def _limit(self, wall: float, processor: float) -> Limit:
-        """What that may take which took so many seconds on the original."""
+        """The limit of what took so many seconds on the original."""
         factor, least = self._factor, self.request.configuration.timeout_seconds
         if least is None:
             return Limit(max(WAITING, factor * wall), self._spare + factor * processor)
         return Limit(max(least, factor * wall), max(least, factor * processor))
 
     def _simulated(self, round: int, tests: Iterable[str]) -> dict[str, float]:
-        """How much simulated time each test may take that takes any on the original."""
+        """The simulated time that each test may take, of those that take any on the original."""
         times = {test: self.baseline.ends[round, test].simulated for test in tests}
         return {
             test: SPARE_SIMULATED + self._factor * time for test, time in times.items() if time is not None

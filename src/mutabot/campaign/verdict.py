@@ -366,7 +366,7 @@ def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
 
 
 def _collected_otherwise(run: Run) -> tuple[str, ...]:
-    """How the tests that there are differ from the original's, in words."""
+    """Describes how the collected tests differ from the original's."""
     new = [end.test for end in run.ends if end.test not in run.tests]
     told = [f"{in_short(run.gone, 1)} not collected"] if run.gone else []
     told += [f"collected beside the original's tests: {in_short(new, 1)}"] if new else []

@@ -1,4 +1,4 @@
-"""Standard output and standard error that cannot be written, as on a full disk, or that are closed."""
+"""Handle standard output and standard error that are closed, or cannot be written, as on a full disk."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mutabot.errors import UsageError
 
 
 class _Stream:
-    """A stream with a word on what cannot be written.
+    """A stream that reports what cannot be written.
 
     Args:
         stream: the stream.
@@ -39,7 +39,7 @@ class _Stream:
             return len(text)
 
     def flush(self) -> None:
-        """Write what waits."""
+        """Write what is buffered."""
         try:
             self._stream.flush()
         except OSError as error:
@@ -69,7 +69,7 @@ def guarded_streams() -> Iterator[_Stream]:
 
 
 def output_failed(error: OSError) -> None:
-    """Standard output cannot be written. A pipe that nobody reads is no fault: whoever writes to it knows.
+    """Report that standard output cannot be written. A closed pipe is no fault: its error is passed on.
 
     Raises UsageError, or the error of a pipe.
     """
@@ -80,7 +80,7 @@ def output_failed(error: OSError) -> None:
 
 
 def _discard(stream: TextIO) -> None:
-    """Discard all that is written from now on, and what waits: else it would fail again in the end."""
+    """Discard all that is buffered or written from now on: it would fail again at the end."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         with suppress(OSError, ValueError):  # of a test there may be no descriptor

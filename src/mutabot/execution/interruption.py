@@ -22,11 +22,11 @@ class OutOfTimeError(Exception):
 
 
 class Interruption(KeyboardInterrupt):
-    """A first Ctrl-C, which has come where the campaign waits: all that it has taken in is in order."""
+    """A first Ctrl-C, raised where the campaign waits: its state is consistent."""
 
 
 class _Keeper:
-    """What interruptions come to while a campaign runs.
+    """Keeps interruptions until they are safe, while a campaign runs.
 
     Attributes:
         may_raise: whether an interruption is safe right now.
@@ -38,7 +38,7 @@ class _Keeper:
         self.may_raise = self.is_kept = self.is_late = False
 
     def interrupt(self) -> None:
-        """Somebody wants the campaign to end."""
+        """Interrupt the campaign now if that is safe, else as soon as it is."""
         if self.may_raise:
             raise Interruption
         if self.is_kept:

@@ -87,11 +87,11 @@ class Home:
 
     @property
     def has_forks(self) -> bool:
-        """Whether the process has forks that it has not told the end of."""
+        """Whether the process has forks whose end it has not reported."""
         return any(self.processes.glob(f"{SESSION}.*{SUFFIX}"))
 
     def stop_forks(self) -> None:
-        """Let it end its forks and make no more."""
+        """Make it end its forks and start no more."""
         with contextlib.suppress(OSError):  # somebody has deleted the folder
             (self.folder / STOP).touch()
 

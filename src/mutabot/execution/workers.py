@@ -57,7 +57,7 @@ class TokenPool:
 
     @property
     def path(self) -> str:
-        """Where a fork parent can open it: it keeps no descriptor that its tests might count, or spoil."""
+        """Where a fork parent opens it for a moment: its tests may count descriptors, or write to them."""
         return f"/proc/{os.getpid()}/fd/{self.reading}"
 
     def take(self) -> bool:
@@ -273,7 +273,7 @@ class Workers:
     def _wait(
         self, next_task: Task | None, most: float | None = None
     ) -> Iterator[Result | tuple[Task, Event]]:
-        """Until something happens, or might: ``next_task`` has no place yet. ``most``: seconds."""
+        """Wait for an event, ``most`` seconds at most; ``next_task`` has no place yet."""
         timeout = min((one for one in (self._patience(), most) if one is not None), default=None)
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
         if is_for_token:
@@ -339,11 +339,11 @@ class _Worker:
 
     @property
     def has_forks(self) -> bool:
-        """Whether it has forks that it has not told the end of."""
+        """Whether it has forks whose end it has not reported."""
         return self._home.has_forks
 
     def stop_forks(self) -> None:
-        """Let it end its forks and make no more."""
+        """Make it end its forks and start no more."""
         self._home.stop_forks()
 
     def watch(self, selector: selectors.BaseSelector) -> None:

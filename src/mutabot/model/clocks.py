@@ -1,4 +1,4 @@
-"""Clocks that no test can take away.
+"""Clocks that tests cannot replace.
 
 Tests replace ``time.monotonic`` and its like, in all modules that have taken them by name, or what these do.
 None of it reaches these: they are bound when the first of ours is imported, are equal to none of those

@@ -1,4 +1,4 @@
-"""Values of the user's as data, without running any code of the user's.
+"""Read values of the user's program as plain data, without running any of its code.
 
 What is looked at is told by its class alone: the plain ones of Python and of its standard library, arrays and
 numbers of numpy, and subclasses of these by what they are made of. What else an object may be, such as a
@@ -52,7 +52,7 @@ def is_told(value: Any) -> bool:
 
 
 def _is_exact(value: Any) -> bool:
-    """Whether it is a number that does not go together with floating-point ones, which operators draw."""
+    """Whether it is an exact number, which cannot be combined with the floats that operators draw."""
     return type(value).__name__ in ("Decimal", "Fraction") and is_told(value)
 
 
@@ -114,7 +114,7 @@ def in_place_of(before: Any, value: Any) -> Any:
 
 
 def _sequence(before: Any, value: Any) -> Any:
-    """The same of each item, where there are as many."""
+    """Apply ``in_place_of`` to each item, if there are equally many."""
     base, kind = type(value), type(before)
     given = list(base.__iter__(before))
     if len(given) != len(value):

@@ -39,7 +39,7 @@ class Limit:
 
     @property
     def least(self) -> float:
-        """Seconds before which a process cannot be over it, unless it computes on several processors."""
+        """Seconds that pass at least before a process exceeds it, unless it uses several processors."""
         return self.wall if self.processor is None else min(self.wall, self.processor)
 
 
@@ -71,7 +71,7 @@ class Deadline:
         self.until = self.used.began + (least if self.is_counted else min(_FIRST, least))
 
     def is_over(self, process: int) -> bool:
-        """Whether a process has used its time. To be asked once ``until`` has come; it says when next."""
+        """Whether a process has used its time. To be called at ``until``, which is then set anew."""
         if not self.is_counted:
             self.is_counted, self.used = True, TimeUsed.from_now(below([process], children()))
             self.until = self.used.began + self.limit.least

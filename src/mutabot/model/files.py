@@ -1,4 +1,4 @@
-"""Open files in folders that programs under test can reach, and that may hold anything by now.
+"""Open files safely in folders that programs under test can write to.
 
 A pipe in the place of a file would make whoever opens it wait for ever, a link would lead elsewhere.
 """
@@ -35,7 +35,7 @@ def _is_file(status: os.stat_result, flags: int) -> bool:
 
 
 def read_file(path: str | os.PathLike[str], most: int = -1) -> bytes:
-    """What is in a file, or its first bytes. Raises OSError likewise."""
+    """Read a file, or its first ``most`` bytes. Raises OSError likewise."""
     with os.fdopen(open_file(path, os.O_RDONLY), "rb") as file:
         return file.read(most)
 

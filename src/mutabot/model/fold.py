@@ -199,7 +199,7 @@ def acted_in(records: Collection[ChildRecord]) -> list[str]:
 def fold_fork(
     seen: Sequence[events.Event], exit_code: int, died: events.ForkDied | None, below: Collection[str] = ()
 ) -> list[events.Event]:
-    """What is to be known of a fork that has ended, by its events and its parent's word of how it ended.
+    """The events of a fork that has ended, completed by its parent's report of how it ended.
 
     ``below``: tests in which the mutant changed something in a process below it.
     """

@@ -261,7 +261,7 @@ class Operation:
     is_partial: bool = False
 
     def by_numbers(self) -> Operation:
-        """The same where no robot is told, but something that tests compare with numbers."""
+        """The same operation, with values compared as numbers: a mock gets the call, and no robot."""
 
         def compared(arguments: tuple[Quantity, ...]) -> tuple[Quantity, ...]:
             return tuple(
@@ -288,7 +288,7 @@ class Operation:
 
     @property
     def last_name(self) -> str:
-        """What a call of it ends with."""
+        """The last part of the name by which it is called."""
         return self.qualname.rpartition(".")[2]
 
     @property

@@ -310,7 +310,7 @@ class LeftOut:
 
     @property
     def heading(self) -> str:
-        """What it is listed under: all that would change nothing together, else the reason."""
+        """The heading it is listed under: one for all that would change nothing, else the reason."""
         return NOTHING if self.reason.startswith(NOTHING) else self.reason
 
 
@@ -319,7 +319,7 @@ NOTHING = "would change nothing"
 
 
 def by_heading(left_out: Iterable[LeftOut]) -> dict[str, list[LeftOut]]:
-    """What is left out by why: first what would change nothing, then by how many there are."""
+    """Group by heading: first what would change nothing, then the largest group first."""
     found: dict[str, list[LeftOut]] = {}
     for one in left_out:
         found.setdefault(one.heading, []).append(one)

@@ -198,11 +198,11 @@ class Quantity:
     by_number: bool = False
 
     def get(self, start: Any) -> Value:
-        """Its value in what its path starts at, see ``of``. Raises PathError."""
+        """Read its value from the object that its path starts at, see ``of``. Raises PathError."""
         return self.of(self.path.get(start))
 
     def of(self, value: Any) -> Value:
-        """What lies at the end of its path as a value: the seconds of a stamp, the numbers of an orientation.
+        """Convert what is at the end of its path to a value: a stamp's seconds, an orientation's numbers.
 
         A member of an enumeration is what ``values`` write for it. ``data.UNKNOWN`` if nobody may look into
         it. Raises PathError.

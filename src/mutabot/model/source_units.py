@@ -52,7 +52,7 @@ def together(parts: Iterable[Executed | None]) -> Executed | None:
 
 
 class ExecutedByTests:
-    """What was executed in a run of the suite, of which each test has told what is new.
+    """The units executed in a run of the suite; each test reports only those that are new.
 
     What was executed before a test counts for it.
 

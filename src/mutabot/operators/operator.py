@@ -342,7 +342,7 @@ class Context:
         return quantity_of(self.subject)
 
     def let_go(self, call: Call) -> None:
-        """The value of this call is changed: nothing keeps the call any longer."""
+        """Drop the reference to this call, whose value has been changed."""
         if getattr(self, "call", None) is call:
             del self.call
 

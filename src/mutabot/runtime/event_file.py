@@ -82,7 +82,7 @@ class EventFile:
             self._ring(self._bell)
 
     def go_on_apart(self) -> None:
-        """In a process that was just forked: go on with a file of its own, once there is something to tell.
+        """In a process that was just forked: write into a file of its own from now on.
 
         Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
         """

@@ -54,7 +54,7 @@ def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
 
 
 class KnownError:
-    """An exception that was raised, known again by what it is; it is not kept, nor what its frames hold.
+    """Recognizes an exception without keeping it, or what its frames hold, alive.
 
     Most classes of Python's own cannot be referred to weakly. Of these, one that takes the place of another
     in memory and says the same is taken for it.
@@ -71,7 +71,7 @@ class KnownError:
             self._said = (type(error), _text(error))
 
     def is_of(self, error: BaseException) -> bool:
-        """Whether it is this one."""
+        """Whether this is the exception."""
         if self._reference is not None:
             return self._reference() is error
         return self._address == id(error) and self._said == (type(error), _text(error))

@@ -112,7 +112,7 @@ class ExecutedUnits(SourceStep):
             self._in_call = False
 
     def of_test(self, *, alone: bool = False) -> Executed:
-        """What the running test depends on and no test has told of before; ``alone``: in its call phase."""
+        """The units that the running test depends on and that are new; ``alone``: those of its call phase."""
         self.end_call()
         self._keep(self._take())
         told = set(self._test if alone else self._untold)  # another thread may be at work
@@ -124,7 +124,7 @@ class ExecutedUnits(SourceStep):
         return {file: tuple(sorted(lines)) for file, lines in found.items()}
 
     def _keep(self, found: set[_PLACES]) -> None:
-        """This counts for all tests from now on."""
+        """Count these units for all tests from now on."""
         self._untold.update(found - self._common)
         self._common.update(found)
 

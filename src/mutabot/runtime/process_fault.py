@@ -40,7 +40,7 @@ class ProcessFault(ABC):
         data: what its provider has told it.
         evidence: what it did in the running test.
         on_act: told when it changes something for the first time in a test.
-        meant: what it has let the program meet.
+        meant: the exceptions that it has raised for the program on purpose.
     """
 
     def __init__(self, mutant: Mutant, data: Any) -> None:

@@ -119,7 +119,7 @@ def seed_of(node: pytest.Item | pytest.Collector) -> int:
 
 
 def _seeded(config: pytest.Config) -> SessionHooks | PlainRound | None:
-    """What gives the seeds of a session; none of one that a test has started in a job's process."""
+    """What gives the seeds of a session; None for one that a test has started in a job's process."""
     return _hooks_of(config) if _hooks is not None else _plain_round
 
 

@@ -132,7 +132,7 @@ class Session:
         self._remember_answers()
 
     def _remember_answers(self) -> None:
-        """Have the answers of the running test remembered that somebody may ask for, and no others."""
+        """Have only those answers remembered in the running test that a mutant may ask for."""
         now = (self.job.round, self.test)
         asked = {(target, pattern) for target, pattern, idle in self._asking if idle.is_varying(*now)}
         for adapter in self._adapters:
@@ -360,7 +360,7 @@ class Session:
             self.passing.meter = meter
 
     def _along(self) -> Reading:
-        """Read the probes along the way: the program's own code, where one stands in it, as the original.
+        """Read the probes along the way; those in program files run as the original.
 
         A mutant may be waited for there, and is counted where it acts. While other threads run the program,
         nothing of its text can be set aside.

@@ -209,7 +209,7 @@ class SessionHooks:
                 self.session.pipe.send(end)
 
     def pytest_internalerror(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
-        """A hook of the suite has failed, which ends the suite: if the mutant did it, it was noticed."""
+        """A failing hook ends the suite: if the mutant caused that before any test, it was noticed."""
         if not is_ours(excinfo.traceback[-1].frame.raw) and not self.session.test:
             self.import_failed(excinfo.value, "")
 

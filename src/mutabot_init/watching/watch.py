@@ -74,7 +74,7 @@ _LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
 
 @border
 def _carried_out(wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-    """Make a use; what that uses in turn is its own doing, as in a campaign."""
+    """Call what is used; calls that it makes itself do not count, as in a campaign."""
     return wrapped(*args, **kwargs)
 
 

@@ -286,7 +286,7 @@ def test_another_text_under_the_name_of_a_file_is_left_alone_and_told(tmp_path: 
     finally:
         switch_off(hook)
     assert space["x"] == 3
-    assert hook.problems == {text.file: "what is compiled under its name is another text than it holds"}
+    assert hook.problems == {text.file: "other text than the file holds is compiled under its name"}
 
 
 def test_a_file_whose_code_comes_out_of_sight_is_told(tmp_path: Path) -> None:
@@ -301,7 +301,9 @@ def test_a_file_whose_code_comes_out_of_sight_is_told(tmp_path: Path) -> None:
     finally:
         del sys.modules["of_a_cache"]
         switch_off(hook)
-    assert hook.problems == {text.file: "its loader makes its code out of sight (ast.NodeVisitor)"}
+    assert hook.problems == {
+        text.file: "its loader compiles it in a way that mutabot cannot follow (ast.NodeVisitor)"
+    }
 
 
 def test_the_plan_crosses_the_border_as_json(tmp_path: Path) -> None:

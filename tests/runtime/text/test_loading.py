@@ -201,7 +201,7 @@ def test_what_a_loader_does_not_take_stays_as_it_is_and_is_told(name: str) -> No
     step = Doubling(name)
     assert loaded_by(Strict, name, step).x == 1
     (error,) = step.given_up
-    assert "its loader fails at changed text: SyntaxError: too big" in str(error)
+    assert "its loader fails with instrumented text: SyntaxError: too big" in str(error)
     assert "Strict" in str(error)
 
 

@@ -312,7 +312,7 @@ class Baseline(Original):
         return tuple(self.tests[round])
 
     def aside(self, round: int, tests: Collection[str]) -> tuple[str, ...]:
-        """What the original collects in a round beside these tests."""
+        """The tests that the original collects in a round, without these."""
         return tuple(sorted(self.collected.get(round, frozenset()).difference(tests)))
 
     def tests_reaching(self, round: int, mutant: Mutant) -> tuple[str, ...]:
@@ -361,7 +361,7 @@ class Baseline(Original):
             self.flaky_reaching[round, place] = aside
 
     def reach_below(self, round: int, place: Place, test: str, origin: str) -> None:
-        """A test reaches a place in a process below it of this origin."""
+        """Note that a test reaches a place in a process below it of this origin."""
         self.below.setdefault((round, place, test), set()).add(origin)
 
     def is_missed(self, round: int, mutant: Mutant, end: TestEnd) -> bool:
@@ -377,7 +377,7 @@ class Baseline(Original):
         return sum(self.ends[round, test].wall for test in tests)
 
     def add_remarks(self, remarks: Iterable[Remark]) -> None:
-        """More is to be known about the vocabulary and the configuration."""
+        """Add remarks on the vocabulary or the configuration."""
         self.remarks = (*self.remarks, *remarks)
 
     def doubt(self, test: str) -> None:

@@ -1,9 +1,9 @@
-"""Calls of operations in program text that nobody runs: they are found by their names.
+"""Find calls of operations in program text that no test runs, by their names.
 
-What is called there is told by the text alone. A call counts as one of an operation if its last name is the
+Only the text tells what is called there. A call counts as one of an operation if its last name is the
 operation's, unless the text says that it is something else: a function or method of the program, what was
 imported from elsewhere, a built-in. Where what it is called on comes from elsewhere, or the command depends
-on what is computed, the call is in doubt: it is told, and no mutant is made of it.
+on what is computed, the call is doubtful: it is reported, and gets no mutants.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ class _Scope:
 
 
 def _calls(nodes: Sequence[ast.AST], scope: _Scope) -> Iterator[tuple[ast.Call, _Scope]]:
-    """All calls below these nodes, but for annotations and what only type checkers see."""
+    """All calls below these nodes, without annotations and code for type checkers."""
     for node in nodes:
         if isinstance(node, ast.Call):
             yield node, scope
@@ -330,7 +330,7 @@ def _best(call: ast.Call, operations: Sequence[Operation], scope: _Scope, origin
 
 
 def _pattern(call: ast.Call, operation: Operation) -> Pattern | None:
-    """The command that a call is by the texts that stand in it; None if these do not tell, or it has one."""
+    """The command that a call gives, by the texts in it; None if they do not tell or there are none."""
     named = {one.arg: one.value for one in call.keywords if one.arg}
     root = Path.parse(operation.message, rooted=True).root if operation.message is not None else None
     values = [named[root]] if root in named else [*call.args, *named.values()]
@@ -353,7 +353,7 @@ def _is_case(value: ast.expr | None, wanted: str) -> bool:
 
 
 def _texts(node: ast.expr) -> Iterator[str]:
-    """What a text may read that stands here, or is put together here, with a number for what is computed."""
+    """The texts that an expression may give: a literal, or an f-string with samples for what is computed."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         yield node.value
     elif isinstance(node, ast.JoinedStr):

@@ -173,7 +173,7 @@ def _no_numbers(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
 
 
 def _no_noise(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
-    """Noise that is given to what no operator adds it to."""
+    """Noise of quantities to which no operator adds any."""
     for operation in vocabulary.operations:
         for pattern in (None, *operation.patterns):
             owner = pattern or operation

@@ -84,7 +84,7 @@ def _end(span: Span) -> _End:
 def add_untested(
     baseline: Baseline, root: Path, program: Sequence[str], vocabulary: Vocabulary, results: Iterable[Result]
 ) -> None:
-    """Let a baseline know what its tests do not reach."""
+    """Note in a baseline what its tests do not reach."""
     seen = _Seen.of(results)
     texts = dict(_texts(root, program_files(root, program)))
     files = [file for file in texts if file not in seen.imported] if seen.knows_files else []
@@ -133,7 +133,7 @@ def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def _functions(texts: Mapping[str, str], seen: _Seen) -> tuple[int, list[str]]:
-    """How many functions there are, and which of them nobody has called."""
+    """The number of functions, and those that no test calls."""
     found = [
         (file, name, node) for file, text in texts.items() for name, node in functions_of(ast.parse(text))
     ]
@@ -148,7 +148,7 @@ def _functions(texts: Mapping[str, str], seen: _Seen) -> tuple[int, list[str]]:
 def _calls(
     baseline: Baseline, vocabulary: Vocabulary, texts: Mapping[str, str], seen: _Seen
 ) -> tuple[list[NamedCall], int]:
-    """The calls that no test reaches, and how many sites tests do reach."""
+    """The calls that no test reaches, and the number of sites that tests reach."""
     operations = [one for one in vocabulary.operations if one.named is None and one.kind in (None, "methods")]
     targets = {one.target for one in operations}
     places = [one for one in baseline.hits if one.operation in targets and one.site.role is Role.PROGRAM]

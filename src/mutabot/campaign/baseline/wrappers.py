@@ -1,4 +1,4 @@
-"""Functions of the program that only pass on to an operation what several calls give them.
+"""Find functions of the program that only pass the arguments of several calls on to an operation.
 
 The site in such a function is one for all of its calls, and a mutant acts on all of them at once: a test that
 sees the first hides that none sees the last. Where the function itself is described, each call is a site.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def shared_sites(
     baseline: Baseline, vocabulary: Vocabulary, sources: Sources, files: Iterable[str]
 ) -> Iterator[Remark]:
-    """Tell of the sites in such functions, and what to describe."""
+    """Remark on the sites in such functions, and say what to describe instead."""
     described = {one.last_name for one in vocabulary.operations}
     for place in baseline.hits:
         span, operation = place.site.span, vocabulary.operation(place.operation)
@@ -44,7 +44,7 @@ def shared_sites(
 
 
 def passed_on(source: str) -> frozenset[Extent]:
-    """Where calls stand that are all that a function does, with nothing but its own arguments."""
+    """The calls that are all that a function does, with its own arguments only."""
     functions = (node for node in ast.walk(ast.parse(source)) if isinstance(node, Function))
     calls = ((_only_call(function), function) for function in functions)
     return frozenset(

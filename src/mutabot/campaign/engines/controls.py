@@ -81,7 +81,7 @@ class Control:
         return self.mutant, self.round
 
     def end(self, outcome: Outcome) -> ControlEnd:
-        """What the journal keeps of its end."""
+        """Its end, as the journal keeps it."""
         wrong = self.what_is_wrong(outcome)
         return ControlEnd(self.subject, self.name, wrong is None, wrong or f"{outcome.hits} hits")
 
@@ -201,7 +201,7 @@ def _settled(campaign: Campaign, control: Control, outcome: Outcome) -> Iterator
 
 
 class ForkTrust:
-    """What the controls among forks say of the outcomes of the others.
+    """Decides by the controls among forks which outcomes of other forks count.
 
     Args:
         campaign: the campaign.
@@ -218,7 +218,7 @@ class ForkTrust:
         self._first = sys.maxsize  # number of the first test of which forks are not believed
 
     def take(self, outcome: Outcome) -> Iterator[ControlEnd]:
-        """A control has ended. Of one that ended wrongly nothing is kept: replay has others."""
+        """Take the end of a control; yields it if it is right. Replay has controls of its own."""
         control = self._controls[outcome.mutant]
         self._awaited.discard(outcome.mutant)
         wrong = control.what_is_wrong(outcome)
@@ -237,7 +237,7 @@ class ForkTrust:
         )
 
     def close(self) -> None:
-        """There are no more forks: a control that has told nothing speaks for none."""
+        """All forks have ended. If a control has not reported, no outcome of a fork counts."""
         if self._awaited:
             self._distrust(0)
 
@@ -245,7 +245,7 @@ class ForkTrust:
         self._first = min(number, self._first)
 
     def awaits(self, mutant: Mutant, outcome: Outcome) -> bool:
-        """Whether an outcome depends on what controls have yet to tell.
+        """Whether an outcome depends on controls that have not ended yet.
 
         It does not if the test in which the mutant was forked has decided: that test has controls of its own.
         """

@@ -54,8 +54,8 @@ _LEAST, _PARTS = 10, 16
 _WORTH, _FEWEST = 4, 2
 #: seconds that a fork takes at least
 _FORK = 0.01
-_UNLIKE = "it ends otherwise in a fork in which nothing was changed"
-_MISSED = "its processes did not all get the mutant from a fork"
+_UNLIKE = "it ends differently in a fork that changes nothing"
+_MISSED = "not all processes that it started from a fork ran as the mutant"
 #: the level at which zlib costs least
 _QUICKLY = 1
 #: short tests of a fork that are packed together, since they are much alike; long ones weigh more
@@ -347,7 +347,7 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
 def _taken(
     told: Iterable[Result | tuple[Task, events.Event]], parents: Mapping[int, _ForkParent]
 ) -> Iterator[Outcome]:
-    """The outcomes that come of what fork parents tell."""
+    """The outcomes that follow from the events of fork parents."""
     for event in told:
         if isinstance(event, Result):
             yield from parents[event.task.key].finish(event)
@@ -438,17 +438,17 @@ class _ForkParent:
 
     @property
     def is_awaited(self) -> bool:
-        """Whether it has yet to end a test that a fork which has ended depends on, or a control."""
+        """Whether ended forks wait for a test of this parent, or a control has not ended."""
         return not self._is_off and bool(self._awaited())
 
     @property
     def seconds_awaited(self) -> float:
-        """What that takes, by the tests of the baseline."""
+        """Seconds that this takes, by the baseline's times."""
         last = max(self._awaited(), default=-1)
         return self._baseline.seconds(self._round, self._tests[len(self._own_ends) : last + 1])
 
     def _awaited(self) -> list[int]:
-        """Numbers of the tests that forks wait for which have ended, or that controls have yet to end."""
+        """Numbers of the tests that ended forks wait for, and of the last one if a control has not ended."""
         awaited = [number for number, mutants in self._waiting.items() if mutants & self._open.keys()]
         is_controlled = any(one.family == CONTROL for one in self.mutants)
         return [*awaited, len(self._tests) - 1] if is_controlled else awaited

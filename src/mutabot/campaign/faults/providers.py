@@ -255,7 +255,7 @@ def _subjects(
 
 @contextmanager
 def _named(rule: Operator, operation: Operation) -> Iterator[None]:
-    """Name the operator whose code fails: that of a package may do so in any way."""
+    """Name the operator in an error that its code raises."""
     try:
         yield
     except MutabotError:

@@ -472,7 +472,7 @@ class _MutatedCall:
         return reply
 
     def is_own(self, error: BaseException) -> bool:
-        """Whether the operator's own code raised an exception: neither the robot nor who ends the call."""
+        """Whether the operator's own code raised an exception, not the robot, pytest or an event loop."""
         error = error.error if isinstance(error, Carried) else error
         if any(one.is_of(error) for one in self.raised):
             return False

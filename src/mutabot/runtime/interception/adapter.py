@@ -450,7 +450,7 @@ _GONE = object()
 
 
 def _weakly(answer: Any) -> Callable[[Mapping[str, Any]], Any]:
-    """Return what gives an answer as long as somebody else keeps it."""
+    """Return a function that gives an answer as long as the program keeps it."""
     try:
         reference = weakref.ref(answer)
     except TypeError:
@@ -546,7 +546,7 @@ def _unread(quantity: Quantity, error: Exception) -> PathError:
 
 
 def _strange(quantity: Quantity, found: Any) -> StrangeValueError:
-    """Say what to describe instead of an object that nobody looks into."""
+    """Say what to describe instead of an object that is no plain data."""
     path, kind = str(quantity.path), class_name(type(found))
     what = f"{path or 'the result'} is of {kind}, which is no plain data, so its value is left as it is"
     return StrangeValueError(f"{what}; describe the part of it that is a number, such as {path}.magnitude")

@@ -47,7 +47,7 @@ _ALONE = object()
 
 
 def is_untracked() -> bool:
-    """Whether calls of operations are none of the program's here: see ``Untracked``."""
+    """Whether calls in this context are not the program's: see ``Untracked``."""
     return _runs.get() == _UNTRACKED
 
 
@@ -173,7 +173,7 @@ class Dispatcher:
         return site
 
     def _given(self, frame: FrameType, adapter: Adapter, in_operation: bool) -> Place | None:
-        """Where a function of the robot was handed on. An operation that names it calls it by itself."""
+        """The place where a robot's function was passed on; None if an operation calls it by its name."""
         is_named = adapter.operation.last_name in frame.f_code.co_names
         return None if in_operation and is_named else self.given.get(adapter)
 

@@ -21,7 +21,7 @@ borders: dict[int, CodeType] = {}
 
 
 def border(function: F) -> F:
-    """Note that what this function calls is the doing of an operation, not of the program."""
+    """Mark a function: calls below its frames are made by an operation, not by the program."""
     code = cast("FunctionType", function).__code__
     borders[id(code)] = code
     return function
@@ -33,14 +33,14 @@ def is_border(code: CodeType) -> bool:
 
 
 def is_within_border(frame: FrameType | None) -> bool:
-    """Whether an operation has led to a frame."""
+    """Whether an operation is further out on the stack."""
     while frame is not None and id(frame.f_code) not in borders:
         frame = frame.f_back
     return frame is not None
 
 
 class OfModules(Generic[K, V]):
-    """What is remembered of the names of modules, as long as the modules are there.
+    """A cache of facts about modules' global names, which lasts as long as the modules.
 
     A test may load a module anew, or run a file for its names alone: nothing of these is kept.
 

@@ -1,4 +1,4 @@
-"""What the garbage collector need not look at in a copy of the fork server, as long as nobody can tell.
+"""Freeze objects in copies of the fork server until the program or its tests could notice.
 
 The objects that exist before any test are frozen: a collection would write to each, and so take from every
 fork what it shares with its parent. They are thawed before the first question or collection of the program's
@@ -29,7 +29,7 @@ _is_frozen = False
 
 
 def watch() -> None:
-    """Thaw, from now on, before anybody can tell. To be called before the user's code is imported."""
+    """Thaw objects from now on before anybody can notice. To be called before user code is imported."""
     listen(_QUESTIONS, lambda event, arguments: _thaw())
     for name in _FUNCTIONS:
         setattr(gc, name, _thawing(getattr(gc, name)))

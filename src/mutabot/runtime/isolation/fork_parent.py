@@ -207,7 +207,7 @@ class ForkParent:
                 self._fork_each([self._test_control_of(due[0]), *due] if self._number >= 0 else due)
 
     def _wanted(self, mutants: list[Mutant]) -> list[Mutant]:
-        """Those to fork: after an interruption the controls alone, by which what forks have told counts."""
+        """The mutants to fork: after an interruption only controls, on which other outcomes depend."""
         if not self._is_stopped():
             return mutants
         unwanted = tuple(one.id for one in mutants if one.family != Identity.family)
@@ -216,7 +216,7 @@ class ForkParent:
         return [one for one in mutants if one.family == Identity.family]
 
     def _test_control_of(self, mutant: Mutant) -> Mutant:
-        """The identity where this mutant is: what it does to the test, forking does."""
+        """The identity at this mutant's place, which shows what forking alone does to the test."""
         self._test_controls += 1
         name = Identity.name
         return Mutant(
@@ -225,11 +225,11 @@ class ForkParent:
         )  # fmt: skip
 
     def is_test_control(self, mutant: Mutant) -> bool:
-        """Whether it is none of the mutants to fork: a process that is one ends with its test."""
+        """Whether it is the control of one test, whose process ends with that test."""
         return mutant.id not in self._slots
 
     def choices_of(self, mutant: Mutant) -> tuple[Choice, ...]:
-        """What a mutant is in the program text."""
+        """A mutant's alternatives in the program text."""
         if not self.is_test_control(mutant):
             return self.forking.choices.get(mutant.id, ())
         key = (mutant.site.span, mutant.operation, mutant.pattern)
@@ -364,7 +364,7 @@ class ForkParent:
         return self._stopped
 
     def _is_to_end(self, child: Child) -> bool:
-        """Whether a child may end by itself after an interruption: a control, or what has told all."""
+        """Whether a child may end by itself after an interruption: controls, and those that reported all."""
         return child.is_control or bool(self._finished[self._slots[child.mutant]])
 
     def _limit(self, test: int) -> Limit:
@@ -403,7 +403,7 @@ class ForkParent:
 
     @contextmanager
     def _pool(self) -> Iterator[int | None]:
-        """The pipe of the token pool, open for this moment: a test may look at what is open."""
+        """The pipe of the token pool, open only for this moment: tests may count open descriptors."""
         try:
             pool = os.open(self.forking.tokens, os.O_RDWR | os.O_NONBLOCK | os.O_CLOEXEC)
         except OSError:  # the test gave up the right to: what ends is all that there is

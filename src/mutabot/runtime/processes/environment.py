@@ -66,7 +66,7 @@ def carry(folder: str) -> None:
 
 
 def _lead() -> None:
-    """Put the way into this process's own environment, where tests may have changed it."""
+    """Set the variables in this process's environment again, which tests may have changed."""
     environment = {"PYTHONPATH": with_startup(os.environ.get("PYTHONPATH")), VARIABLE: _folder}
     for name, value in environment.items():
         if os.environ.get(name) != value:
@@ -114,7 +114,7 @@ def with_startup(path: str | None) -> str:
 
 
 def completed(environment: Sequence[bytes]) -> list[bytes]:
-    """An environment, as ``NAME=value`` each, with the way in it."""
+    """An environment, as ``NAME=value`` each, with these variables."""
     given = dict(entry.partition(b"=")[::2] for entry in environment)
     path = given.get(b"PYTHONPATH")
     given[b"PYTHONPATH"] = os.fsencode(with_startup(os.fsdecode(path) if path is not None else None))
@@ -167,7 +167,7 @@ _NUMBER = struct.Struct("=q")
 
 
 class Announced:
-    """In the test process: which test is running, for all processes below it.
+    """In the test process: tells all processes below it which test is running.
 
     It shares no memory with them: whoever makes the file shorter would end this process.
 

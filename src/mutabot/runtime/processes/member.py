@@ -194,7 +194,7 @@ class Member:
             self.session.start_test(self._now.name_of(self._test))
 
     def _take_away(self) -> None:
-        """The test is over for the mutant."""
+        """End the test for the mutant."""
         self.session.look_back(at_all=True)
         if not isinstance(self.session, TextOnly):
             self.session.placed.end_test()

@@ -180,7 +180,7 @@ class CallSites(SourceStep):
 
     @property
     def asked(self) -> set[str]:
-        """The files that have questions, as code objects name them."""
+        """The instrumented files, as code objects name them."""
         return {path for path, _, _ in self._numbers}
 
     def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:

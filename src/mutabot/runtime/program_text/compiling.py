@@ -28,7 +28,7 @@ from typing import Any, Protocol
 
 
 class SourceStep(Protocol):
-    """Something that changes source files on their way.
+    """Changes source files before they are compiled.
 
     One with an attribute ``is_optional`` leaves alone what is not compiled as it stands in its file.
     """
@@ -56,7 +56,7 @@ class LoaderRequest:
     Attributes:
         path: the file.
         data: what it holds.
-        is_met: whether steps have had their turns at it.
+        is_met: whether the steps were applied to it.
         is_changed: whether any has changed it.
         is_off: whether nothing is to be changed.
     """
@@ -87,7 +87,7 @@ _OURS, DONE = "__mutabot", "is_done_by_mutabot"
 
 
 def install() -> None:
-    """Let the steps take their turns at all that is compiled from now on."""
+    """Apply the steps to all that is compiled from now on."""
     if builtins.compile is _builtin:
         builtins.compile = _compile
 
@@ -153,7 +153,7 @@ def _through_steps(
     *,
     is_whole: bool,
 ) -> Any:
-    """What becomes of a file once all steps that can have changed it; None if none can."""
+    """Apply the steps to a file, and return what ``finish`` makes of it; None if no step can change it."""
     waiting = [one for one in steps if one.wants(path) and (is_whole or not hasattr(one, "is_optional"))]
     while waiting:
         failing = waiting[0]
@@ -181,7 +181,7 @@ def _wanted(filename: Any) -> str | None:
 
 
 def _is_kept() -> bool:
-    """Whether it is ``py_compile`` that asks: what it writes is run by anybody."""
+    """Whether ``py_compile`` asks: what it writes may be run outside of the campaign."""
     frame = sys._getframe(2)
     for _ in range(6):
         if frame.f_globals.get("__name__") == "py_compile":
@@ -193,7 +193,7 @@ def _is_kept() -> bool:
 
 
 def text_of(path: str) -> bytes:
-    """What a file holds; nothing if it cannot be read."""
+    """The content of a file; empty if it cannot be read."""
     try:
         with open(path, "rb") as file:
             return file.read()

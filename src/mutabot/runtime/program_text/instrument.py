@@ -283,7 +283,7 @@ class _ChangedError(MismatchError):
 
 
 _CHANGED = "it has changed since its mutants were made"
-_OTHER = "what is compiled under its name is another text than it holds"
+_OTHER = "other text than the file holds is compiled under its name"
 
 
 class SessionText:
@@ -427,7 +427,7 @@ class SessionText:
             self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
 
     def _note_unseen(self) -> None:
-        """Files that were loaded although nothing of them was compiled."""
+        """Refuse files that were imported without being compiled here."""
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
             if text is not None and text.file not in {*self.imported, *self.problems}:

@@ -30,7 +30,7 @@ _original = _SourceLoader.get_code
 
 
 def add(step: SourceStep) -> None:
-    """Let a step take the last turn at all files that are compiled from now on."""
+    """Apply a step, after all others, to the files that are compiled from now on."""
     compiling.steps.append(step)
     compiling.install()
     _SourceLoader.get_code = _get_code
@@ -61,18 +61,18 @@ def _asked(loader: Any, request: LoaderRequest) -> tuple[CodeType, str | None]:
             raise
         request.is_off = True  # the loader may well take the text as it stands
         code = loader.source_to_code(request.data, request.path)
-        why = f"its loader fails at changed text: {type(error).__name__}: {error}"
+        why = f"its loader fails with instrumented text: {type(error).__name__}: {error}"
     finally:
         compiling.requests.open.pop()
     return code, why if why is not None or request.is_met else UNSEEN
 
 
 #: why nothing of a file can be changed
-UNSEEN = "its loader makes its code out of sight"
+UNSEEN = "its loader compiles it in a way that mutabot cannot follow"
 
 
 def loader_name(loader: Any) -> str:
-    """What people know a loader by."""
+    """The name of a loader's class."""
     kind = loader if isinstance(loader, type) else type(loader)
     return f"{kind.__module__}.{kind.__qualname__}"
 

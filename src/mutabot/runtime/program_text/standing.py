@@ -522,7 +522,7 @@ class Handing:
 
 
 def _weakly(receiver: Any) -> Callable[[], Any]:
-    """What gives the object that a mock was read from as long as it is there: it may keep the mock itself."""
+    """Return a function that gives the object a mock was read from, without keeping that alive."""
     try:
         reference = weakref.ref(receiver)
     except TypeError:

@@ -80,7 +80,7 @@ class Switch:
 
 
 class _Unknown:
-    """The type of what stands for a value that is not known, and of nothing else."""
+    """The type of the marker of an unknown value, and of nothing else."""
 
 
 _UNKNOWN = _Unknown()
@@ -172,7 +172,7 @@ class Alternatives:
 
     @contextmanager
     def paused(self) -> Iterator[None]:
-        """Let all places be the original's meanwhile, and count none of them; for one thread alone."""
+        """Evaluate all places as the original meanwhile, and count none; only while no other thread runs."""
         on = self.switches[1:]
         self.switches[1:] = [False] * len(on)
         try:

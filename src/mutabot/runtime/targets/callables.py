@@ -184,7 +184,7 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler, *, is_set: 
 
 
 def _of_property(handler: Handler) -> Handler:
-    """What a property calls are plain functions of the instance; handlers expect bound methods."""
+    """A property calls plain functions with the instance; handlers expect bound methods."""
 
     def call(
         wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
