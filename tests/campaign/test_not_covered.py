@@ -183,3 +183,35 @@ def test_a_file_that_no_test_imports_is_told_whatever_it_is_written_in(tmp_path:
     assert [call.place for call in untested.unreached_calls] == ["mission.py:6:5", "other.py:5:5"]
     assert untested.files == 3
     assert untested.unreached_files == ("old.py", "other.py")
+
+
+LOADER = """
+    import sys
+    from importlib.machinery import PathFinder, SourceFileLoader
+
+    class Templates(SourceFileLoader):
+        def source_to_code(self, data, path, **more):
+            return super().source_to_code(data.replace(b"STEP", b"(1 / 4)"), path, **more)
+
+    class Finder:
+        def find_spec(self, name, path=None, target=None):
+            if name != "mission":
+                return None
+            spec = PathFinder.find_spec(name, path)
+            spec.loader = Templates(name, spec.origin)
+            return spec
+
+    sys.meta_path.insert(0, Finder())
+"""
+
+
+def test_where_another_text_runs_it_is_not_said_that_no_test_reaches_a_call(tmp_path: Path) -> None:
+    """Its calls stand elsewhere: it is not known which of the file's are reached."""
+    program = "def ahead(arm):\n    arm.move_by(STEP)\n\ndef back(arm):\n    arm.move_by(-STEP)\n"
+    folder = write_project(tmp_path, program, AHEAD, more={"conftest.py": LOADER})
+    results = ran(folder)
+    assert score(results) == 1.0
+    assert results.untested.unreached_calls == ()
+    assert {one.doubt for one in results.untested.doubtful_calls} == {
+        "what runs of this file is not the text that stands there"
+    }

@@ -190,6 +190,20 @@ def test_a_loader_makes_of_changed_text_what_it_makes_of_any(name: str, loader: 
     assert step.given_up == []
 
 
+@pytest.mark.parametrize(
+    ("loader", "last", "both"),
+    [(SourceFileLoader, 2, 4), (OwnExecution, 2, 4), (ByTree, 4, 6), (ByText, 10, 20)],
+)
+def test_a_step_that_is_last_comes_after_the_loader_that_rewrites_a_tree(
+    name: str, loader: Any, last: int, both: int
+) -> None:
+    early, late = Doubling(name), Doubling(name)
+    late.is_last = True  # type: ignore[attr-defined]
+    assert loaded_by(loader, name, late).x == last
+    assert loaded_by(loader, name, early, late).x == both
+    assert (len(early.sources), len(late.sources)) == (1, 2)
+
+
 def test_text_that_a_loader_rewrites_is_told_from_that_of_the_file(name: str) -> None:
     step = Doubling(name)
     loaded_by(SourceFileLoader, name, step)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from importlib.util import decode_source
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ from mutabot.frozen import frozen
 from mutabot.journal.records import Untested, UntestedCall
 from mutabot.languages.front_end import front_end_of, program_files
 from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.languages.python import extent_of
 from mutabot.model import Operation, Role, Span
 from mutabot.model.mutant import Place
 from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, functions_of, together
@@ -31,6 +33,7 @@ _End = tuple[str, int, int]
 #: what a process that cannot be seen is told by
 UNSEEN = "processes"
 _DOUBT = "a process that cannot be seen may reach it"
+_OTHER_TEXT = "what runs of this file is not the text that stands there"
 
 
 @frozen
@@ -153,14 +156,27 @@ def _calls(
     targets = {one.target for one in operations}
     places = [one for one in baseline.hits if one.operation in targets and one.site.role is Role.PROGRAM]
     known = _known(operations, places, texts, seen)
+    spans = {place.site.span for place in places}
     found = []
     for file, text in texts.items() if operations else ():
         if file in seen.imported and file not in seen.asked:
             continue  # whether its calls were made is not known
-        found += [
+        unreached = [
             one for one in calls_in(text, file, known) if _end(one.site.span) not in seen.sites | seen.alone
         ]
+        if unreached and not _are_of(text, [span for span in spans if span.file == file]):
+            unreached = [replace(one, doubt=one.doubt or _OTHER_TEXT) for one in unreached]
+        found += unreached
     return found, len({place.site for place in places})
+
+
+def _are_of(text: str, spans: Iterable[Span]) -> bool:
+    """Whether code of this text can have been at all of these places: a loader may compile another one."""
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.expr | ast.stmt)]
+    places = {extent_of(node) for node in nodes}
+    ends = {extent_of(node)[2:] for node in nodes if isinstance(node, ast.Call)}
+    found = ((span.line, span.column, span.end_line, span.end_column) for span in spans)
+    return all(place in places or place[2:] in ends for place in found)
 
 
 def _known(

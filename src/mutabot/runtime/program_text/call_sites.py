@@ -140,7 +140,10 @@ class CallSites(SourceStep):
 
     Attributes:
         loaded: files that were given questions.
+        is_last: what rewrites calls sees none of the questions.
     """
+
+    is_last = True
 
     names: Container[str]
     role: Callable[[str], Role | None]

@@ -6,7 +6,8 @@ patched, so a loader makes of the changed text what it would make of any.
 
 Text is changed when it is compiled. A loader that parses it first gets the changed tree, as long as the
 import system asks it for code: whoever parses a program at other times only reads it. A tree that comes
-without the changes gets them when it is compiled.
+without the changes gets them when it is compiled. So do trees, in any case, what only asks about calls: a
+loader that looks at calls sees those of the program alone.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ from typing import Any, Protocol
 class SourceStep(Protocol):
     """Changes source files before they are compiled.
 
-    One with an attribute ``is_optional`` leaves alone what is not compiled as it stands in its file.
+    One with an attribute ``is_optional`` leaves alone what is not compiled as it stands in its file; one with
+    an attribute ``is_last`` takes its turn after whoever rewrites a tree.
     """
 
     def wants(self, path: str) -> bool:
@@ -82,8 +84,10 @@ _builtin = builtins.compile
 _INHERITED = 0
 for _name in {*__future__.all_feature_names} - {"nested_scopes", "generators"}:
     _INHERITED |= getattr(__future__, _name).compiler_flag
-#: how all names begin that are put into text, and an attribute of trees that are known to be done with
-_OURS, DONE = "__mutabot", "is_done_by_mutabot"
+#: how all names begin that are put into text
+_OURS = "__mutabot"
+#: attributes of trees: all steps are done with it; the file that a loader has parsed; whether it was changed
+DONE, _PARSED, _CHANGED = "is_done_by_mutabot", "path_for_mutabot", "is_changed_by_mutabot"
 
 
 def install() -> None:
@@ -120,9 +124,14 @@ def _compile(
     if request is not None and not is_tree and _is_same(source, request.data):
         path: str | None = request.path
     else:
-        path = None if is_parsed else _wanted(filename)
-    if path is None or (is_tree and _has_ours(source)):
+        path = None if is_parsed else getattr(source, _PARSED, None) or _wanted(filename)
+    if path is None or (is_tree and hasattr(source, DONE)):
         return plainly()
+    is_met = is_tree and _has_ours(source)
+
+    def is_due(step: SourceStep) -> bool:
+        is_last = hasattr(step, "is_last")
+        return not is_last if is_parsed else is_last or not is_met
 
     def parse() -> Any:
         if is_tree:
@@ -130,19 +139,26 @@ def _compile(
         return _builtin(source, filename, mode, flags | ast.PyCF_ONLY_AST, True, optimize, **more)
 
     def finish(tree: ast.Module) -> Any:
-        if not is_parsed:
-            return compile_tree(tree, path, flags, optimize)
-        setattr(tree, DONE, True)
-        return tree
+        return tree if is_parsed else compile_tree(tree, path, flags, optimize)
 
     is_own = request is not None and path == request.path
     data = request.data if request is not None and is_own else text_of(path)
     is_whole = not is_tree and _is_same(source, data)
     text = data if is_tree or is_whole else _bytes_of(source)
-    made = _through_steps(path, text, parse, finish, is_whole=is_whole and not is_parsed)
+    is_plain = is_whole and not is_parsed
+    due = [one for one in steps if one.wants(path) and is_due(one)]
+    made = _through_steps(
+        path, text, parse, finish, [one for one in due if is_plain or not hasattr(one, "is_optional")]
+    )
     if request is not None and is_own:
         request.is_met, request.is_changed = True, request.is_changed or made is not None
-    return plainly() if made is None else made
+    if not is_parsed:
+        return plainly() if made is None else made
+    tree = plainly() if made is None else made
+    setattr(tree, _PARSED, path)
+    if made is not None:
+        setattr(tree, _CHANGED, True)
+    return tree
 
 
 def _through_steps(
@@ -150,11 +166,9 @@ def _through_steps(
     source: bytes,
     parse: Callable[[], Any],
     finish: Callable[[Any], Any],
-    *,
-    is_whole: bool,
+    waiting: list[SourceStep],
 ) -> Any:
-    """Apply the steps to a file, and return what ``finish`` makes of it; None if no step can change it."""
-    waiting = [one for one in steps if one.wants(path) and (is_whole or not hasattr(one, "is_optional"))]
+    """Apply these steps to a file, and return what ``finish`` makes of it; None if no step can change it."""
     while waiting:
         failing = waiting[0]
         try:
@@ -222,6 +236,6 @@ def _bytes_of(source: Any) -> bytes:
 
 def _has_ours(tree: ast.AST) -> bool:
     """Whether a tree has been changed before."""
-    return hasattr(tree, DONE) or any(
+    return hasattr(tree, _CHANGED) or any(
         isinstance(node, ast.Name) and node.id.startswith(_OURS) for node in ast.walk(tree)
     )
