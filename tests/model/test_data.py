@@ -153,6 +153,11 @@ def test_fields_are_read_as_they_are_stored() -> None:
         (Point(1.0, Decimal(2)), (0.5, 3.0), Point(0.5, Decimal("3.0"))),
         ("red", "blue", "blue"),
         (Fraction(1, 2), math.nan, None),
+        # the digits that a floating-point number has no place for
+        (Fraction(1, 3), -1 / 3, Fraction(-1, 3)),
+        (Fraction(1, 3), 1 / 3, Fraction(1, 3)),
+        (Decimal("0.1000000000000000000001"), -0.1, Decimal("-0.1000000000000000000001")),
+        ([Fraction(2, 3), 1.0], [-2 / 3, 1.0], [Fraction(-2, 3), 1.0]),
     ],
 )
 def test_a_new_value_is_of_the_class_of_what_was_there(before: Any, value: Any, after: Any) -> None:
@@ -164,6 +169,11 @@ def test_a_new_value_is_of_the_class_of_what_was_there(before: Any, value: Any, 
         assert type(found) is type(after)
         if isinstance(after, list | tuple):
             assert [type(one) for one in found] == [type(one) for one in after]
+
+
+@pytest.mark.parametrize("number", [Fraction(10**400), Decimal("sNaN")])
+def test_an_exact_number_that_is_no_floating_point_number_is_left_alone(number: Any) -> None:
+    assert data_of(number) is UNKNOWN
 
 
 @pytest.mark.parametrize("number", [Decimal("0.5"), Fraction(1, 2), Metres(0.5)])

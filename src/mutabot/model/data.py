@@ -70,7 +70,7 @@ def _data_of(value: Any, depth: int) -> Any:
     if kind in _FIXED or kind is bytearray or kind is array or is_of_numpy(value):
         return value
     if is_told(value):
-        return float(value) if _is_exact(value) else value
+        return _as_float(value) if _is_exact(value) else value
     if is_member(value):
         return value
     for base, plainly in _PLAINLY:
@@ -105,12 +105,28 @@ def in_place_of(before: Any, value: Any) -> Any:
     if value is None or kind is type(value) or kind in _FIXED:
         return value
     if _is_exact(before):
-        return _made(kind, value, repr(value)) if type(value) in (int, float) else value
+        return _exactly(before, value) if type(value) in (int, float) else value
     if is_of_numpy(before):
         is_scalar = not is_of_numpy(value) and not before.shape
         return kind(value) if is_scalar and before.dtype.kind == "f" else value
     is_subclass = any(issubclass(kind, base) and type(value) is base for base, _ in _PLAINLY)
     return _made(kind, value, value) if is_subclass else value
+
+
+def _as_float(value: Any) -> Any:
+    """A decimal or fraction as operators see it; ``UNKNOWN`` if it is too large, or signals."""
+    try:
+        return float(value)
+    except (OverflowError, ValueError):
+        return UNKNOWN
+
+
+def _exactly(before: Any, value: float) -> Any:
+    """The like of a decimal or fraction: all its digits stay where its sign alone is another."""
+    number = _as_float(before)
+    if value == number:
+        return before
+    return -before if value == -number else _made(type(before), value, repr(value))
 
 
 def _sequence(before: Any, value: Any) -> Any:
