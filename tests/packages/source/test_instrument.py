@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 import builtins
 import importlib
+import py_compile
 import runpy
 import sys
 import traceback
 import types
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from importlib.machinery import SourcelessFileLoader
 from pathlib import Path
 from typing import Any
 
@@ -287,6 +289,21 @@ def test_another_text_under_the_name_of_a_file_is_left_alone_and_told(tmp_path: 
         switch_off(hook)
     assert space["x"] == 3
     assert hook.problems == {text.file: "other text than the file holds is compiled under its name"}
+
+
+def test_a_file_whose_code_is_read_from_a_compiled_file_is_told(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "x = 1 + 1\n")
+    hook = SessionText(str(tmp_path), Instrumentation((text,)))
+    hook.install()
+    compiled = str(tmp_path / "compiled.pyc")
+    module = types.ModuleType("of_compiled_code")
+    try:
+        py_compile.compile(str(tmp_path / text.file), cfile=compiled)
+        SourcelessFileLoader("of_compiled_code", compiled).exec_module(module)
+    finally:
+        switch_off(hook)
+    assert module.x == 2
+    assert hook.problems == {text.file: instrument._ELSEWHERE}
 
 
 def test_a_file_whose_code_comes_out_of_sight_is_told(tmp_path: Path) -> None:

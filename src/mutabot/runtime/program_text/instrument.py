@@ -18,7 +18,7 @@ import sys
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
@@ -28,7 +28,8 @@ from mutabot.model.source_units import digest
 from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence, Refusal
-from mutabot.runtime.program_text import loading
+from mutabot.runtime.processes.environment import listen
+from mutabot.runtime.program_text import compiling, loading
 from mutabot.runtime.program_text.compiling import text_of
 from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
@@ -283,6 +284,7 @@ class _ChangedError(MismatchError):
 
 
 _CHANGED = "it has changed since its mutants were made"
+_ELSEWHERE = "its code is not compiled from its text here, but read from elsewhere, such as a .pyc file"
 _OTHER = "other text than the file holds is compiled under its name"
 
 
@@ -349,6 +351,7 @@ class SessionText:
                 self._refuse(text, "it was imported before mutabot could look at it")
         loading.add(self)
         loading.hook_pytest_first(self)
+        listen(("exec",), self._hear)
 
     def wants(self, path: str) -> bool:
         """Whether there are alternatives for a file."""
@@ -372,6 +375,16 @@ class SessionText:
             self.imported.remove(text.file)
         is_known = isinstance(error, _ChangedError)
         self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
+
+    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """A module is executed: of one that was compiled elsewhere, the text plays no part."""
+        code = arguments[0]
+        if not isinstance(code, CodeType) or code.co_name != "<module>":
+            return
+        text = self._text_of(code.co_filename)
+        is_known = text is None or text.file in self.imported or text.file in self.problems
+        if text is not None and not is_known and self in compiling.steps:
+            self._refuse(text, _ELSEWHERE)
 
     def _text_of(self, path: str) -> ProgramText | None:
         return self._texts.get(real_path(path))
