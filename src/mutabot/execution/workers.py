@@ -60,12 +60,15 @@ class TokenPool:
         """Where a fork parent opens it for a moment: its tests may count descriptors, or write to them."""
         return f"/proc/{os.getpid()}/fd/{self.reading}"
 
-    def take(self) -> bool:
-        """Take a free token, if there is one."""
+    def take(self, *, beside: int = 0) -> bool:
+        """Take a free token, if there is one beside so many others."""
         try:
-            return bool(os.read(self.reading, 1))
+            taken = len(os.read(self.reading, 1 + beside))
         except BlockingIOError:
             return False
+        is_enough = taken > beside
+        self.give_back(taken - is_enough)
+        return is_enough
 
     def give_back(self, count: int) -> None:
         """Put tokens back; never more than there are."""
@@ -222,7 +225,16 @@ class Workers:
             return True
         if not self._workers:
             self.pool.refill()  # nobody is left who could hold one
-        return self.pool.take()
+        return self.pool.take(beside=self._spared)
+
+    @property
+    def _spared(self) -> int:
+        """Tokens that are left to fork parents which have ended no test yet, one for each to fork with.
+
+        Outcomes wait until the parent ends the test in which they were forked: what runs beside it puts off
+        the first of them.
+        """
+        return sum(one.task.is_fork_parent and not one.result.ends for one in self._workers)
 
     def _start(self, task: Task) -> None:
         if task.job.forking is not None:
@@ -276,6 +288,7 @@ class Workers:
         """Wait for an event, ``most`` seconds at most; ``next_task`` has no place yet."""
         timeout = min((one for one in (self._patience(), most) if one is not None), default=None)
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
+        is_for_token = is_for_token and not self._spared  # whom tokens are spared for tells when it ends
         if is_for_token:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         if self.look is not None:
