@@ -6,6 +6,8 @@ import ast
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from pathlib import Path
 from pkgutil import resolve_name
 
 import pytest
@@ -210,11 +212,27 @@ def test_the_source_speaks_of_rooms_and_modules_that_there_are() -> None:
             pytest.fail(f"{file.relative_to(SOURCE.parent)} speaks of {name}, which is not there")
 
 
-def test_no_two_public_classes_share_a_name() -> None:
+#: aliases of option types are always written with their module: ``options.Seed``
+_WITH_MODULE = {"mutabot/cli/options.py"}
+
+
+def test_no_two_classes_share_a_name() -> None:
+    """In the core, private classes and aliases of types count as well."""
     found: dict[str, set[str]] = {}
     for file in sorted(SOURCE.parent.rglob("*.py")):
-        for node in ast.parse(file.read_text(encoding="utf-8")).body:
-            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                found.setdefault(node.name, set()).add(str(file.relative_to(SOURCE.parent)))
+        place = str(file.relative_to(SOURCE.parent))
+        for name in _types(file) if place not in _WITH_MODULE else ():
+            found.setdefault(name.lstrip("_"), set()).add(place)
     assert found
     assert {name: sorted(places) for name, places in found.items() if len(places) > 1} == {}
+
+
+def _types(file: Path) -> Iterator[str]:
+    is_core = file.is_relative_to(SOURCE)
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef) and (is_core or not node.name.startswith("_")):
+            yield node.name
+        elif isinstance(node, ast.Assign) and is_core and isinstance(node.targets[0], ast.Name):
+            name = node.targets[0].id
+            if re.fullmatch(r"_?[A-Z][a-z]\w*", name) and "TypeVar(" not in ast.unparse(node.value):
+                yield name

@@ -76,8 +76,8 @@ class Extension:
     Attributes:
         interface: the version of this interface that the package was written for.
         operators: subclasses of ``mutabot.Operator``, by the operators' names.
-        middlewares: modules that keep ``runtime.targets.target.Middleware``, by the name of the module of
-            the client library whose import puts their hooks in place.
+        middlewares: modules that keep ``runtime.targets.target.MiddlewareModule``, by the name of the client
+            library's module whose import puts their hooks in place.
         environments: modules that keep ``runtime.targets.target.Environment``, by any name.
         futures: classes of futures, by the name under which recorded answers keep them: one that is made
             without arguments is not done until somebody completes it.

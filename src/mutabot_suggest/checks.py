@@ -15,7 +15,7 @@ from typing import Any
 
 from mutabot.frozen import frozen
 
-from .project import Addition, PlaceInTest, ProjectFiles, equal, function_of, text_of, within
+from .project import Addition, PlaceInTest, SuiteFiles, equal, function_of, text_of, within
 from .readings import ORACLE, Measured, Read, ReadExpression, is_number, known
 
 CONFIDENCE = 0.95
@@ -162,7 +162,7 @@ class ProposedCheck:
         return Addition(self.place, (self.statement,), used, (*needs, *approx))
 
 
-def candidates(project: ProjectFiles, measured: Measured) -> tuple[list[ProposedCheck], dict[str, str]]:
+def candidates(project: SuiteFiles, measured: Measured) -> tuple[list[ProposedCheck], dict[str, str]]:
     """All checks that would notice a survivor and that a person would merge.
 
     Beside them, by mutant, what would notice it and is no such check.

@@ -34,7 +34,7 @@ _NO_END = "\\ No newline at end of file\n"
 
 
 @dataclass(slots=True)
-class ProjectFiles:
+class SuiteFiles:
     """The files of a project.
 
     Attributes:
@@ -181,7 +181,7 @@ def text_of(node: ast.expr) -> str:
     return text if '"' in text or "\\" in text else text.replace("'", '"')
 
 
-def place_of(project: ProjectFiles, test: str) -> PlaceInTest | None:
+def place_of(project: SuiteFiles, test: str) -> PlaceInTest | None:
     """The place of a test by its node id; None if nothing can be added to it."""
     node = test.partition("[")[0]
     file, *path = node.split("::")
@@ -211,7 +211,7 @@ def _is_scenario(function: Function) -> bool:
     return any(one.rpartition(".")[2] == "scenario" for one in called)
 
 
-def _given_around(project: ProjectFiles, file: str) -> tuple[str, ...]:
+def _given_around(project: SuiteFiles, file: str) -> tuple[str, ...]:
     """What fixtures and steps of a test file are given: fixtures, as far as a test has asked for them."""
     functions = [
         node
@@ -285,7 +285,7 @@ def equal(style: str, text: str, value: str) -> str:
 _AT_END = "from mutabot_suggest.noted import at_end as _mutabot_at_end"
 
 
-def edited(project: ProjectFiles, additions: Iterable[Addition]) -> dict[str, str]:
+def edited(project: SuiteFiles, additions: Iterable[Addition]) -> dict[str, str]:
     """The new texts of the files with these additions, by file.
 
     What is added to tests that another tool makes runs beside mutabot alone.

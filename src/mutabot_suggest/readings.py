@@ -24,7 +24,7 @@ from mutabot.model.events import TestEnd
 from mutabot.model.operation import owner_of
 from mutabot.model.quantity import step_of
 
-from .project import Addition, PlaceInTest, ProjectFiles, copy_of, edited, name_in, text_of, top_names
+from .project import Addition, PlaceInTest, SuiteFiles, copy_of, edited, name_in, text_of, top_names
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
@@ -54,7 +54,7 @@ def is_number(value: Any) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpression]:
+def readings_at(project: SuiteFiles, place: PlaceInTest) -> list[ReadExpression]:
     """The readings of a place, those first by which the tests read already."""
     module = project.module(place.file)
     assert module is not None
@@ -72,7 +72,7 @@ def readings_at(project: ProjectFiles, place: PlaceInTest) -> list[ReadExpressio
     return list({one.text: one for one in reversed(found)}.values())[::-1]
 
 
-def of_objects(project: ProjectFiles) -> list[tuple[str, float]]:
+def of_objects(project: SuiteFiles) -> list[tuple[str, float]]:
     """Readings of objects, ``module:Class.name``, each with its tolerance."""
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
@@ -84,7 +84,7 @@ def of_objects(project: ProjectFiles) -> list[tuple[str, float]]:
 
 
 def _by_oracle(
-    project: ProjectFiles, place: PlaceInTest, module: ast.Module, tolerance: float
+    project: SuiteFiles, place: PlaceInTest, module: ast.Module, tolerance: float
 ) -> Iterator[ReadExpression]:
     """The oracle's functions, where all that they need is at hand under the same name."""
     for file in project.python_files(project.request.configuration.oracle):
@@ -160,7 +160,7 @@ class Measured:
 
 def measure(
     request: Request,
-    project: ProjectFiles,
+    project: SuiteFiles,
     places: Mapping[str, PlaceInTest],
     survivors: Sequence[tuple[Mutant, Sequence[int]]],
     progress: Progress,

@@ -22,7 +22,7 @@ from mutabot.results.results import MutantResult
 from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
 
 from .checks import ProposedCheck, Trials, candidates, unseen
-from .project import OTHER, PlaceInTest, ProjectFiles, copy_of, edited, place_of
+from .project import OTHER, PlaceInTest, SuiteFiles, copy_of, edited, place_of
 from .readings import Measured, is_number, known, measure
 
 #: how often checks are chosen anew because one of them failed its proof
@@ -145,7 +145,7 @@ def suggest(
     if not to_kill:
         return nothing
     quiet = Quiet(progress)
-    project = ProjectFiles(request)
+    project = SuiteFiles(request)
     places = {test: place for test in tests if (place := place_of(project, test)) is not None}
     if not places:
         raise NothingToDoError(
@@ -238,7 +238,7 @@ class Proof:
     """
 
     request: Request
-    project: ProjectFiles
+    project: SuiteFiles
     progress: Progress
     failed: dict[ProposedCheck, str] = field(default_factory=dict)
     kills: dict[ProposedCheck, Trials] = field(default_factory=dict)
@@ -321,7 +321,7 @@ def _own_name(node: str) -> str:
     return node.partition("[")[0].rpartition("::")[2]
 
 
-def texts_with(project: ProjectFiles, checks: Sequence[ProposedCheck]) -> dict[str, str]:
+def texts_with(project: SuiteFiles, checks: Sequence[ProposedCheck]) -> dict[str, str]:
     """The texts of the files that change when checks stand at the ends of their tests, by path."""
     return edited(project, (one.addition() for one in checks))
 

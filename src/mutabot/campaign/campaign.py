@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: a mutant in a round
 MutantRun = tuple[Mutant, int]
+#: the same by the mutant's id
+RunId = tuple[str, int]
 #: seconds by the clock on the wall that any test gets at least: the mutant may wait for what comes at last
 WAITING = 60.0
 #: seconds of processor time that any test gets beside a multiple of the baseline's; and what so many calls of

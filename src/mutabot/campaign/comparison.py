@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from mutabot.model.events import TestEnd
 
 #: an operation and the notation of its command
-Command = tuple[str, str | None]
+CommandName = tuple[str, str | None]
 _PARTS = (("w", "x", "y", "z"), ("x", "y", "z"))
 
 
-def _angles_of(operations: Sequence[Operation]) -> dict[Command, dict[str, Quantity]]:
+def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Quantity]]:
     """The orientations and angles among the values of each command, by name."""
-    owners: list[tuple[Command, Operation | Pattern]] = [((one.target, None), one) for one in operations]
+    owners: list[tuple[CommandName, Operation | Pattern]] = [((one.target, None), one) for one in operations]
     owners += [((one.target, pattern.text), pattern) for one in operations for pattern in one.patterns]
     return {
         command: {
@@ -164,7 +164,7 @@ class TraceCall:
     key: str
     written: Any = None
     read: Any = None
-    what: Command = ("", None)
+    what: CommandName = ("", None)
 
 
 @frozen
@@ -408,7 +408,7 @@ def _first_difference(
     original: Observation,
     mutant: Observation,
     tolerance: float,
-    angles: Mapping[Command, Mapping[str, Quantity]],
+    angles: Mapping[CommandName, Mapping[str, Quantity]],
 ) -> str | None:
     for index, (before, after) in enumerate(zip(original.events, mutant.events, strict=False), start=1):
         if before.key != after.key:

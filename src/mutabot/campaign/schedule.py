@@ -23,12 +23,11 @@ from .confirmation import confirm
 from .search import run_ladders
 
 if TYPE_CHECKING:
-    from mutabot.campaign.campaign import Campaign, MutantRun
+    from mutabot.campaign.campaign import Campaign, MutantRun, RunId
     from mutabot.campaign.reuse.keys import OutcomeWriter
     from mutabot.campaign.reuse.reuse import Reused
     from mutabot.model import Mutant, Outcome, Verdict
 
-Pair = tuple[str, int]
 #: how a campaign ended whose budget was not enough
 OUT_OF_TIME = "out of time"
 #: runs of the first batch for each of ``-j``
@@ -104,9 +103,9 @@ def _run_batches(
 def in_order(
     mutants: Sequence[Mutant],
     rounds: int,
-    done: Iterable[Pair],
+    done: Iterable[RunId],
     seed: int,
-    before: Mapping[Pair, Verdict],
+    before: Mapping[RunId, Verdict],
 ) -> list[MutantRun]:
     """All that is not done, what is expected to tell most first, one round after the other.
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from mutabot.model import Outcome
 
 #: indices of a ladder's magnitudes, from the smallest
-Step = int
+LadderStep = int
 
 
 @dataclass(slots=True)
@@ -46,11 +46,11 @@ class LadderSearch:
     size: int
     rounds: int
     seed: int = 0
-    always: frozenset[Step] = frozenset()
-    found: dict[int, dict[Step, MagnitudeResult]] = field(default_factory=dict)
+    always: frozenset[LadderStep] = frozenset()
+    found: dict[int, dict[LadderStep, MagnitudeResult]] = field(default_factory=dict)
     _guards: set[int] = field(default_factory=set)
 
-    def take(self, round: int, step: Step, seen: MagnitudeResult) -> None:
+    def take(self, round: int, step: LadderStep, seen: MagnitudeResult) -> None:
         """A magnitude was run in a round."""
         self.found.setdefault(round, {})[step] = seen
 
@@ -60,7 +60,7 @@ class LadderSearch:
         rows = ({float(step): one for step, one in row.items()} for row in self.found.values())
         return any(bracket_of(row).is_violated for row in rows)
 
-    def due(self, round: int) -> set[Step]:
+    def due(self, round: int) -> set[LadderStep]:
         """The magnitudes to run next in a round; empty if nothing more is asked there."""
         row = self.found.get(round, {})
         left = set(range(self.size)) - row.keys()
@@ -75,14 +75,16 @@ class LadderSearch:
             return wanted & left
         return self._guard(round, row, left)
 
-    def _guess(self, round: int) -> tuple[Step, ...]:
+    def _guess(self, round: int) -> tuple[LadderStep, ...]:
         """Both ends of the bracket of the first round; none in that round itself, or if it knows nothing."""
         row = self.found.get(0, {})
         if round == 0 or not any(one.is_valid for one in row.values()):
             return ()
         return _ends(row, self.size)
 
-    def _guard(self, round: int, row: Mapping[Step, MagnitudeResult], left: set[Step]) -> set[Step]:
+    def _guard(
+        self, round: int, row: Mapping[LadderStep, MagnitudeResult], left: set[LadderStep]
+    ) -> set[LadderStep]:
         """One magnitude more, the first time that nothing else is left to ask."""
         if round in self._guards or not left:
             return set()
@@ -97,7 +99,7 @@ class LadderSearch:
         return {fewest[int(ties * len(fewest))]}
 
 
-def _ends(row: Mapping[Step, MagnitudeResult], size: int) -> tuple[Step, Step]:
+def _ends(row: Mapping[LadderStep, MagnitudeResult], size: int) -> tuple[LadderStep, LadderStep]:
     """The largest step that was missed, and the smallest above it that was noticed or refused.
 
     −1 and ``size`` where there is none.
@@ -108,7 +110,7 @@ def _ends(row: Mapping[Step, MagnitudeResult], size: int) -> tuple[Step, Step]:
     return low, high
 
 
-def _middle(row: Mapping[Step, MagnitudeResult], low: Step, high: Step) -> set[Step]:
+def _middle(row: Mapping[LadderStep, MagnitudeResult], low: LadderStep, high: LadderStep) -> set[LadderStep]:
     """The step in the middle between two, of those that were not run; none if all were."""
     between = [step for step in range(low + 1, high) if step not in row]
     return {between[len(between) // 2]} if between else set()

@@ -85,9 +85,9 @@ _NodeName = Annotated[str, AfterValidator(_node_name)]
 _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
 _Family = Annotated[str, AfterValidator(_known_family), _FamilyNames()]
-_Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
-_Moment = Annotated[str, AfterValidator(_moment)]
-_Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]
+_SelectedFamilies = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
+_MomentText = Annotated[str, AfterValidator(_moment)]
+_Moments = Annotated[tuple[_MomentText, ...], Field(strict=False, min_length=1)]
 _Memory = BeforeValidator(partial(_amount, least=_LEAST_MEMORY, example="'4 GB'"))
 _Room = BeforeValidator(partial(_amount, least=0, example="'200 MB', or 0 for none"))
 _Share = Annotated[float, Field(ge=0, le=1)]
@@ -199,7 +199,7 @@ class Settings(Table):
 
         when = ["every", "once", "from 10"]
     """
-    families: _Families = USUAL
+    families: _SelectedFamilies = USUAL
     """[Families](operators.md) of mutants to run (`--family`).
 
         families = ["robot", "conventional"]

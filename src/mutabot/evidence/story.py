@@ -301,12 +301,12 @@ def _story(original: RecordedPaths, mutant: RecordedPaths, apart: Sequence[Apart
 
 
 #: two bodies that touch each other, sorted
-_Pair = tuple[str, ...]
+_BodyPair = tuple[str, ...]
 
 
-def contacts_in(recording: Recording) -> dict[_Pair, tuple[float, float | None]]:
+def contacts_in(recording: Recording) -> dict[_BodyPair, tuple[float, float | None]]:
     """When two bodies touched first, and when they separated for good; None if they touch at the end."""
-    found: dict[_Pair, tuple[float, float | None]] = {}
+    found: dict[_BodyPair, tuple[float, float | None]] = {}
     for one in recording.moments:
         pair = tuple(one.text.split(", ", 1))
         if one.what == "touch":
@@ -317,8 +317,8 @@ def contacts_in(recording: Recording) -> dict[_Pair, tuple[float, float | None]]
 
 
 def _contacts(
-    usual: Mapping[_Pair, tuple[float, float | None]],
-    contacts: Mapping[_Pair, tuple[float, float | None]],
+    usual: Mapping[_BodyPair, tuple[float, float | None]],
+    contacts: Mapping[_BodyPair, tuple[float, float | None]],
     mutant: RecordedPaths,
     end: float,
 ) -> Iterator[str]:
@@ -339,7 +339,7 @@ def _contacts(
         yield f"{pair[0]} touched {pair[1]} at {contacts[pair][0]:.1f} s"
 
 
-def _is_held(pair: _Pair, seen: RecordedPaths) -> bool:
+def _is_held(pair: _BodyPair, seen: RecordedPaths) -> bool:
     """Whether one of the two is tracked and the other neither stands still nor is tracked."""
     fixed = {block.name for block in seen.recording.blocks}
     return len(seen.paths.keys() & set(pair)) == 1 and fixed.isdisjoint(pair)

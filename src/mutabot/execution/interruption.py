@@ -25,7 +25,7 @@ class Interruption(KeyboardInterrupt):
     """A first Ctrl-C, raised where the campaign waits: its state is consistent."""
 
 
-class _Keeper:
+class _InterruptionGuard:
     """Keeps interruptions until they are safe, while a campaign runs.
 
     Attributes:
@@ -61,7 +61,7 @@ class _Keeper:
         self.is_late = True
 
 
-_keeper: _Keeper | None = None
+_keeper: _InterruptionGuard | None = None
 
 
 def interrupt(number: int = signal.SIGINT, frame: FrameType | None = None) -> None:
@@ -84,7 +84,7 @@ def interruptions_kept() -> Iterator[None]:
     if _keeper is not None or not is_main or before not in (signal.default_int_handler, signal.SIG_IGN):
         yield
         return
-    keeper = _keeper = _Keeper()
+    keeper = _keeper = _InterruptionGuard()
     if before is signal.default_int_handler:
         signal.signal(signal.SIGINT, interrupt)
     try:

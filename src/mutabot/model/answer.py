@@ -100,7 +100,7 @@ def keep(value: Any, here: Mapping[str, Any], handles: Collection[str] = ()) -> 
 
     Raises NotKeptError if it cannot be copied safely.
     """
-    return _Keeper(here, frozenset(handles)).keep(value, 0)
+    return _AnswerWriter(here, frozenset(handles)).keep(value, 0)
 
 
 def restore(data: Any, here: Mapping[str, Any]) -> Any:
@@ -118,7 +118,7 @@ def restore(data: Any, here: Mapping[str, Any]) -> Any:
     return _MADE_BY[form](restore(item, here) for item in content)
 
 
-class _Keeper:
+class _AnswerWriter:
     def __init__(self, here: Mapping[str, Any], handles: frozenset[str]) -> None:
         self._here = here
         self._handles = handles

@@ -73,9 +73,9 @@ class ExecutedByTests:
         return together(self._told[: last + 1])
 
 
-Function = ast.FunctionDef | ast.AsyncFunctionDef
+FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 #: the first and last line and column of a node, or a line alone
-Extent = tuple[int, ...]
+NodeExtent = tuple[int, ...]
 
 
 def is_test_file(name: str) -> bool:
@@ -86,13 +86,13 @@ def is_test_file(name: str) -> bool:
 
 def is_unit(node: ast.AST) -> bool:
     """Whether a function is a unit of its own: a decorator that is not known may do anything with it."""
-    return isinstance(node, Function) and all(map(_is_plain, node.decorator_list))
+    return isinstance(node, FunctionNode) and all(map(_is_plain, node.decorator_list))
 
 
-def functions_of(tree: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]]:
+def functions_of(tree: ast.AST, prefix: str = "") -> Iterator[tuple[str, FunctionNode]]:
     """The functions of a module and its classes that are units, with their qualified names."""
     for node in ast.iter_child_nodes(tree):
-        if isinstance(node, Function):
+        if isinstance(node, FunctionNode):
             if is_unit(node):
                 yield prefix + node.name, node
         elif isinstance(node, ast.ClassDef):
@@ -184,9 +184,9 @@ class File:
         """A unit in words: ``place() in sorting.py``."""
         return f"{name.partition('#')[0]}() in {self.name}" if name else f"module level of {self.name}"
 
-    def moves_to(self, new: File) -> dict[Extent, Extent | None]:
+    def moves_to(self, new: File) -> dict[NodeExtent, NodeExtent | None]:
         """Where lines and nodes of this text stand in a new one; None where that is not clear."""
-        found: dict[Extent, Extent | None] = {}
+        found: dict[NodeExtent, NodeExtent | None] = {}
         for name, node in (self.nodes or {}).items():
             if new.nodes is None or self.said[name] != new.said.get(name):
                 continue
@@ -215,7 +215,7 @@ def _is_quiet(node: ast.AST) -> bool:
     return isinstance(node, ast.Import | ast.ImportFrom | ast.Pass)
 
 
-def _extent(node: ast.AST) -> Extent:
+def _extent(node: ast.AST) -> NodeExtent:
     line = getattr(node, "lineno", None)
     if line is None:
         return ()
@@ -232,7 +232,7 @@ class _ModuleLevel(ast.NodeTransformer):
     def __init__(self, are_tests: bool) -> None:
         self._are_tests = are_tests
 
-    def visit_FunctionDef(self, node: Function) -> Function | None:
+    def visit_FunctionDef(self, node: FunctionNode) -> FunctionNode | None:
         if not is_unit(node):
             return node
         if (

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mutabot.results.score import Group
     from mutabot.results.suggested import Suggestion, Suggestions
 
-Place = Callable[[Span], str]
+PlaceName = Callable[[Span], str]
 #: numbers of mutants that a line gives
 _NUMBERS = 10
 _INTERVALS = "In parentheses: 95 % confidence intervals over further rounds and mutants (docs/statistics.md)."
@@ -51,7 +51,7 @@ class Section:
     is_detail: bool = False
 
 
-def sections(results: Results, place: Place) -> Iterator[Section]:
+def sections(results: Results, place: PlaceName) -> Iterator[Section]:
     """Yield the sections that have something to say. ``place`` names a span as the reader knows it."""
     yield from _errors(results)
     if results.done:
@@ -71,7 +71,7 @@ def sections(results: Results, place: Place) -> Iterator[Section]:
 MUTANT_COLUMNS = (">no.", "place", "operator", "*fault")
 
 
-def mutant_cells(mutant: Mutant, place: Place) -> tuple[str, ...]:
+def mutant_cells(mutant: Mutant, place: PlaceName) -> tuple[str, ...]:
     """The cells of these columns."""
     return str(mutant.number), place(mutant.site.span), mutant.operator, mutant.description
 
@@ -162,7 +162,7 @@ def untested(found: Untested, *, everything: bool = False) -> Iterator[Section]:
 _FEW = 10
 
 
-def _survivors(results: Results, place: Place) -> Iterator[Section]:
+def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
     """Survivors with an effect, the largest first; the numbers of those without one in a line."""
     idle = [one.mutant.number for one in results.survivors if status_of(one) is Verdict.NOT_COVERED]
     if idle:
@@ -193,7 +193,7 @@ def _survivors(results: Results, place: Place) -> Iterator[Section]:
     yield Section(f"{plural(len(survivors), 'survivor')}{order}", columns, rows, lines)
 
 
-def _outside(results: Results, place: Place) -> Iterator[Section]:
+def _outside(results: Results, place: PlaceName) -> Iterator[Section]:
     """Mutants with rounds that do not count, with the reason of the first such round."""
     found = [(verdict, results.with_verdict(verdict)) for verdict in OUTSIDE]
     told = ", ".join(f"{len(those)} {verdict}" for verdict, those in found if those)
@@ -222,7 +222,7 @@ def skipped(left_out: Sequence[LeftOut]) -> Iterator[Section]:
         yield Section(title, lines=lines, is_detail=True)
 
 
-def _thresholds(results: Results, place: Place) -> Iterator[Section]:
+def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:
     """The ladders of graded mutants, which are in no score."""
     if results.ladders:
         runs = sum(len(result.outcomes) for result in results.graded)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.engines.engine import _ForkParent
+from mutabot.campaign.engines.engine import _ForkRound
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import JournalReader
 from mutabot.model import Outcome, Verdict
@@ -122,9 +122,9 @@ def test_a_real_campaign_goes_on_where_it_was_interrupted(
     write_project(tmp_path, MISSION, WAITING)
     ended: set[str] = set()
     pressed: list[bool] = []
-    take = _ForkParent.take
+    take = _ForkRound.take
 
-    def taken(parent: _ForkParent, event: Event) -> Iterator[Outcome]:
+    def taken(parent: _ForkRound, event: Event) -> Iterator[Outcome]:
         if isinstance(event, ForkTestEnd) and event.end.is_decided:
             ended.add(event.mutant)
         elif isinstance(event, ForkSessionEnd):
@@ -135,7 +135,7 @@ def test_a_real_campaign_goes_on_where_it_was_interrupted(
         return take(parent, event)
 
     with monkeypatch.context() as patch:
-        patch.setattr(_ForkParent, "take", taken)
+        patch.setattr(_ForkRound, "take", taken)
         patch.setenv("WAITS", "yes")
         found, counted = interrupted(tmp_path)
     assert found.keys() >= {one for one in ended if not is_control(one)}

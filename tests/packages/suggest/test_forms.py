@@ -10,7 +10,7 @@ from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load
 from mutabot_suggest.checks import ProposedCheck
-from mutabot_suggest.project import OTHER, ProjectFiles, place_of
+from mutabot_suggest.project import OTHER, SuiteFiles, place_of
 from mutabot_suggest.readings import ORACLE, PROBE, ReadExpression, readings_at
 from mutabot_suggest.suggest import texts_with
 
@@ -24,15 +24,15 @@ NODES = {
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> ProjectFiles:
+def project(tmp_path: Path) -> SuiteFiles:
     """The project with tests in three styles."""
     folder = make(tmp_path)
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, folder)
-    return ProjectFiles(Request(configuration, vocabulary, rounds=1, seed=1, jobs=1))
+    return SuiteFiles(Request(configuration, vocabulary, rounds=1, seed=1, jobs=1))
 
 
-def checks(project: ProjectFiles, style: str) -> list[ProposedCheck]:
+def checks(project: SuiteFiles, style: str) -> list[ProposedCheck]:
     """That the arm is where it is to be at the end."""
     place = place_of(project, NODES[style])
     assert place is not None
@@ -41,7 +41,7 @@ def checks(project: ProjectFiles, style: str) -> list[ProposedCheck]:
     return [ProposedCheck(place, ReadExpression(at_end, PROBE, 0.01), 0.4, 3, 0.002, 0.02)]
 
 
-def test_added_checks_pass_on_the_original_and_notice_a_fault(project: ProjectFiles) -> None:
+def test_added_checks_pass_on_the_original_and_notice_a_fault(project: SuiteFiles) -> None:
     found = [one for style in STYLES.values() for one in checks(project, style)]
     texts = texts_with(project, found)
     patched(project.root, project.diff(texts))
@@ -54,7 +54,7 @@ def test_added_checks_pass_on_the_original_and_notice_a_fault(project: ProjectFi
     assert failed == len(NODES) + 1, "each test with a check fails, with both of its parameters"
 
 
-def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: ProjectFiles) -> None:
+def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: SuiteFiles) -> None:
     file = project.root / "tests" / "test_functions.py"
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n") + "# ü".encode())
     before = file.read_bytes().decode().splitlines(keepends=True)
@@ -64,21 +64,21 @@ def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: ProjectFiles) -> 
     assert all(line.endswith("\r\n") for line in after[:-1])
 
 
-def test_readings_of_what_the_tests_compare_have_the_quotes_of_all_others(project: ProjectFiles) -> None:
+def test_readings_of_what_the_tests_compare_have_the_quotes_of_all_others(project: SuiteFiles) -> None:
     place = place_of(project, NODES["pytest"])
     assert place is not None
     file = project.root / place.file
     compared = """assert arm.seen["x"] > 0 and arm.seen['y'] > 0 and arm.seen["it's"] > 0"""
     file.write_text(f"{file.read_text()}\n\ndef test_more(arm):\n    {compared}\n")
-    texts = {one.text for one in readings_at(ProjectFiles(project.request), place)}
+    texts = {one.text for one in readings_at(SuiteFiles(project.request), place)}
     assert {'arm.seen["x"]', 'arm.seen["y"]', """arm.seen["it's"]"""} <= texts
 
 
-def test_what_the_tests_compare_is_read_where_its_names_are_at_hand(project: ProjectFiles) -> None:
+def test_what_the_tests_compare_is_read_where_its_names_are_at_hand(project: SuiteFiles) -> None:
     place = place_of(project, NODES["pytest"])
     assert place is not None
     file = project.root / place.file
     compared = "arm.z > 0 and cup.z > 0 and arm.state()['x'] > len(arm.log)"
     file.write_text(f"{file.read_text()}\n\ndef test_more(arm, cup):\n    assert {compared}\n")
-    texts = {one.text for one in readings_at(ProjectFiles(project.request), place) if one.way == ORACLE}
+    texts = {one.text for one in readings_at(SuiteFiles(project.request), place) if one.way == ORACLE}
     assert texts == {"arm.x", "arm.z", "arm.log", "len(arm.log)"}

@@ -18,10 +18,10 @@ from mutabot.model import Operation, Pattern, Role, Site, Span
 from mutabot.model.notation import Notation
 from mutabot.model.operation import ANY, owner_of
 from mutabot.model.path import Path
-from mutabot.model.source_units import Function, last_name
+from mutabot.model.source_units import FunctionNode, last_name
 
-_Function = Function | ast.Lambda
-_Named = Function | ast.ClassDef
+_FunctionOrLambda = FunctionNode | ast.Lambda
+_NamedNode = FunctionNode | ast.ClassDef
 #: built-in functions whose value is of the user's making
 _HANDS_THROUGH = {"getattr", "iter", "max", "min", "next", "super", "vars"}
 #: an origin within the program, or of a module that is imported relative to it
@@ -68,7 +68,7 @@ def calls_in(source: str, file: str, known: KnownCalls) -> Iterator[NamedCall]:
     tree = ast.parse(source)
     origins = _Origins(tree, file)
     names = FRONT_END.names(source)
-    for call, scope in _calls(tree.body, _Scope()):
+    for call, scope in _calls(tree.body, _CallScope()):
         last = origins.last_name(call.func)
         if last not in known.operations:
             continue
@@ -85,7 +85,7 @@ def calls_in(source: str, file: str, known: KnownCalls) -> Iterator[NamedCall]:
 
 
 @frozen
-class _Scope:
+class _CallScope:
     """Where a call stands.
 
     Attributes:
@@ -95,7 +95,7 @@ class _Scope:
     """
 
     name: str = "<module>"
-    functions: tuple[_Function, ...] = ()
+    functions: tuple[_FunctionOrLambda, ...] = ()
     owner: ast.ClassDef | None = None
     is_class: bool = False
 
@@ -105,22 +105,24 @@ class _Scope:
         return f"{self.name}.{name}" if self.is_class else f"{self.name}.<locals>.{name}"
 
 
-def _calls(nodes: Sequence[ast.AST], scope: _Scope) -> Iterator[tuple[ast.Call, _Scope]]:
+def _calls(nodes: Sequence[ast.AST], scope: _CallScope) -> Iterator[tuple[ast.Call, _CallScope]]:
     """All calls below these nodes, without annotations and code for type checkers."""
     for node in nodes:
         if isinstance(node, ast.Call):
             yield node, scope
-        if isinstance(node, _Function):
+        if isinstance(node, _FunctionOrLambda):
             defaults = [one for one in (*node.args.defaults, *node.args.kw_defaults) if one is not None]
             decorators = [] if isinstance(node, ast.Lambda) else node.decorator_list
             yield from _calls([*decorators, *defaults], scope)
             name = "<lambda>" if isinstance(node, ast.Lambda) else node.name
-            inner = _Scope(scope.inner(name), (*scope.functions, node), scope.owner)
+            inner = _CallScope(scope.inner(name), (*scope.functions, node), scope.owner)
             yield from _calls([node.body] if isinstance(node.body, ast.expr) else node.body, inner)
         elif isinstance(node, ast.ClassDef):
             keywords = [one.value for one in node.keywords]
             yield from _calls([*node.decorator_list, *node.bases, *keywords], scope)
-            yield from _calls(node.body, _Scope(scope.inner(node.name), scope.functions, node, is_class=True))
+            yield from _calls(
+                node.body, _CallScope(scope.inner(node.name), scope.functions, node, is_class=True)
+            )
         elif isinstance(node, ast.If) and last_name(node.test) == "TYPE_CHECKING":
             yield from _calls(node.orelse, scope)
         elif isinstance(node, ast.AnnAssign):
@@ -135,7 +137,7 @@ class _Origins:
     def __init__(self, tree: ast.Module, file: str) -> None:
         self.file = file
         self.imported: dict[str, str] = {}
-        self.defined = {one.name for one in tree.body if isinstance(one, _Named)}
+        self.defined = {one.name for one in tree.body if isinstance(one, _NamedNode)}
         self._module = tree
         self._values: dict[ast.AST, dict[str, ast.expr]] = {}
         for node in ast.walk(tree):
@@ -154,7 +156,7 @@ class _Origins:
             return self.imported.get(function.id, function.id).rpartition(".")[2]
         return last_name(function) if not isinstance(function, ast.Call) else ""
 
-    def of(self, node: ast.AST, scope: _Scope, depth: int = 0) -> str | None:
+    def of(self, node: ast.AST, scope: _CallScope, depth: int = 0) -> str | None:
         """The dotted name of what an expression is made of; None if the text does not tell."""
         if depth > _DEEPEST:
             return None
@@ -182,7 +184,7 @@ class _Origins:
                 return "builtins"
         return None
 
-    def _of_name(self, name: str, scope: _Scope, depth: int) -> str | None:
+    def _of_name(self, name: str, scope: _CallScope, depth: int) -> str | None:
         for function in reversed(scope.functions):
             arguments = function.args
             for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
@@ -198,14 +200,14 @@ class _Origins:
         stored = self._stored(self._module, name)
         if stored is None and hasattr(builtins, name):
             return f"builtins.{name}"
-        return self._of_value(stored, _Scope(), depth)
+        return self._of_value(stored, _CallScope(), depth)
 
     def _stored(self, around: ast.AST, name: str) -> ast.expr | None:
         if around not in self._values:
             self._values[around] = _stored_in(around)
         return self._values[around].get(name)
 
-    def _of_value(self, value: ast.AST | None, scope: _Scope, depth: int) -> str | None:
+    def _of_value(self, value: ast.AST | None, scope: _CallScope, depth: int) -> str | None:
         return self.of(value, scope, depth + 1) if value is not None else None
 
 
@@ -214,7 +216,7 @@ def _is_name(text: str) -> bool:
 
 
 def _methods(owner: ast.ClassDef) -> set[str]:
-    return {one.name for one in owner.body if isinstance(one, _Named)}
+    return {one.name for one in owner.body if isinstance(one, _NamedNode)}
 
 
 def _stored_in(around: ast.AST) -> dict[str, ast.expr]:
@@ -234,7 +236,7 @@ def _stored_in(around: ast.AST) -> dict[str, ast.expr]:
 
 
 def _operation(
-    call: ast.Call, last: str, text: str, scope: _Scope, origins: _Origins, known: KnownCalls
+    call: ast.Call, last: str, text: str, scope: _CallScope, origins: _Origins, known: KnownCalls
 ) -> tuple[Operation, str] | None:
     """The operation that a call is of, and why that is in doubt; None if it is of none."""
     candidates = known.operations[last]
@@ -257,7 +259,7 @@ def _operation(
 
 
 def _doubt(
-    call: ast.Call, operation: Operation, scope: _Scope, origins: _Origins, known: KnownCalls
+    call: ast.Call, operation: Operation, scope: _CallScope, origins: _Origins, known: KnownCalls
 ) -> str | None:
     """Why it is in doubt whether a call is of this operation; empty if it is not, None if it is of none."""
     function = call.func
@@ -316,7 +318,7 @@ def _root(node: ast.AST) -> str:
     return node.id if isinstance(node, ast.Name) else ""
 
 
-def _best(call: ast.Call, operations: Sequence[Operation], scope: _Scope, origins: _Origins) -> Operation:
+def _best(call: ast.Call, operations: Sequence[Operation], scope: _CallScope, origins: _Origins) -> Operation:
     """Of several operations of one name, the one whose class or arguments fit; the first if none does."""
     value = call.func.value if isinstance(call.func, ast.Attribute) else call.func
     origin = origins.of(value, scope) or ""

@@ -37,7 +37,7 @@ _OTHER_TEXT = "what runs of this file is not the text that stands there"
 
 
 @frozen
-class _Seen:
+class _OriginalCode:
     """What all runs of the original tell.
 
     Attributes:
@@ -55,7 +55,7 @@ class _Seen:
     executed: Executed | None
 
     @classmethod
-    def of(cls, results: Iterable[Result]) -> _Seen:
+    def of(cls, results: Iterable[Result]) -> _OriginalCode:
         results = list(results)
         sites = [site.span for result in results for site in result.sites]
         asked = [one for result in results for one in result.asked]
@@ -88,7 +88,7 @@ def add_untested(
     baseline: Baseline, root: Path, program: Sequence[str], vocabulary: Vocabulary, results: Iterable[Result]
 ) -> None:
     """Note in a baseline what its tests do not reach."""
-    seen = _Seen.of(results)
+    seen = _OriginalCode.of(results)
     texts = dict(_texts(root, program_files(root, program)))
     files = [file for file in texts if file not in seen.imported] if seen.knows_files else []
     functions, idle = _functions(texts, seen) if seen.knows_files else (0, [])
@@ -135,7 +135,7 @@ def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
             yield file, text
 
 
-def _functions(texts: Mapping[str, str], seen: _Seen) -> tuple[int, list[str]]:
+def _functions(texts: Mapping[str, str], seen: _OriginalCode) -> tuple[int, list[str]]:
     """The number of functions, and those that no test calls."""
     found = [
         (file, name, node) for file, text in texts.items() for name, node in functions_of(ast.parse(text))
@@ -149,7 +149,7 @@ def _functions(texts: Mapping[str, str], seen: _Seen) -> tuple[int, list[str]]:
 
 
 def _calls(
-    baseline: Baseline, vocabulary: Vocabulary, texts: Mapping[str, str], seen: _Seen
+    baseline: Baseline, vocabulary: Vocabulary, texts: Mapping[str, str], seen: _OriginalCode
 ) -> tuple[list[NamedCall], int]:
     """The calls that no test reaches, and the number of sites that tests reach."""
     operations = [one for one in vocabulary.operations if one.named is None and one.kind in (None, "methods")]
@@ -180,7 +180,7 @@ def _are_of(text: str, spans: Iterable[Span]) -> bool:
 
 
 def _known(
-    operations: Iterable[Operation], places: Iterable[Place], texts: Mapping[str, str], seen: _Seen
+    operations: Iterable[Operation], places: Iterable[Place], texts: Mapping[str, str], seen: _OriginalCode
 ) -> KnownCalls:
     by_name: dict[str, list[Operation]] = {}
     for one in operations:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from mutabot.languages.python import extent_of, head_size
 from mutabot.model import Role, Vocabulary
 from mutabot.model.events import Remark
-from mutabot.model.source_units import Function
+from mutabot.model.source_units import FunctionNode
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline, Sources
@@ -45,7 +45,7 @@ def shared_sites(
 
 def passed_on(source: str) -> frozenset[Extent]:
     """The calls that are all that a function does, with its own arguments only."""
-    functions = (node for node in ast.walk(ast.parse(source)) if isinstance(node, Function))
+    functions = (node for node in ast.walk(ast.parse(source)) if isinstance(node, FunctionNode))
     calls = ((_only_call(function), function) for function in functions)
     return frozenset(
         extent_of(call) for call, function in calls if call is not None and _fits(call, function)
@@ -59,14 +59,14 @@ def call_names(source: str) -> Counter[str]:
     return Counter(name for name in names if name is not None)
 
 
-def _only_call(function: Function) -> ast.Call | None:
+def _only_call(function: FunctionNode) -> ast.Call | None:
     body = function.body[head_size(function.body) :]
     value = body[0].value if len(body) == 1 and isinstance(body[0], ast.Expr | ast.Return) else None
     value = value.value if isinstance(value, ast.Await) else value
     return value if isinstance(value, ast.Call) else None
 
 
-def _fits(call: ast.Call, function: Function) -> bool:
+def _fits(call: ast.Call, function: FunctionNode) -> bool:
     """Whether a call passes on arguments of the function, and beside them constants at most."""
     given = function.args
     own = [*given.posonlyargs, *given.args, *given.kwonlyargs, given.vararg, given.kwarg]

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mutabot.languages.python import extent_of
+from mutabot.model.source_units import FunctionNode
 
 if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
@@ -33,7 +34,6 @@ _VIEWS = frozenset(
         "reshape", "squeeze", "swapaxes", "transpose", "view",
     }
 )  # fmt: skip
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def written_through(source: str) -> frozenset[Extent]:
@@ -63,7 +63,7 @@ class _Writes(ast.NodeVisitor):
     def visit(self, node: ast.AST) -> None:
         """Take in a node and all below it."""
         before = self._scope, self._function
-        if isinstance(node, _Function):
+        if isinstance(node, FunctionNode):
             self._scope, self._function = id(node), node.name
         match node:
             case ast.Return(value=ast.expr() as value):

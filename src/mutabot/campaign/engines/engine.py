@@ -61,7 +61,7 @@ _QUICKLY = 1
 #: short tests of a fork that are packed together, since they are much alike; long ones weigh more
 _TOGETHER = 50
 
-_Held = tuple[events.TestEnd, "Observation | None"]
+_HeldEnd = tuple[events.TestEnd, "Observation | None"]
 
 
 def run_trials(
@@ -316,14 +316,14 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
     Yields outcomes as they come. ``left`` is filled with what is left to replay.
     """
     baseline = campaign.baseline
-    parents: dict[int, _ForkParent] = {}
+    parents: dict[int, _ForkRound] = {}
     for mutant, round in runs:
         # a control that may not have a test of its own is no mutant of any test
         if mutant.family != CONTROL and not baseline.tests_reaching(round, mutant):
             yield without_tests(baseline, mutant, round)
             continue
         if round not in parents:  # also if nothing is forked in it: it is the second run
-            parents[round] = _ForkParent(campaign, left, round)
+            parents[round] = _ForkRound(campaign, left, round)
         if baseline.is_apart(mutant):
             left.runs.append((mutant, round))
             left.apart.add(mutant.id)
@@ -345,7 +345,7 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
 
 
 def _taken(
-    told: Iterable[Result | tuple[Task, events.Event]], parents: Mapping[int, _ForkParent]
+    told: Iterable[Result | tuple[Task, events.Event]], parents: Mapping[int, _ForkRound]
 ) -> Iterator[Outcome]:
     """The outcomes that follow from the events of fork parents."""
     for event in told:
@@ -355,7 +355,7 @@ def _taken(
             yield from parents[event[0].key].take(event[1])
 
 
-def cut(parents: list[_ForkParent], places: int) -> list[_ForkParent]:
+def cut(parents: list[_ForkRound], places: int) -> list[_ForkRound]:
     """Cut fork parents into parts for so many places that share nothing. The longest come first."""
     if places < 2 or not parents:
         return parents
@@ -365,7 +365,7 @@ def cut(parents: list[_ForkParent], places: int) -> list[_ForkParent]:
 
 
 @dataclass(slots=True)
-class _ForkedRun(Run):
+class _ForkOutcome(Run):
     """What is known of one mutant so far.
 
     Attributes:
@@ -378,7 +378,7 @@ class _ForkedRun(Run):
     """
 
     own: dict[str, events.TestEnd] = field(default_factory=dict)
-    held: list[_Held] = field(default_factory=list)
+    held: list[_HeldEnd] = field(default_factory=list)
     weight: int = 0
     packed: list[bytes] = field(default_factory=list)
     forked: int | None = None
@@ -404,13 +404,13 @@ class _ForkedRun(Run):
         self.held.clear()
 
 
-class _ForkParent:
+class _ForkRound:
     """The fork parent of one round and its forks."""
 
     def __init__(self, campaign: Campaign, left: Unhandled, round: int) -> None:
         self._campaign, self._left, self._round = campaign, left, round
         self._baseline, self._sources = self._campaign.baseline, self._campaign.sources
-        self._open: dict[str, _ForkedRun] = {}
+        self._open: dict[str, _ForkOutcome] = {}
         self._tests = self._baseline.suite(round)
         self._numbers = {test: number for number, test in enumerate(self._tests)}
         self._own_ends: list[events.TestEnd] = []
@@ -423,7 +423,7 @@ class _ForkParent:
 
     def add(self, mutant: Mutant) -> None:
         """Add a mutant to fork."""
-        self._open[mutant.id] = _ForkedRun(mutant, self._round, self._tests, engine=FORK)
+        self._open[mutant.id] = _ForkOutcome(mutant, self._round, self._tests, engine=FORK)
 
     @property
     def mutants(self) -> tuple[Mutant, ...]:
@@ -453,7 +453,7 @@ class _ForkParent:
         is_controlled = any(one.family == CONTROL for one in self.mutants)
         return [*awaited, len(self._tests) - 1] if is_controlled else awaited
 
-    def parts(self, places: float) -> list[_ForkParent]:
+    def parts(self, places: float) -> list[_ForkRound]:
         """Fork parents with a part of the mutants each. What equal tests reach is together."""
         worth = max(_FEWEST * places, len(self._open) / _WORTH)
         count = min(math.ceil(min(_PARTS * places, worth)), len(self._open) // _LEAST)
@@ -461,7 +461,7 @@ class _ForkParent:
             return [self]
         reaching = self._baseline.tests_reaching
         mutants = sorted(self.mutants, key=lambda one: (reaching(self._round, one), one.id))
-        found = [_ForkParent(self._campaign, self._left, self._round) for _ in range(count)]
+        found = [_ForkRound(self._campaign, self._left, self._round) for _ in range(count)]
         for number, mutant in enumerate(mutants):
             found[number * count // len(mutants)].add(mutant)
         return found
@@ -617,7 +617,7 @@ class _ForkParent:
         else:
             self._waiting.setdefault(last, set()).add(mutant)
 
-    def _judged(self, run: _ForkedRun, shared: int) -> Iterator[Outcome]:
+    def _judged(self, run: _ForkOutcome, shared: int) -> Iterator[Outcome]:
         """The outcome of a mutant that has so many tests from its parent.
 
         It is left to replay if a process that a test started did not get it.

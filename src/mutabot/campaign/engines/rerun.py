@@ -23,7 +23,7 @@ from itertools import accumulate, takewhile
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.taking import FAILS
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, RunId
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import VERIFIED, Request
 from mutabot.campaign.reuse.keys import OutcomeWriter
@@ -34,8 +34,6 @@ from mutabot.model.outcome import in_words, same_end
 
 from .engine import replay
 
-#: a mutant's id and a round
-Key = tuple[str, int]
 #: so many kills of a test, or this share of what it judges, could be failures at random
 _FEW, _SHARE = 2, 0.1
 #: repeats of kills in doubt may take this share of the time that the campaign has taken
@@ -59,24 +57,24 @@ class Doubts:
 
     baseline: Baseline
     mutants: Mapping[str, Mutant]
-    outcomes: Mapping[Key, Outcome]
+    outcomes: Mapping[RunId, Outcome]
     unreliable: set[str] = field(init=False)
 
     def __post_init__(self) -> None:
         flaky = (test for (_, test), why in self.baseline.unstable.items() if not why.startswith(FAILS))
         self.unreliable = {*self.baseline.doubted, *(test for _, test in self.baseline.inexact), *flaky}
 
-    def kills(self) -> list[Key]:
+    def kills(self) -> list[RunId]:
         """All kills by a test that ended."""
         return [key for key, one in self.outcomes.items() if one.verdict is Verdict.KILLED and one.test]
 
-    def in_doubt(self) -> list[Key]:
+    def in_doubt(self) -> list[RunId]:
         """The kills that may be chance and were not repeated by an earlier campaign."""
         few = self.isolated_kills()
         kills = (key for key in self.kills() if not self.outcomes[key].repeats)
         return [key for key in kills if self._test(key) in self.unreliable or key in few]
 
-    def raced(self) -> list[Key]:
+    def raced(self) -> list[RunId]:
         """Outcomes of racy operators that no earlier campaign has repeated."""
         return [
             key
@@ -85,16 +83,16 @@ class Doubts:
             if provider(self.mutants[key[0]].provider).is_raced(self.mutants[key[0]].operator)
         ]
 
-    def is_certain(self, key: Key) -> bool:
+    def is_certain(self, key: RunId) -> bool:
         """Whether a kill was repeated before, or is one by a test that is taken to be deterministic."""
         test = self._test(key)
         is_deterministic = test not in self.unreliable and self._has_clock(test, key[1])
         return bool(self.outcomes[key].repeats) or is_deterministic
 
-    def isolated_kills(self) -> set[Key]:
+    def isolated_kills(self) -> set[RunId]:
         """Kills seen in only one round, by tests without a simulated clock that rarely produce them."""
         times = Counter((key[0], self._test(key)) for key in self.kills())
-        lone: dict[str, list[Key]] = {}
+        lone: dict[str, list[RunId]] = {}
         for key in self.kills():
             test = self._test(key)
             if times[key[0], test] == 1 and not self._has_clock(test, key[1]):
@@ -109,18 +107,18 @@ class Doubts:
         most = {test: max(_FEW, _SHARE * count) for test, count in judged.items()}
         return {key for keys in few if len(keys) <= most[self._test(keys[0])] for key in keys}
 
-    def _ran(self, key: Key) -> tuple[str, ...]:
+    def _ran(self, key: RunId) -> tuple[str, ...]:
         """The tests of the suite that a mutant ran."""
         outcome, suite = self.outcomes[key], self.baseline.suite(key[1])
         if outcome.test in suite and not outcome.complete:
             return suite[: suite.index(outcome.test) + 1]
         return suite if outcome.tests else ()
 
-    def cost(self, key: Key) -> float:
+    def cost(self, key: RunId) -> float:
         """Seconds that a repeat takes on the original."""
         return self.baseline.startup + self.baseline.seconds(key[1], self._ran(key))
 
-    def _test(self, key: Key) -> str:
+    def _test(self, key: RunId) -> str:
         return self.outcomes[key].test or ""
 
     def _has_clock(self, test: str, round: int) -> bool:
@@ -159,9 +157,9 @@ class _Reruns:
     campaign: Campaign
     writer: OutcomeWriter
     doubts: Doubts
-    found: dict[Key, Outcome] = field(default_factory=dict)
-    times: Counter[Key] = field(default_factory=Counter)
-    settled: set[Key] = field(default_factory=set)
+    found: dict[RunId, Outcome] = field(default_factory=dict)
+    times: Counter[RunId] = field(default_factory=Counter)
+    settled: set[RunId] = field(default_factory=set)
 
     def verify(self, count: int) -> None:
         """Run so many outcomes once more, and note which ended otherwise.
@@ -193,12 +191,12 @@ class _Reruns:
         where = "" if real is None else " over the real middleware"
         self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree{where}")
 
-    def _differs(self, key: Key) -> bool:
+    def _differs(self, key: RunId) -> bool:
         """Whether an outcome came out otherwise; tests and messages of a simulation may be others."""
         first, second = self.doubts.outcomes[key], self.found[key]
         return self._is_changed(key) if self.campaign.real is not None else not same_end(first, second)
 
-    def _believe(self, real: Campaign, keys: Sequence[Key]) -> list[Key]:
+    def _believe(self, real: Campaign, keys: Sequence[RunId]) -> list[RunId]:
         """Run these over the real middleware again: what comes out so twice counts, else it is unstable.
 
         Returns the first ones.
@@ -218,7 +216,7 @@ class _Reruns:
         Takes ``seconds`` seconds, or up to ``most`` seconds if an outcome is not reproduced.
         """
         began = self.campaign.request.clock()
-        raced, repeated, changed = set(self.doubts.raced()), set[Key](), set[Key]()
+        raced, repeated, changed = set(self.doubts.raced()), set[RunId](), set[RunId]()
         while due := self._due(raced, changed):
             seconds = max(seconds, most) if changed or raced else seconds
             looked = self._run(due, began + seconds)
@@ -234,7 +232,7 @@ class _Reruns:
             again = f"{len(repeated) - len(changed)} of {len(repeated)}"
             self.campaign.progress.note(f"re-runs: {again} {kinds} confirmed{left}")
 
-    def _due(self, raced: Collection[Key], changed: Collection[Key]) -> list[Key]:
+    def _due(self, raced: Collection[RunId], changed: Collection[RunId]) -> list[RunId]:
         """What is to be repeated next."""
         found = dict.fromkeys([*self.doubts.in_doubt(), *raced])
         times = {key: RACES if key in raced else 1 for key in found}
@@ -252,20 +250,20 @@ class _Reruns:
             self._counted(doubted), self._counted(others), len(certain), self._counted(survivors)
         )
 
-    def _counted(self, keys: Iterable[Key]) -> records.Repeated:
+    def _counted(self, keys: Iterable[RunId]) -> records.Repeated:
         keys = list(keys)
         looked = [key for key in keys if key in self.found]
         return records.Repeated(len(keys), len(looked), sum(map(self._is_changed, looked)))
 
     def _run(
-        self, keys: Sequence[Key], until: float | None = None, over: Campaign | None = None
-    ) -> list[Key]:
+        self, keys: Sequence[RunId], until: float | None = None, over: Campaign | None = None
+    ) -> list[RunId]:
         """Run these in fresh processes, cheapest first. Returns those that were run.
 
         None begins after ``until`` (``Request.clock``), and but for the first of all none that would end
         after it with those before it. ``over``: another campaign than this one.
         """
-        request, looked = self.campaign.request, list[Key]()
+        request, looked = self.campaign.request, list[RunId]()
         cheapest = sorted(keys, key=self.doubts.cost)
         at_once, free = request.clock(), not self.found
         costs = accumulate(self.doubts.cost(key) / request.jobs for key in cheapest)
@@ -285,10 +283,10 @@ class _Reruns:
             self.campaign.progress.advance(in_words(outcome))
         return looked
 
-    def _is_changed(self, key: Key) -> bool:
+    def _is_changed(self, key: RunId) -> bool:
         return self.found[key].verdict is not self.doubts.outcomes[key].verdict
 
-    def _settle(self, key: Key) -> bool:
+    def _settle(self, key: RunId) -> bool:
         """Write into the journal what a repeat says. Returns whether it came out otherwise."""
         first = self.doubts.outcomes[key]
         if self._is_changed(key):
@@ -299,7 +297,7 @@ class _Reruns:
         return False
 
 
-def choose(outcomes: Iterable[Outcome], count: int, seed: int) -> list[Key]:
+def choose(outcomes: Iterable[Outcome], count: int, seed: int) -> list[RunId]:
     """So many mutants and rounds at random, always the same for equal seeds and outcomes.
 
     Outcomes for which no test was run are left out: there is nothing to run again.

@@ -296,17 +296,17 @@ def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
 
 
 #: a recorded value of the subject, and what it would become; None where nobody knows beforehand
-_Seen = tuple[Any, Any]
+_Foreseen = tuple[Any, Any]
 
 
-def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
+def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Foreseen, str | None]:
     """What the mutant would do to the recorded calls, and why it is left out, if it is."""
     least, most = rule.least_calls(subject), max(Counter(hit.where for hit in hits).values(), default=0)
     if most < least:
         return (None, None), f"takes {least} calls in a test, and no test makes more than {most}"
     if rule.is_chance(subject):
         return (_value(subject, hits[0]), None), None
-    last: _Seen = (None, None)
+    last: _Foreseen = (None, None)
     middleware = rule.middleware(subject, Random(1))
     away = ""
     where = None
@@ -416,7 +416,7 @@ def _calls(hits: int) -> str:
 
 
 def _description(
-    rule: Operator, subject: Subject, place: Place, seen: _Seen | None, *, is_shared: bool
+    rule: Operator, subject: Subject, place: Place, seen: _Foreseen | None, *, is_shared: bool
 ) -> str:
     """What the mutant does, in one line.
 

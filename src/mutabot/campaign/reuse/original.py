@@ -89,7 +89,7 @@ class OriginalRuns:
         Args:
             request: the campaign, or the same over a simulation.
         """
-        return _Runs(self, executor, request) if request.executor is None else executor
+        return _KeptRuns(self, executor, request) if request.executor is None else executor
 
     def keep(self, write: Callable[[KeptBaseline], object]) -> None:
         """Leave to later campaigns what there is new.
@@ -138,7 +138,7 @@ class OriginalRuns:
 
 
 @dataclass(frozen=True, slots=True)
-class _Runs:
+class _KeptRuns:
     """Kept runs, and for all else an executor."""
 
     original: OriginalRuns

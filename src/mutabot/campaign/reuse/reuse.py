@@ -26,11 +26,10 @@ from mutabot.repository import GitError, git, unignored
 from .snapshot import WRITTEN, State, counts_by_name, digest_of, is_note, own_files, read
 
 if TYPE_CHECKING:
-    from mutabot.campaign.campaign import Campaign
+    from mutabot.campaign.campaign import Campaign, RunId
     from mutabot.campaign.plan import Plan
     from mutabot.campaign.request import Progress, Request
 
-Pair = tuple[str, int]
 #: names that are given before it is said how many more there are
 _SHOWN = 3
 
@@ -51,12 +50,12 @@ class Earlier:
         #: what an outcome with this key depended on
         self.was = cache(lambda key: now.was(key, parts, tree))
 
-    def why(self, pair: Pair, mutant: Mutant, *, is_known: bool = True) -> str | None:
+    def why(self, pair: RunId, mutant: Mutant, *, is_known: bool = True) -> str | None:
         """Why an outcome may come out otherwise now, in words; None if it cannot. There is one."""
         names = self._now.why(self.was(self.kept[pair].key), mutant, pair[1], is_known=is_known)
         return in_short(names) if names else None
 
-    def row(self, pair: Pair, mutant: Mutant) -> Kept | None:
+    def row(self, pair: RunId, mutant: Mutant) -> Kept | None:
         """An outcome with its lines as they are now; None if its source line no longer exists."""
         row = self._journal.row(*pair)
         if row is None:
@@ -94,11 +93,11 @@ class Reused:
         sources: what the journals hold.
     """
 
-    done: set[Pair] = field(default_factory=set)
-    why: dict[Pair, str] = field(default_factory=dict)
-    unsound: set[Pair] = field(default_factory=set)
+    done: set[RunId] = field(default_factory=set)
+    why: dict[RunId, str] = field(default_factory=dict)
+    unsound: set[RunId] = field(default_factory=set)
     first: int = 0
-    before: dict[Pair, Verdict] = field(default_factory=dict)
+    before: dict[RunId, Verdict] = field(default_factory=dict)
     unasked: int = 0
     sources: Sequence[Earlier] = ()
 
@@ -371,7 +370,7 @@ def open_others(request: Request, progress: Progress) -> list[JournalReader]:
 
 def altered_since(
     revision: Revision, campaign: Campaign, now: Dependencies, found: Reused, mutants: Sequence[Mutant]
-) -> dict[Pair, str]:
+) -> dict[RunId, str]:
     """Mutants and rounds that are not taken over and that the changes can have altered, and why.
 
     Of a mutant that no journal knows, all counts that its tests execute of the original, and what no test
@@ -384,7 +383,7 @@ def altered_since(
     if other is not None:
         return {(mutant.id, round): f"{other} changed" for mutant, round in left}
     then = _then(revision, campaign, now)
-    altered: dict[Pair, str] = {}
+    altered: dict[RunId, str] = {}
     for mutant, round in left:
         pair = (mutant.id, round)
         known = next((one.was(one.kept[pair].key) for one in found.sources if pair in one.kept), None)
@@ -409,7 +408,7 @@ def altered_since(
 def only_altered(
     journal: Journal,
     revision: Revision,
-    altered: Mapping[Pair, str],
+    altered: Mapping[RunId, str],
     found: Reused,
     plan: Plan,
     rounds: int,

@@ -105,7 +105,7 @@ _HASH = "#"
 
 
 @dataclass(frozen=True, slots=True)
-class _File:
+class _KnownFile:
     """One file: what the system says about it, and the digest of its content."""
 
     status: tuple[int, ...]
@@ -116,7 +116,7 @@ class _File:
 class Snapshot:
     """The files of a project at one moment, by their path relative to its root."""
 
-    files: Mapping[str, _File]
+    files: Mapping[str, _KnownFile]
 
     @property
     def digests(self) -> dict[str, str]:
@@ -135,7 +135,7 @@ class Snapshot:
                 continue
             digest = _digest_of(path)
             if digest is not None:
-                found[name] = _File(status, digest)
+                found[name] = _KnownFile(status, digest)
         return cls(found)
 
     @property

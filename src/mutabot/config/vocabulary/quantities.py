@@ -205,7 +205,7 @@ _LACKING: Sequence[tuple[Sequence[str], frozenset[Kind], str]] = (
     (("noise",), frozenset(Kind) - (MEASURED & READ), "; only a measured reading has"),
 )
 #: a rule: the key, whether it is broken, and what is said then
-Rule = tuple[str, object, str]
+_RowRule = tuple[str, object, str]
 
 
 def note_faults(
@@ -236,7 +236,7 @@ def note_faults(
     return bool(told)
 
 
-def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[Rule]:
+def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[_RowRule]:
     kind = table.kind
     written = "what is sent" if sides.written in (None, "fields") else sides.written
     read = "what is received" if sides.read in (None, "fields") else sides.read
@@ -262,7 +262,7 @@ def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
         yield "ladder", of_ladder, _units_of_ladder(table)
 
 
-def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list[Rule]:
+def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list[_RowRule]:
     """The rules of unit, mode, axis and order."""
     a, kind, order, units, unit = (
         _a(table.kind),
@@ -303,7 +303,7 @@ def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list
     ]
 
 
-def _of_values(table: QuantityTable, is_written: bool, is_vector: bool) -> list[Rule]:
+def _of_values(table: QuantityTable, is_written: bool, is_vector: bool) -> list[_RowRule]:
     """The rules of values, range and clip."""
     a, kind, values, limits, clip = _a(table.kind), table.kind, table.values or [], table.range, table.clip
     is_given, is_measured = table.values is not None, kind in MEASURED
@@ -335,7 +335,7 @@ def _of_values(table: QuantityTable, is_written: bool, is_vector: bool) -> list[
     ]
 
 
-def _of_reading(table: QuantityTable, is_written: bool) -> list[Rule]:
+def _of_reading(table: QuantityTable, is_written: bool) -> list[_RowRule]:
     missing = table.missing
     never = f"{_a(table.kind)} that is sent is never missing; only a reading is"
     ways = f'write "none", "nan" or an exception (module:Name), not {shown(missing)}'
@@ -352,7 +352,7 @@ def _unit(table: QuantityTable) -> str | None:
     return "s" if table.kind is Kind.STAMP else table.unit
 
 
-def _of_ladder(table: QuantityTable) -> list[Rule]:
+def _of_ladder(table: QuantityTable) -> list[_RowRule]:
     if table.ladder is None:
         return []
     a, steps, unit, units = _a(table.kind), table.ladder.steps, table.ladder.unit, _units_of_ladder(table)

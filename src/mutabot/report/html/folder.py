@@ -17,7 +17,7 @@ from typing import Any
 
 from mutabot.errors import UsageError
 from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
-from mutabot.evidence.story import TrackPath
+from mutabot.evidence.story import Row, TrackPath
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK, clear
 from mutabot.model import By
@@ -248,8 +248,6 @@ _LENGTH, _TURN = 1e-4, 1e-3
 _MISS_LENGTH, _MISS_TURN = 5.0, 3.0
 #: steps over the range of a value, and by how many a line may miss
 _STEPS, _MISS_VALUE = 2000, 8.0
-
-Row = tuple[float, ...]
 
 
 def thinned(track: Track, times: Sequence[float]) -> Any:

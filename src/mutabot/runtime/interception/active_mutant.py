@@ -27,12 +27,12 @@ from mutabot.runtime.interception import call_faults
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot
 from mutabot.runtime.interception.live import HandedCopies, copied, is_live
 from mutabot.runtime.interception.trace import LOST
-from mutabot.runtime.targets.target import Place, is_named
+from mutabot.runtime.targets.target import CallPlace, is_named
 
 #: exceptions by which others end what an operator does: a user, an event loop, the end of a generator
 _FROM_OUTSIDE = frozenset({"KeyboardInterrupt", "CancelledError", "Cancelled", "GeneratorExit"})
 #: a call of a test: its site, operation and pattern, and its number among those of the site
-_Key = tuple[Span, str, str | None]
+_CallKey = tuple[Span, str, str | None]
 
 
 @dataclass(slots=True)
@@ -47,7 +47,7 @@ class RefusedCalls:
     """
 
     on_refused: Callable[[SiteCall], None] | None = None
-    _known: dict[_Key, frozenset[int]] = field(default_factory=dict)
+    _known: dict[_CallKey, frozenset[int]] = field(default_factory=dict)
     _watched: dict[str, tuple[SiteCall, tuple[Refused, ...]]] = field(default_factory=dict)
 
     def start(self, known: Iterable[RefusedAt]) -> None:
@@ -231,7 +231,7 @@ class ActiveMutant:
         text = f"operator {self.mutant.operator}{how}: {type(error).__name__}: {error}"
         self.evidence.failure = self.evidence.failure or text
 
-    def is_here(self, site: Place, call: Call) -> bool:
+    def is_here(self, site: CallPlace, call: Call) -> bool:
         """Whether a call at this place is the mutant's, by its operation and text command."""
         own = self.mutant.site
         pattern = call.pattern.text if call.pattern is not None else None

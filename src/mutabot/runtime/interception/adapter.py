@@ -32,7 +32,7 @@ from mutabot.model.quantity import Value, changes, is_reading_of, is_same
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
-from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where, resolve
+from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where, resolve
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
@@ -152,7 +152,7 @@ class SiteCall:
         stands_in: whether something else than the robot gets the call, in the baseline.
     """
 
-    site: Place
+    site: CallPlace
     call: Call
     number: int
     is_async: bool = False

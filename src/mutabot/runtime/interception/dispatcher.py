@@ -33,7 +33,7 @@ from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.observation.probes import Along
-from mutabot.runtime.targets.target import NOWHERE, Handler, Place, Where
+from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -111,7 +111,7 @@ class Dispatcher:
     oracle_nodes: tuple[str, ...] = ()
     on_live: Callable[[SiteCall], None] | None = None
     refused: RefusedCalls = field(default_factory=RefusedCalls)
-    given: dict[Adapter, Place | None] = field(default_factory=dict)
+    given: dict[Adapter, CallPlace | None] = field(default_factory=dict)
     calls: Counter[tuple[Span, str, str | None]] = field(default_factory=Counter)
 
     def handler(self, adapter: Adapter) -> Handler:
@@ -160,7 +160,7 @@ class Dispatcher:
 
         return handle
 
-    def _site(self, frame: FrameType, where: Where, adapter: Adapter, in_operation: bool) -> Place | None:
+    def _site(self, frame: FrameType, where: Where, adapter: Adapter, in_operation: bool) -> CallPlace | None:
         node, code, locator = where.node, where.code, self.locator
         if code is None:
             site = locator.locate(frame, in_operation=in_operation)
@@ -172,7 +172,7 @@ class Dispatcher:
             site = where.handed or self._given(frame, adapter, in_operation)
         return site
 
-    def _given(self, frame: FrameType, adapter: Adapter, in_operation: bool) -> Place | None:
+    def _given(self, frame: FrameType, adapter: Adapter, in_operation: bool) -> CallPlace | None:
         """The place where a robot's function was passed on; None if an operation calls it by its name."""
         is_named = adapter.operation.last_name in frame.f_code.co_names
         return None if in_operation and is_named else self.given.get(adapter)
@@ -188,7 +188,7 @@ class Dispatcher:
 
     @border
     async def dispatch(
-        self, adapter: Adapter, site: Place, invocation: Invocation, is_async: bool, is_direct: bool
+        self, adapter: Adapter, site: CallPlace, invocation: Invocation, is_async: bool, is_direct: bool
     ) -> Any:
         """Let one call go its way.
 

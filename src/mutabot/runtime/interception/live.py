@@ -98,7 +98,7 @@ class HandedCopies:
 
     def __init__(self) -> None:
         self.written = False
-        self._handed: list[_Handed] = []
+        self._handed: list[_CopyRecord] = []
 
     def note(self, original: Any, handed: Any, quantities: Iterable[Quantity]) -> None:
         """Note that the program gets ``handed`` in the place of a live answer."""
@@ -128,10 +128,10 @@ class HandedCopies:
 
 
 #: a copy that the program was given, and what was in it
-_Handed = tuple[Any, dict[Any, Any]]
+_CopyRecord = tuple[Any, dict[Any, Any]]
 
 
-_record: _Handed = ([], {})
+_record: _CopyRecord = ([], {})
 #: references to a value that nothing but such a record holds
 _IN_RECORD = sys.getrefcount(_record[0])
 

@@ -24,7 +24,7 @@ from mutabot.runtime.interception.adapter import SiteCall, call_context
 from mutabot.runtime.interception.frames import borders, is_within_border
 
 if TYPE_CHECKING:
-    from mutabot.runtime.targets.target import Place
+    from mutabot.runtime.targets.target import CallPlace
 
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
@@ -205,7 +205,7 @@ class Locator:
         # every other frame is Python's: asking its front end for each would cost each call
         self._interpreted = [one for one in front_ends() if one is not PYTHON]
 
-    def locate(self, frame: FrameType | None, *, in_operation: bool = False) -> Place | None:
+    def locate(self, frame: FrameType | None, *, in_operation: bool = False) -> CallPlace | None:
         """Span and role of the call that is running in ``frame`` or the nearest frame around it.
 
         None if an operation makes the call: its frame is nearer. ``in_operation``: whether this context is
@@ -226,7 +226,7 @@ class Locator:
             frame = frame.f_back
         return None
 
-    def locate_definition(self, code: CodeType) -> Place | None:
+    def locate_definition(self, code: CodeType) -> CallPlace | None:
         """Span and role of a function's definition; None for one of neither the program nor the oracle."""
         role = self.role(code.co_filename)
         if role is None:
@@ -250,7 +250,7 @@ class Locator:
     def _absolute(self, path: str) -> str:
         return os.path.realpath(os.path.join(self._root, path))
 
-    def _in_interpreter(self, frame: FrameType) -> Place | None:
+    def _in_interpreter(self, frame: FrameType) -> CallPlace | None:
         """The same for a frame in which an interpreter carries out a file of the program or the oracle."""
         for front_end in self._interpreted:
             filename = front_end.file_of(frame)

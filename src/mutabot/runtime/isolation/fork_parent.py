@@ -44,7 +44,7 @@ _NUMBER_BYTES = 4
 _TOKEN = b"t"
 
 #: where to fork for a mutant: a site with its operation and pattern, or a place of the program text
-Key = tuple[Span, str, str | None] | int
+ForkPoint = tuple[Span, str, str | None] | int
 _NODES = "its nodes would meet those of other mutants"
 _INTERRUPTED = "the campaign was interrupted"
 #: seconds between two looks whether it is, while this process waits
@@ -112,7 +112,7 @@ class ForkParent:
         self._test, self._number, self._held, self._pid = "", -1, 1, os.getpid()
         self._test_controls = 0
         self._overtaken = self._forking = self._copied = self._stopped = False
-        self._live: dict[Key, list[Mutant]] = {}
+        self._live: dict[ForkPoint, list[Mutant]] = {}
         self._gone: set[str] = set()
         self._children: dict[int, Child] = {}
         self._places: dict[int, frozenset[int]] | None = None
@@ -125,7 +125,7 @@ class ForkParent:
         self._finished, self._tests = board[:count], board[count:]
         self._known = forkable.open_now()
         for mutant in self.forking.mutants:
-            keys: list[Key] = [(mutant.site.span, mutant.operation, mutant.pattern)]
+            keys: list[ForkPoint] = [(mutant.site.span, mutant.operation, mutant.pattern)]
             keys += [choice.place for choice in self.forking.choices.get(mutant.id, ())]
             for key in keys:
                 self._live.setdefault(key, []).append(mutant)

@@ -174,7 +174,7 @@ class Checks:
         self._wants = wants
         self._looks = looks
         self._told: list[tuple[str, str]] = []
-        self._found: dict[_Position, int] = {}
+        self._found: dict[_Location, int] = {}
 
     def install(self) -> None:
         """Look at all test files that pytest rewrites from now on."""
@@ -202,7 +202,7 @@ class Checks:
 
 
 #: where an expression stands: line and column, from and to
-_Position = tuple[int, int, int | None, int | None]
+_Location = tuple[int, int, int | None, int | None]
 
 
 def _decides(node: ast.AST) -> ast.expr | None:
@@ -226,7 +226,7 @@ def _deciding(test: ast.expr | None) -> Iterator[ast.Compare | ast.Call]:
         yield test
 
 
-def _position(node: ast.expr) -> _Position:
+def _position(node: ast.expr) -> _Location:
     return node.lineno, node.col_offset, node.end_lineno, node.end_col_offset
 
 
@@ -241,7 +241,7 @@ def _segment(lines: Sequence[bytes], node: ast.expr) -> bytes:
 class _Inserter(ast.NodeTransformer):
     """Puts lines after those that work out the conditions of assertions, and after calls that assert."""
 
-    def __init__(self, found: dict[_Position, int]) -> None:
+    def __init__(self, found: dict[_Location, int]) -> None:
         self._found = found
 
     def visit_Assign(self, node: ast.Assign) -> Any:  # the name that ast looks for

@@ -29,11 +29,12 @@ import wrapt
 from mutabot.languages.python import extent_of
 from mutabot.model import Role
 from mutabot.model.mutant import Extent
+from mutabot.model.source_units import FunctionNode
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.compiling import SourceStep
 from mutabot.runtime.program_text.instrument import declare_global, is_ours
-from mutabot.runtime.program_text.returns import Function, is_translated
-from mutabot.runtime.targets.target import Place
+from mutabot.runtime.program_text.returns import is_translated
+from mutabot.runtime.targets.target import CallPlace
 
 _PLACE = "handed_to"
 
@@ -111,7 +112,7 @@ class CallSite:
     is_awaited: bool = False
     is_given: bool = False
     left_alone: dict[tuple[type, Any], Guards] = field(default_factory=dict)
-    place: Place | None = None
+    place: CallPlace | None = None
 
 
 #: decides what is called at a site: told the site, what stands there, the object that it was read from
@@ -285,7 +286,7 @@ class _Writer(ast.NodeTransformer):
     _read: dict[str, ast.expr] = field(default_factory=dict)
 
     def visit(self, node: ast.AST) -> Any:
-        if isinstance(node, Function) and is_translated(node):
+        if isinstance(node, FunctionNode) and is_translated(node):
             return node
         if self.are_handed:
             for part in _parts(node):  # before these are visited

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from mutabot.model.job import Job
 
 
-_Key = tuple[str, Extent]
+_ExpressionKey = tuple[str, Extent]
 #: expressions by the numbers of their places
 _Nodes = dict[int, ast.expr]
 _Node = TypeVar("_Node", bound=ast.AST)
@@ -73,8 +73,10 @@ def instrumented(
 
 class _Instrumenter(ast.NodeTransformer):
     def __init__(self, places: Iterable[TextPlace], record: bool, originals: _Nodes | None) -> None:
-        self._places: dict[_Key, TextPlace] = {(place.node, place.extent): place for place in places}
-        self._found: set[_Key] = set()
+        self._places: dict[_ExpressionKey, TextPlace] = {
+            (place.node, place.extent): place for place in places
+        }
+        self._found: set[_ExpressionKey] = set()
         self._record = record
         self._originals = originals
         self._lines: list[int] | None = None

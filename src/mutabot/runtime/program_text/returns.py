@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.languages.python import placed
 from mutabot.model import Role
+from mutabot.model.source_units import FunctionNode
 from mutabot.runtime.observation.probes import plain, text_of_error
 from mutabot.runtime.program_text import loading
 
@@ -34,8 +35,6 @@ LIMIT = 1000
 #: words in decorators of functions that are not run as Python
 _TRANSLATED = ("jit", "vectorize", "kernel", "cfunc", "stencil")
 _LIBRARIES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
-
-Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class Returns:
@@ -138,34 +137,34 @@ class Returns:
         return not self._locator.relative(name).startswith("..") and not self.wants(name)
 
 
-def _functions(tree: ast.Module) -> Iterator[Function]:
+def _functions(tree: ast.Module) -> Iterator[FunctionNode]:
     """Functions of a module and methods of its classes, not what is defined within functions."""
     stack: list[ast.AST] = [tree]
     while stack:
         for node in ast.iter_child_nodes(stack.pop()):
-            if isinstance(node, Function):
+            if isinstance(node, FunctionNode):
                 yield node
             elif isinstance(node, ast.stmt | ast.ExceptHandler | ast.match_case):
                 stack.append(node)
 
 
-def _own_nodes(function: Function) -> Iterator[ast.AST]:
+def _own_nodes(function: FunctionNode) -> Iterator[ast.AST]:
     """What belongs to a function and to none within it."""
     stack: list[ast.AST] = [*function.body]
     while stack:
         node = stack.pop()
         yield node
-        if not isinstance(node, Function | ast.Lambda | ast.ClassDef):
+        if not isinstance(node, FunctionNode | ast.Lambda | ast.ClassDef):
             stack.extend(ast.iter_child_nodes(node))
 
 
-def is_translated(function: Function) -> bool:
+def is_translated(function: FunctionNode) -> bool:
     """Whether a decorator may translate its bytecode, in which notes would have no meaning."""
     names = [ast.unparse(decorator).lower() for decorator in function.decorator_list]
     return any(word in name for name in names for word in _TRANSLATED)
 
 
-def _add_notes(function: Function, own: list[ast.AST]) -> None:
+def _add_notes(function: FunctionNode, own: list[ast.AST]) -> None:
     for node in own:
         if isinstance(node, ast.Return) and node.value is not None:
             note = ast.Call(ast.Name(RETURNED, ast.Load()), [node.value], [])

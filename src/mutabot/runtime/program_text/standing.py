@@ -52,7 +52,7 @@ from mutabot.runtime.interception.frames import OfModules, is_border
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.target import Finding, Handler, Place, Where, named_class
+from mutabot.runtime.targets.target import CallPlace, Finding, Handler, Where, named_class
 
 #: calls that are listed in one sentence
 _MOST = 5
@@ -84,7 +84,7 @@ class StandIns:
             place = f"{self.relative(site.path)}:{site.extent[0]}"
             self._alone.setdefault(site.name, {})[place] = what
 
-    def note_elsewhere(self, operation: Operation, place: Place | None) -> None:
+    def note_elsewhere(self, operation: Operation, place: CallPlace | None) -> None:
         """This was called where a frame may tell the place, or nothing does."""
         if place is None:
             self._elsewhere.setdefault(operation.target, set()).add(self.test())
@@ -227,7 +227,7 @@ class Standing:
             function.__code__.co_filename
         )
 
-    def place(self, site: CallSite, frame: FrameType) -> Place:
+    def place(self, site: CallSite, frame: FrameType) -> CallPlace:
         """Where a site stands."""
         if site.place is None:
             span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
@@ -423,7 +423,7 @@ class Handing:
         given: takes where functions of the robot were handed on; None if nobody knows any more.
     """
 
-    def __init__(self, standing: Standing, given: dict[Adapter, Place | None]) -> None:
+    def __init__(self, standing: Standing, given: dict[Adapter, CallPlace | None]) -> None:
         self._standing = standing
         self._given = given
         wrapt.register_post_import_hook(self._watch, "unittest.mock")
@@ -458,7 +458,7 @@ class Handing:
                 return found
         return self._wrapped(one, place, receiver, found, found)
 
-    def _wrapped(self, one: Adapter, place: Place, receiver: Any, looks: Any, found: Any) -> Handed:
+    def _wrapped(self, one: Adapter, place: CallPlace, receiver: Any, looks: Any, found: Any) -> Handed:
         """What looks like one callable and calls ``found``, which may be the same, as an operation."""
         calls = partial(self._call, one, place, receiver, found)
         says_it_is_one = mock_of(looks) is looks and isinstance(looks, WRAPPERS)
@@ -470,7 +470,14 @@ class Handing:
         return made
 
     def _call(
-        self, one: Adapter, place: Place, receiver: Any, found: Any, wrapped: Any, instance: Any, *given: Any
+        self,
+        one: Adapter,
+        place: CallPlace,
+        receiver: Any,
+        found: Any,
+        wrapped: Any,
+        instance: Any,
+        *given: Any,
     ) -> Any:
         __tracebackhide__ = True
         args, kwargs = given

@@ -15,7 +15,7 @@ and namespaces. So a package puts hooks into the client library of its middlewar
 ``names.find(form, name, node)`` and let the handler that they get stand around it; where there is none,
 the use is as ever. The package names its modules in ``mutabot.extensions.Extension``: ``middlewares``, each
 by the module of the client library that it hooks, ``environments``, ``futures`` and ``libraries``. No module
-of it is imported before it is needed: a ``Middleware`` when the program imports its client library.
+of it is imported before it is needed: a ``MiddlewareModule`` when the program imports its client library.
 
 What hooks keep to, so that all operators mean the same in every middleware:
 
@@ -100,7 +100,7 @@ class MiddlewareControls:
 
 
 #: where a call stands, and whose text that is
-Place = tuple[Span, Role]
+CallPlace = tuple[Span, Role]
 
 
 @frozen
@@ -126,8 +126,8 @@ class Where:
     node: str | None = None
     means: MiddlewareControls | None = None
     is_again: bool = False
-    site: Place | None = None
-    handed: Place | None = None
+    site: CallPlace | None = None
+    handed: CallPlace | None = None
     receiver: Any = None
     is_awaited: bool = False
     frame: FrameType | None = None
@@ -250,7 +250,7 @@ class Names(Protocol):
         """
 
 
-class Middleware(Protocol):
+class MiddlewareModule(Protocol):
     """A module with the hooks into one client library, which is imported already."""
 
     def hook(self, names: Names, /) -> Callable[[], None]:
@@ -258,7 +258,7 @@ class Middleware(Protocol):
 
 
 @runtime_checkable
-class TypedMiddleware(Middleware, Protocol):
+class TypedMiddleware(MiddlewareModule, Protocol):
     """One that knows the types of messages as well."""
 
     def check(self, operation: Operation) -> Iterator[Finding]:
@@ -397,7 +397,7 @@ class Messages:
         if self._removed:
             return
         try:
-            middleware: Middleware = part.load()
+            middleware: MiddlewareModule = part.load()
         except ExtensionError as error:  # the program might catch it
             for named, _handler in self._handlers:
                 self._tell(named.target, Finding(named.form.value, str(error)))
