@@ -41,7 +41,6 @@ from mutabot.model.events import (
     event_to_data,
 )
 from mutabot.model.job import Job
-from mutabot.operators.command import Identity
 
 #: bytes of an answer, levels of lists in it, and the size of counts: none that makes sense comes near
 MOST_BYTES, _DEEPEST, _MOST = 64 << 20, 64, 10**15
@@ -284,7 +283,8 @@ def check_fit(lines: Iterable[Event], job: Job) -> None:
         if isinstance(line, _NEVER) or (forking is None and isinstance(line, _FORKS)):
             raise Misfit(f"this unit has no {type(line).__name__}")
         for mutant in _mutants(line):
-            if mutant not in mutants and not _is_test_control(line):
+            is_test_control = isinstance(line, ForkTestEnd) and line.is_test_control
+            if mutant not in mutants and not is_test_control:
                 raise Misfit(f"{mutant[:100]!r} is no mutant of this unit")
         makes_tests = job.mutant is not None or isinstance(line, ForkTestEnd | ForkDied)
         for test in _tests(line):
@@ -298,11 +298,6 @@ def check_fit(lines: Iterable[Event], job: Job) -> None:
             _check_end(line, sites)
         elif isinstance(line, ForkTestEnd):
             _check_end(line.end, {seen.index for seen in line.sites})
-
-
-def _is_test_control(line: Event) -> bool:
-    """Whether it is told by the control of a test alone, which is forked beside mutants."""
-    return isinstance(line, ForkTestEnd) and line.mutant.endswith(f":{Identity.name}={line.end.test}")
 
 
 def _mutants(line: Event) -> Iterator[str]:

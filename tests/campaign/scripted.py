@@ -228,7 +228,7 @@ class Scripted:
             original = self.script.original(fork_parent)
             end = self.script.test_control(run) or ({} if isinstance(original, Died) else original)
             ended = self.suite.end(run, {**UNCHANGED, **end})
-            yield ForkTestEnd(control.id, ended, self.suite.sites)
+            yield ForkTestEnd(control.id, ended, self.suite.sites, is_test_control=True)
             yield TestControls(fork_parent.test, 1)
         for mutant in job.forking.mutants:
             is_due = mutant.id in forked or self.suite.tests[fork_parent.test].hits(mutant)

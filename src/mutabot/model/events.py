@@ -270,6 +270,7 @@ class ForkTestEnd(Event):
         sites: the sites that the trace refers to.
         shared: simulated seconds it inherited from the fork parent, or None without a clock.
         is_early: whether it was forked before any test.
+        is_test_control: whether it was the control of this test alone: its id is none of the plan's.
     """
 
     mutant: str
@@ -277,6 +278,7 @@ class ForkTestEnd(Event):
     sites: tuple[SiteSeen, ...] = ()
     shared: float | None = None
     is_early: bool = False
+    is_test_control: bool = False
 
 
 @frozen

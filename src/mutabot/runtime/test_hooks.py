@@ -88,7 +88,8 @@ class ForkedRun:
         if end.outcome == FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
         sites = [self._session.recorder.sites[index] for index in sorted({hit[0] for hit in end.trace})]
-        told = ForkTestEnd(self.mutant.id, end, tuple(sites), self._shared, self._is_early)
+        is_test_control = self._parent.is_test_control(self.mutant)
+        told = ForkTestEnd(self.mutant.id, end, tuple(sites), self._shared, self._is_early, is_test_control)
         self._session.pipe.send(told)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:

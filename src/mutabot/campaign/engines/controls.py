@@ -19,7 +19,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.faults.providers import provider
@@ -108,18 +107,16 @@ class _Candidate:
     place: Place
     test: str
 
-    @property
-    def by_time(self) -> tuple[int, bool, bool, float]:
-        """What raises while the program is imported, or in another process, says little of other tests."""
+    def rank(self, *, forked: bool, as_late_as_possible: bool) -> tuple[float, ...]:
+        """By this the candidates are sorted, the best first.
+
+        What raises while the program is imported, or in another process, says little of other tests.
+        """
+        if as_late_as_possible:
+            return self.round, self.has_processes, -self.first
+        if forked:
+            return self.round, self.first
         return self.round, self.is_early, self.has_processes, self.seconds
-
-    @property
-    def by_lateness(self) -> tuple[int, bool, int]:
-        return self.round, self.has_processes, -self.first
-
-    @property
-    def by_order(self) -> tuple[int, int]:
-        return self.round, self.first
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
@@ -148,11 +145,8 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     controls: list[Control] = []
     for (by, early), candidates in found.items():
         has_other = (by, not early) in found
-        is_late = has_other and not early
-        is_first = forked and not early and not is_late
-        one = min(
-            candidates, key=attrgetter("by_order" if is_first else "by_lateness" if is_late else "by_time")
-        )
+        wanted = {"forked": forked and not early, "as_late_as_possible": has_other and not early}
+        one = min(candidates, key=lambda one: one.rank(**wanted))  # it is called at once
         subject, suite = IMPORT if early else one.test.partition("::")[0], baseline.suite(one.round)
         names = (IDENTITY,) if has_other and early else (IDENTITY, FATAL)
         controls += [Control(name, one.place, by, one.round, suite, subject) for name in names]

@@ -21,6 +21,7 @@ import pickle
 import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
@@ -37,7 +38,7 @@ from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
 from mutabot.model.deadline import Limit
 from mutabot.model.job import Forking
 
-from .controls import IDENTITY, Control, ForkTrust, controls_of, run_controls
+from .controls import Control, ForkTrust, controls_of, run_controls
 
 if TYPE_CHECKING:
     from mutabot.campaign.comparison import Observation
@@ -530,7 +531,7 @@ class _ForkRound:
             case events.Unforked():
                 self._left.reasons.setdefault(event.test, event.reason)
                 self._leave(self._open.keys() & set(event.mutants))
-            case events.ForkTestEnd() if event.mutant.endswith(f":{IDENTITY}={event.end.test}"):
+            case events.ForkTestEnd() if event.is_test_control:
                 end, original = event.end, self._baseline.ends[self._round, event.end.test]
                 is_alike = end.lasting == original.lasting and not (end.acted or end.is_decided)
                 self._alike[end.test] = self._alike.get(end.test, 0) + is_alike
@@ -623,7 +624,8 @@ class _ForkRound:
         It is left to replay if a process that a test started did not get it.
         """
         run.unpack()
-        missed = next((end.test for end in run.own.values() if self._is_missed(run.mutant, end)), None)
+        is_missed = partial(self._baseline.is_missed, self._round, run.mutant)
+        missed = next((end.test for end in run.own.values() if is_missed(end)), None)
         if missed is not None:
             self._left.reasons.setdefault(missed, _MISSED)
             self._leave([run.mutant.id])
@@ -637,9 +639,6 @@ class _ForkRound:
             run.death = Death(text) if text is not None else run.death
         del self._open[run.mutant.id]
         yield judged(self._campaign, run)
-
-    def _is_missed(self, mutant: Mutant, end: events.TestEnd) -> bool:
-        return self._baseline.is_missed(self._round, mutant, end)
 
 
 def _death_of(event: events.ForkDied) -> Death:
