@@ -180,6 +180,19 @@ class OperatorError(MutabotError):
     exit_code = ExitCode.USAGE
 
 
+def text_of(error: BaseException) -> str:
+    """The text of an exception; the name of its class if the user's code fails to give one."""
+    try:
+        return str(error)
+    except Exception:
+        return type(error).__name__
+
+
+def in_words(error: BaseException) -> str:
+    """An exception's class and text."""
+    return f"{type(error).__name__}: {text_of(error)}"
+
+
 def in_short(names: Sequence[str], most: int = 3) -> str:
     """The first of these, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""

@@ -25,7 +25,7 @@ DEPTH = 20
 #: what nobody can change, and what is its own data
 _FIXED = frozenset({type(None), bool, int, float, complex, str, bytes, range, slice})
 #: modules of the standard library whose objects say by their texts what they are
-_TOLD = ("datetime", "decimal", "fractions")
+_TEXTUAL = ("datetime", "decimal", "fractions")
 _SEQUENCES: tuple[type[Any], ...] = (list, tuple, set, frozenset, deque)
 _MAPPINGS = (dict, OrderedDict, defaultdict, MappingProxyType)
 #: what makes a plain value of one of a subclass
@@ -44,16 +44,16 @@ def is_of_numpy(value: Any) -> bool:
     return kind is array_kind or (issubclass(kind, scalar_kind) and kind.__module__.startswith("numpy"))
 
 
-def is_told(value: Any) -> bool:
+def is_textual(value: Any) -> bool:
     """Whether it is a moment, a decimal or a fraction of the standard library; nothing is imported for it."""
     kind = type(value)
     module = kind.__module__
-    return module in _TOLD and getattr(sys.modules.get(module), kind.__name__, None) is kind
+    return module in _TEXTUAL and getattr(sys.modules.get(module), kind.__name__, None) is kind
 
 
 def _is_exact(value: Any) -> bool:
     """Whether it is an exact number, which cannot be combined with the floats that operators draw."""
-    return type(value).__name__ in ("Decimal", "Fraction") and is_told(value)
+    return type(value).__name__ in ("Decimal", "Fraction") and is_textual(value)
 
 
 def data_of(value: Any) -> Any:
@@ -69,7 +69,7 @@ def _data_of(value: Any, depth: int) -> Any:
     kind = type(value)
     if kind in _FIXED or kind is bytearray or kind is array or is_of_numpy(value):
         return value
-    if is_told(value):
+    if is_textual(value):
         return _as_float(value) if _is_exact(value) else value
     if is_member(value):
         return value

@@ -20,7 +20,7 @@ from dataclasses import fields as dataclass_fields
 from dataclasses import is_dataclass
 from typing import Any
 
-from mutabot.errors import PathError, nearest_name
+from mutabot.errors import PathError, in_words, nearest_name, text_of
 from mutabot.frozen import frozen
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
@@ -114,7 +114,8 @@ class Path:
             return _with_step(value, step, inner)
         except Exception as error:  # messages of ROS 2 assert what a field takes; others may do anything
             raise PathError(
-                f"cannot replace {step} of {type(value).__name__} (path {self}): {error}", step=str(step)
+                f"cannot replace {step} of {type(value).__name__} (path {self}): {text_of(error)}",
+                step=str(step),
             ) from error
 
     def _advance(self, value: Any, step: Step) -> Any:
@@ -133,7 +134,7 @@ class Path:
                 known=known,
             ) from error
         except Exception as error:  # what the user's objects do when they are asked is up to them
-            what = f"{step} of {type(value).__name__} raises {type(error).__name__}: {error}"
+            what = f"{step} of {type(value).__name__} raises {in_words(error)}"
             raise PathError(f"{str(self) or 'the value'}: {what}", step=str(step)) from error
 
 

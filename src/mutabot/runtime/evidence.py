@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.errors import MutabotError
+from mutabot.errors import MutabotError, in_words, text_of
 from mutabot.extensions import brought
 from mutabot.model.clocks import process_time
 from mutabot.model.path import class_name
@@ -49,7 +49,7 @@ def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
         if isinstance(link, MemoryError):
             return "the memory limit was reached"
         if isinstance(link, MutabotError) or is_named(link, failures):
-            return f"{type(link).__name__}: {link}"
+            return in_words(link)
     return None
 
 
@@ -68,13 +68,13 @@ class KnownError:
         try:
             self._reference = weakref.ref(error)
         except TypeError:
-            self._said = (type(error), _text(error))
+            self._said = (type(error), text_of(error))
 
-    def is_of(self, error: BaseException) -> bool:
+    def matches(self, error: BaseException) -> bool:
         """Whether this is the exception."""
         if self._reference is not None:
             return self._reference() is error
-        return self._address == id(error) and self._said == (type(error), _text(error))
+        return self._address == id(error) and self._said == (type(error), text_of(error))
 
 
 class Refusal:
@@ -89,15 +89,8 @@ class Refusal:
 
     def __init__(self, error: BaseException) -> None:
         held = leaves(error)
-        self.text = _text(held[0])
+        self.text = text_of(held[0])
         self.noted = tuple(KnownError(one) for one in (error, *(leaf for leaf in held if leaf is not error)))
-
-
-def _text(error: BaseException) -> str:
-    try:
-        return str(error)
-    except Exception:  # an exception of the user's may fail to say what it is
-        return type(error).__name__
 
 
 def is_due_to(error: BaseException, culprits: Sequence[KnownError]) -> bool:
@@ -114,7 +107,7 @@ def _is_due(error: BaseException | None, culprits: Sequence[KnownError], above: 
     """``above``: what led here; a chain of exceptions may be a circle."""
     if error is None or id(error) in above:
         return False
-    if any(one.is_of(error) for one in culprits):
+    if any(one.matches(error) for one in culprits):
         return True
     above |= {id(error)}
     held = _held(error)
@@ -123,7 +116,7 @@ def _is_due(error: BaseException | None, culprits: Sequence[KnownError], above: 
     if all(_is_due(one, culprits, above) for one in held) or _is_due(error.__cause__, culprits, above):
         return True
     cause = _cause(error)
-    is_known = cause is not None and any(one.is_of(cause) for one in culprits)
+    is_known = cause is not None and any(one.matches(cause) for one in culprits)
     return is_known and all(cause is not leaf for leaf in leaves(error))
 
 

@@ -15,6 +15,7 @@ from random import Random
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
+from mutabot.errors import in_words
 from mutabot.model import Mutant
 from mutabot.model.job import InProcess
 from mutabot.operators.command import FatalFault
@@ -124,7 +125,7 @@ class PlacedFault:
         """What it did in the running test."""
         found = Evidence()
         if self._fault is not None:
-            with self._told(self._fault.mutant, "asked what it did"):
+            with self._guarded(self._fault.mutant, "asked what it did"):
                 found = _checked(self._fault.evidence)
         return found if self._failure is None else replace(found, failure=self._failure)
 
@@ -132,7 +133,7 @@ class PlacedFault:
         """A test begins."""
         self.fatal = None
         if self._mutant is not None and self._how is not None:
-            with self._told(self._mutant, "put in place"):
+            with self._guarded(self._mutant, "put in place"):
                 fault = self._fault = self._fault or self._made(self._mutant, self._how)
                 fault.evidence = Evidence()
                 fault.start_test(test, random_of(self._mutant))
@@ -140,11 +141,11 @@ class PlacedFault:
     def end_test(self) -> None:
         """The test and its fixtures are over; what the fault did is asked after this."""
         if self._fault is not None:
-            with self._told(self._fault.mutant, "taken away"):
+            with self._guarded(self._fault.mutant, "taken away"):
                 self._fault.end_test()
 
     @contextmanager
-    def _told(self, mutant: Mutant, what: str) -> Iterator[None]:
+    def _guarded(self, mutant: Mutant, what: str) -> Iterator[None]:
         """A provider may fail in any way: that is an error of its mutant, and says nothing of the tests."""
         try:
             yield
@@ -152,7 +153,7 @@ class PlacedFault:
             if isinstance(error, FatalFault) and isinstance(self._fault, ProcessFatal):
                 self.fatal = error
                 return
-            self._failure = self._failure or f"{mutant.operator} cannot be {what}: {_words(error)}"
+            self._failure = self._failure or f"{mutant.operator} cannot be {what}: {in_words(error)}"
 
     def failure_in(self, error: BaseException, robots: Collection[str], locator: Locator) -> str | None:
         """How its own code failed, if that is where an exception comes from that a test or process met.
@@ -171,7 +172,7 @@ class PlacedFault:
             told = (_is_own(frame, type(fault).__module__, robots, locator) for frame in frames)
             # the nearest to the raise decides that is the fault's, the robot's, the program's or a test's
             if id(one) not in meant and next((is_own for is_own in told if is_own is not None), False):
-                return f"{fault.mutant.operator} fails at work: {_words(one)}"
+                return f"{fault.mutant.operator} fails at work: {in_words(one)}"
         return None
 
     def _made(self, mutant: Mutant, how: InProcess) -> ProcessFault:
@@ -205,10 +206,6 @@ def _checked(evidence: Any) -> Evidence:
     if not isinstance(evidence, Evidence) or {type(evidence.hits), type(evidence.acted)} != {int}:
         raise TypeError(f"its evidence is {type(evidence).__name__}, not as ProcessFault keeps it")
     return evidence
-
-
-def _words(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"
 
 
 def _plain(value: Any) -> Any:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import pytest
 
+from mutabot.errors import text_of
 from mutabot.extensions import packages
 from mutabot.model import By, Role, Vocabulary
 from mutabot.model.events import TestEnd
@@ -116,7 +117,7 @@ def _text(error: BaseException, count: int) -> str:
 
 
 def _lines(error: BaseException) -> list[str]:
-    text = str(error)
+    text = text_of(error)
     if isinstance(error, pytest.FixtureLookupError):
         text = error.msg or f"fixture {error.argname!r} not found"
     elif _is_mismatch(error):

@@ -227,3 +227,18 @@ def test_a_path_that_does_not_fit_names_what_would(value: Any, text: str, words:
 def test_what_cannot_be_copied_and_changed_is_refused(value: Any, text: str) -> None:
     with pytest.raises(PathError, match="cannot replace"):
         Path.parse(text, rooted=False).put(value, 0)
+
+
+class MuteError(Exception):
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+
+class Mute:
+    def __getattr__(self, name: str) -> Any:
+        raise MuteError
+
+
+def test_an_object_that_fails_without_a_text_is_an_error_of_the_path() -> None:
+    with pytest.raises(PathError, match=r"x of Mute raises MuteError: MuteError"):
+        Path.parse(".x", rooted=False).get(Mute())

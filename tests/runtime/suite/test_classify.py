@@ -163,6 +163,16 @@ def test_a_group_made_while_a_refusal_is_handled_is_due_to_it() -> None:
     assert ending(raised(mission), REFUSAL).refused == "too far"
 
 
+class MuteError(Exception):
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+
+def test_an_exception_that_fails_to_give_its_text_ends_a_test_by_its_name() -> None:
+    assert ending(MuteError()).message == "MuteError"
+    assert KnownError(error := MuteError()).matches(error)
+
+
 def test_a_circle_of_causes_is_gone_round_once() -> None:
     error, other = ValueError(), ValueError()
     error.__cause__, other.__cause__ = other, error

@@ -200,15 +200,11 @@ class ForkTrust:
     Args:
         campaign: the campaign.
         controls: those that are forked now, by the ids of their mutants.
-
-    Attributes:
-        is_open: whether an outcome may depend on them; most come when that is over.
     """
 
     def __init__(self, campaign: Campaign, controls: Mapping[str, Control]) -> None:
         self._campaign, self._controls = campaign, controls
         self._awaited = set(controls)
-        self.is_open = bool(controls)
         self._first = sys.maxsize  # number of the first test of which forks are not believed
 
     def take(self, outcome: Outcome) -> Iterator[ControlEnd]:
@@ -218,7 +214,6 @@ class ForkTrust:
         wrong = control.what_is_wrong(outcome)
         if wrong is None:
             self._campaign.proven.add((FORK, *control.way))
-            self.is_open = bool(self._awaited) or self._first < sys.maxsize
             yield control.end(outcome)
             return
         is_of_test = control.name == IDENTITY and outcome.test in control.tests
@@ -251,6 +246,8 @@ class ForkTrust:
 
     def believes(self, outcome: Outcome) -> bool:
         """Whether all tests that it depends on end in a fork as they do in the original."""
+        if self._first == sys.maxsize:
+            return True
         suite = self._campaign.baseline.suite(outcome.round)
         last = suite.index(outcome.test) if outcome.test in suite else len(suite) - 1
         return last < self._first

@@ -159,9 +159,7 @@ def _by_fork(
         else:
             ready = [outcome]
         for one in ready:
-            if not trust.is_open:
-                yield one
-            elif trust.awaits(mutants[one.mutant], one):
+            if trust.awaits(mutants[one.mutant], one):
                 held.append(one)
             else:
                 yield from _believed(trust, mutants[one.mutant], one, left)

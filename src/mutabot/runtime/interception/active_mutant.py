@@ -11,7 +11,7 @@ from random import Random
 from traceback import walk_tb
 from typing import Any
 
-from mutabot.errors import OperatorError, PathError
+from mutabot.errors import OperatorError, PathError, in_words
 from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Path, Proceed, Reply, Span
 from mutabot.model.answer import restore
 from mutabot.model.data import UNKNOWN, data_of, is_of_numpy
@@ -228,7 +228,7 @@ class ActiveMutant:
 
     def _fails(self, error: BaseException, how: str = "") -> None:
         """Note that neither the robot nor the program, but the operator or the vocabulary is at fault."""
-        text = f"operator {self.mutant.operator}{how}: {type(error).__name__}: {error}"
+        text = f"operator {self.mutant.operator}{how}: {in_words(error)}"
         self.evidence.failure = self.evidence.failure or text
 
     def is_here(self, site: CallPlace, call: Call) -> bool:
@@ -474,7 +474,7 @@ class _MutatedCall:
     def is_own(self, error: BaseException) -> bool:
         """Whether the operator's own code raised an exception, not the robot, pytest or an event loop."""
         error = error.error if isinstance(error, Carried) else error
-        if any(one.is_of(error) for one in self.raised):
+        if any(one.matches(error) for one in self.raised):
             return False
         if isinstance(error, Exception):
             return True

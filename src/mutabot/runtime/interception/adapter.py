@@ -20,7 +20,7 @@ from inspect import Parameter, Signature
 from types import CoroutineType
 from typing import Any
 
-from mutabot.errors import PathError, StrangeValueError
+from mutabot.errors import PathError, StrangeValueError, in_words
 from mutabot.model import Call, NotToldError, Operation, Path, Pattern, Quantity, Reply, Vocabulary
 from mutabot.model.answer import keep, restore
 from mutabot.model.data import UNKNOWN, is_of_numpy
@@ -542,7 +542,7 @@ def _names(invocation: Invocation, argument: str) -> tuple[str, ...]:
 def _unread(quantity: Quantity, error: Exception) -> PathError:
     if isinstance(error, PathError):
         return error
-    return PathError(f"{quantity.path or 'the result'} cannot be read: {type(error).__name__}: {error}")
+    return PathError(f"{quantity.path or 'the result'} cannot be read: {in_words(error)}")
 
 
 def _strange(quantity: Quantity, found: Any) -> StrangeValueError:

@@ -28,7 +28,7 @@ from mutabot.operators.passage import Carried, run
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
-from mutabot.runtime.interception.frames import OfModules, border, borders, without_ours
+from mutabot.runtime.interception.frames import ModuleCache, border, borders, without_ours
 from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.observation.clock import Instances
@@ -330,7 +330,7 @@ async def _async_call(wrapped: Any, args: Any, kwargs: Any, __tracebackhide__: b
 #: get its address
 _codes: dict[tuple[int, int, bool], tuple[CodeType, CodeType]] = {}
 #: callers likewise, with the global names that they have
-_callers: OfModules[tuple[int, int, bool], tuple[Caller, dict[str, Any]]] = OfModules()
+_callers: ModuleCache[tuple[int, int, bool], tuple[Caller, dict[str, Any]]] = ModuleCache()
 
 
 def caller_of(frame: FrameType, is_async: bool) -> Caller:

@@ -39,7 +39,7 @@ def is_within_border(frame: FrameType | None) -> bool:
     return frame is not None
 
 
-class OfModules(Generic[K, V]):
+class ModuleCache(Generic[K, V]):
     """A cache of facts about modules' global names, which lasts as long as the modules.
 
     A test may load a module anew, or run a file for its names alone: nothing of these is kept.

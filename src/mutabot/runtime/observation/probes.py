@@ -23,12 +23,12 @@ from itertools import islice
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
-from mutabot.errors import nearest_name
+from mutabot.errors import in_words, nearest_name, text_of
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.evidence.tape import FilmWriter, Tape
 from mutabot.model.clocks import monotonic, thread_time
-from mutabot.model.data import data_of, fields_of, is_of_numpy, is_told, items_of
+from mutabot.model.data import data_of, fields_of, is_of_numpy, is_textual, items_of
 from mutabot.model.path import class_name
 from mutabot.runtime.targets.target import resolve
 
@@ -76,7 +76,7 @@ def take(probes: tuple[Probe, ...], instances: Instances) -> Reading:
         except UnreadableError as error:
             reading.unread[probe.target] = str(error)
         except Exception as error:  # as above
-            reading.unread[probe.target] = f"{type(error).__name__}: {error}"
+            reading.unread[probe.target] = in_words(error)
     return reading
 
 
@@ -312,7 +312,7 @@ def plain(value: Any) -> Any:
 def text_of_error(error: BaseException) -> str:
     """An exception in words, without what differs between equal runs."""
     kind = class_name(type(error))
-    return f"{kind.removeprefix('builtins:')}: {_ACCIDENTS.sub('…', str(error))[:_CHARACTERS]}"
+    return f"{kind.removeprefix('builtins:')}: {_ACCIDENTS.sub('…', text_of(error))[:_CHARACTERS]}"
 
 
 def _data_of(value: Any, depth: int) -> Any:
@@ -321,7 +321,7 @@ def _data_of(value: Any, depth: int) -> Any:
         return value
     if issubclass(kind, Enum):
         return f"{kind.__name__}.{value.name}"
-    if type(value) in _AS_TEXT or is_told(value):
+    if type(value) in _AS_TEXT or is_textual(value):
         return repr(value)
     if is_of_numpy(value):
         return _array(value, depth)
@@ -434,6 +434,6 @@ class TestRecording:
         try:
             return to_text(recording)
         except (TypeError, ValueError, RecursionError) as error:  # values of the user's may be anything
-            tape.problem(f"the calls of a test cannot be recorded: {type(error).__name__}: {error}")
+            tape.problem(f"the calls of a test cannot be recorded: {in_words(error)}")
             recording.calls = []
             return to_text(recording)

@@ -62,10 +62,10 @@ def carry(folder: str) -> None:
     if not _folder:
         _hook_starts()
     _folder = folder
-    _lead()
+    _set_variables()
 
 
-def _lead() -> None:
+def _set_variables() -> None:
     """Set the variables in this process's environment again, which tests may have changed."""
     environment = {"PYTHONPATH": with_startup(os.environ.get("PYTHONPATH")), VARIABLE: _folder}
     for name, value in environment.items():
@@ -91,17 +91,17 @@ def _hook_starts() -> None:
 
     _posixsubprocess.fork_exec = fork_exec
     if "subprocess" in sys.modules:
-        _use(fork_exec)
+        _replace(fork_exec)
     listen(STARTS, lambda event, arguments: _about_to_start(event, fork_exec))
 
 
 def _about_to_start(event: str, fork_exec: Callable[..., Any]) -> None:
-    _lead()
+    _set_variables()
     if event == "subprocess.Popen":
-        _use(fork_exec)
+        _replace(fork_exec)
 
 
-def _use(fork_exec: Callable[..., Any]) -> None:
+def _replace(fork_exec: Callable[..., Any]) -> None:
     module: Any = sys.modules["subprocess"]
     module._fork_exec = fork_exec
     module._USE_POSIX_SPAWN = False  # it goes another way with ``close_fds=False``; this one does the same

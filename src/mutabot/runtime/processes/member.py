@@ -16,6 +16,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from mutabot.errors import text_of
 from mutabot.model import events
 from mutabot.model.clocks import monotonic
 from mutabot.model.event_file import ANYBODY
@@ -335,7 +336,7 @@ class Member:
             return
         self.file.send(
             events.Raised(
-                f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
+                f"{type(first).__qualname__}: {text_of(first)[:2000].strip()}",
                 is_refusal=is_due_to(error, self.session.evidence.culprits),
                 failure=failure_in(error, self.session.job.vocabulary.failures) or self._own_failure(error),
                 in_thread=in_thread,

@@ -48,7 +48,7 @@ from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
-from mutabot.runtime.interception.frames import OfModules, is_border
+from mutabot.runtime.interception.frames import ModuleCache, is_border
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
@@ -158,7 +158,7 @@ class Standing:
     alone: set[Span] = field(default_factory=set)
     by_name: dict[str, list[Adapter]] = field(default_factory=dict)
     _signatures: dict[Adapter, Signature | None] = field(default_factory=dict)
-    _meant: OfModules[int, dict[str, Any]] = field(default_factory=OfModules)
+    _meant: ModuleCache[int, dict[str, Any]] = field(default_factory=ModuleCache)
 
     def __post_init__(self) -> None:
         for one in self.adapters:
