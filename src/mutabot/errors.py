@@ -182,10 +182,16 @@ class OperatorError(MutabotError):
 
 def text_of(error: BaseException) -> str:
     """The text of an exception; the name of its class if the user's code fails to give one."""
+    return str(error) if has_text(error) else type(error).__name__
+
+
+def has_text(error: BaseException) -> bool:
+    """Whether the code of an exception's class gives its text."""
     try:
-        return str(error)
+        str(error)
     except Exception:
-        return type(error).__name__
+        return False
+    return True
 
 
 def in_words(error: BaseException) -> str:

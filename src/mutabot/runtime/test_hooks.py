@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from mutabot.errors import has_text
 from mutabot.model import By, Mutant
 from mutabot.model.clocks import monotonic, process_time
 from mutabot.model.event_file import UNWRITTEN
@@ -248,6 +249,8 @@ class TestHooks:
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         """Note the first thing that ended the test."""
+        if self.fork is not None and call.excinfo is not None and not has_text(call.excinfo.value):
+            item.config.option.tbstyle = "no"  # what a fork reports else is that text
         report = yield
         if report.failed:
             # what was to fail and did not raises nothing

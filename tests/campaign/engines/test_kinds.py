@@ -278,3 +278,34 @@ def test_an_assertion_in_a_shared_tear_down_is_a_check_and_a_watchdog_ends_in_a_
     overdue = found["stalls"]["reverse"]
     assert overdue.verdict is Verdict.TIMEOUT
     assert (overdue.message or "").startswith("no end after 2 s of wall clock (faulthandler_timeout) during ")
+
+
+MUTE = """
+    class Mute(Exception):
+        def __str__(self):
+            raise RuntimeError("no text")
+
+    class Arm:
+        def __init__(self):
+            self.x = 0.0
+
+        def move_by(self, dx):
+            self.x += dx
+            if self.x < 0:
+                raise Mute
+"""
+MUTE_TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_moves():
+        mission.moves(Arm())
+"""
+
+
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+def test_an_exception_that_fails_to_give_its_text_kills(tmp_path: Path, engine: str) -> None:
+    mission = "def moves(arm):\n    arm.move_by(0.5)\n"
+    folder = write_project(tmp_path, mission, MUTE_TESTS, robot=MUTE)
+    (found,) = run(folder, engine=engine, only=("reverse",)).values()
+    assert (found.verdict, found.exception, found.message) == (Verdict.KILLED, "robot:Mute", "Mute")
