@@ -306,6 +306,7 @@ MUTE_TESTS = """
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_an_exception_that_fails_to_give_its_text_kills(tmp_path: Path, engine: str) -> None:
     mission = "def moves(arm):\n    arm.move_by(0.5)\n"
-    folder = write_project(tmp_path, mission, MUTE_TESTS, robot=MUTE)
+    vocabulary = MOVES.replace('refusals = ["robot:Refused"]', "")
+    folder = write_project(tmp_path, mission, MUTE_TESTS, robot=MUTE, vocabulary=vocabulary)
     (found,) = run(folder, engine=engine, only=("reverse",)).values()
     assert (found.verdict, found.exception, found.message) == (Verdict.KILLED, "robot:Mute", "Mute")
