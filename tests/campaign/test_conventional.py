@@ -26,6 +26,7 @@ from tests.campaign.project import (
     run,
     write_project,
 )
+from tests.campaign.scripted import CHECKED, Script
 
 pytestmark = pytest.mark.needs("source")
 
@@ -459,3 +460,28 @@ def test_a_command_that_the_vocabulary_does_not_know_is_invalid(tmp_path: Path, 
     assert set(found.values()) == {Verdict.INVALID, Verdict.REFUSED}
     assert found["swap-characters=2"] is Verdict.INVALID
     assert found["replace-character=6"] is Verdict.REFUSED  # lift/6: a command, and too high
+
+
+@pytest.mark.parametrize("rounds", [1, 2])
+def test_text_whose_tests_fail_while_it_is_looked_at_is_named_and_not_mutated(
+    tmp_path: Path, script: Script, rounds: int
+) -> None:
+    """As where an import hook counts what stands in the program."""
+
+    def original(run: object) -> dict[str, Any]:
+        found = script.tasks[-1].job.instrumentation
+        return dict(CHECKED) if found is not None and found.record else {}
+
+    script.original = original
+    script.mutated = lambda run: CHECKED
+    write_project(
+        tmp_path,
+        MISSION,
+        "import mission\nfrom robot import Arm\n\ndef test_right():\n    mission.right(Arm())\n",
+    )
+    mutants, left_out, _ = plan_only(
+        request_for(tmp_path, families=("robot", "conventional"), rounds=rounds), Quiet()
+    )
+    assert {mutant.family for mutant in mutants} == {"robot"}
+    reasons = {one.reason for one in left_out if "mission.py" in one.id}
+    assert "tests fail while mutabot looks which values its text has" in reasons

@@ -90,6 +90,7 @@ _NOT_IN_COPIES = (
     "tests fail in copies of a process that has imported and collected them, and not in fresh ones: each "
     "run of the original begins in a process of its own"
 )
+_NOT_LOOKED_AT = "tests fail while mutabot looks which values its text has"
 #: pytest's exit code where tests failed
 _FAILED = 1
 
@@ -143,6 +144,11 @@ class _Suite:
         job = self.request.job(round, record=True, known=tuple(self.known.items()), **details)
         return Task((round, repetition), job, startup=Limit(300.0), may_share=self.may_share)
 
+    def failing(self) -> set[tuple[int, str]]:
+        """The tests that fail in a run so far, by round."""
+        ends = ((key[0], end) for key, result in self.results.items() for end in result.ends)
+        return {(round, end.test) for round, end in ends if end.outcome == "failed"}
+
     def learns(self) -> bool:
         """Whether the runs so far tell of operations where they did not know of them in all tests."""
         for result in self.results.values():
@@ -194,18 +200,17 @@ def _run(
     request = suite.request
     texts = tuple(text for one in prepared.values() for text in one.texts)
     recording = Instrumentation(texts, record=True) if texts else None
-
-    def first_runs() -> Iterator[Task]:
-        for round in range(request.rounds):
-            yield suite.task(round, 0, inspect=round == 0, instrumentation=recording)
-
-    suite.run(first_runs())
-    if if_all_pass and any(end.outcome == "failed" for one in suite.results.values() for end in one.ends):
+    suite.run(_first_runs(suite, recording))
+    is_looked_at = recording is None or not _fails_if_looked_at(suite, recording)
+    if if_all_pass and suite.failing():
         return False
     if suite.learns():
         suite.progress.note(_KNOWN_LATER.format(len(suite.known)))
         suite.remarks.clear()
-        suite.run(first_runs())
+        suite.run(_first_runs(suite, recording if is_looked_at else None))
+    if not is_looked_at:
+        for result in suite.results.values():
+            result.not_instrumented |= {text.file: _NOT_LOOKED_AT for text in texts}
     suite.probe_intervals = probe_intervals_of(
         {(run[0], end.test): end for run, result in suite.results.items() for end in result.ends}
     )
@@ -219,6 +224,25 @@ def _run(
         failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
         suite.run(suite.task(round, 1) for round in failing)
     return True
+
+
+def _first_runs(suite: _Suite, recording: Instrumentation | None) -> Iterator[Task]:
+    for round in range(suite.request.rounds):
+        yield suite.task(round, 0, inspect=round == 0, instrumentation=recording)
+
+
+def _fails_if_looked_at(suite: _Suite, recording: Instrumentation) -> bool:
+    """Whether tests fail because the text is looked at; the first runs are then those that leave it alone."""
+    first, failing = dict(suite.results), suite.failing()
+    if not failing:
+        return False
+    suite.run(_first_runs(suite, None))
+    plain, failing = dict(suite.results), failing - suite.failing()
+    if failing:  # or was it chance?
+        suite.run(_first_runs(suite, recording))
+    is_so = bool(failing & suite.failing())
+    suite.results.update(plain if is_so else first)
+    return is_so
 
 
 def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progress: Progress) -> None:

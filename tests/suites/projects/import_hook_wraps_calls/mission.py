@@ -1,0 +1,9 @@
+from robot import Arm
+
+
+def go(x):
+    arm = Arm()
+    arm.move(abs(x))
+    if x < 0:
+        arm.grip(True)
+    return arm.x
