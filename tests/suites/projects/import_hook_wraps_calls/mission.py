@@ -6,4 +6,10 @@ def go(x):
     arm.move(abs(x))
     if x < 0:
         arm.grip(True)
-    return arm.x
+    return arm
+
+
+def rehearse(log, x):
+    log.move(abs(x))
+    log.grip(False)
+    return str(log)
