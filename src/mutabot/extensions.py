@@ -13,7 +13,6 @@ from dataclasses import field
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.frozen import frozen
@@ -22,6 +21,7 @@ from .errors import ExtensionError
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
+    from pathlib import Path
 
 #: version of this interface: raised when a package written for an older one would break
 INTERFACE = 1
@@ -161,6 +161,8 @@ class ExtensionPart:
     @property
     def file(self) -> Path:
         """The file that the reference names; the package is not imported. Raises ExtensionError."""
+        from pathlib import Path  # noqa: PLC0415  # of no use to processes below the tests
+
         package, _, name = self.reference.partition(":")
         spec = find_spec(package)
         for folder in (spec.submodule_search_locations or ()) if spec is not None else ():
