@@ -164,6 +164,15 @@ def test_an_environment_variable_makes_it_anew(project: Project, monkeypatch: py
     assert project.runs() == 1
 
 
+def test_folders_of_libraries_count_in_any_order(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/one:/two")
+    project.runs()
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/two:/one")
+    assert project.runs() == 0
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/two")
+    assert project.runs() == 1
+
+
 @pytest.mark.parametrize(("where", "found"), [("versions", "2.0"), ("code_of_packages", (("arm.py", "#2"),))])
 def test_what_is_installed_makes_it_anew(
     project: Project, monkeypatch: pytest.MonkeyPatch, where: str, found: Any

@@ -8,6 +8,7 @@ of time are set.
 
 from __future__ import annotations
 
+import os
 import platform
 import time
 import zlib
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 #: environment variables by which shells keep their own books
 _OF_SHELLS = {"_", "OLDPWD", "SHLVL"}
+#: a list of folders that wheels of ROS set in another order each time Python starts
+_UNORDERED = "LD_LIBRARY_PATH"
 #: the seal shows that a line is whole and of this run; who could change it could seal it as well
 _KEY = ""
 #: the level at which zlib costs least, and bytes that are unpacked at once
@@ -216,4 +219,5 @@ def _read(run: OriginalRun) -> list[Event]:
 
 def _environment() -> str:
     """All environment variables that tests can see, as a digest."""
-    return _digest({name: text for name, text in usual_environment().items() if name not in _OF_SHELLS})
+    found = {name: text for name, text in usual_environment().items() if name not in _OF_SHELLS}
+    return _digest(found | {_UNORDERED: sorted(found.get(_UNORDERED, "").split(os.pathsep))})
