@@ -245,6 +245,7 @@ def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
         import os
         import subprocess
         import sys
+        from posix import execve, posix_spawn  # as they were: mutabot's own are in os
 
         import mission
 
@@ -257,13 +258,13 @@ def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
         def test_spawned():
             for environment in ({}, os.environ):
                 arguments = [sys.executable, "-c", "'spawned'"]
-                _, status = os.waitpid(os.posix_spawn(sys.executable, arguments, environment), 0)
+                _, status = os.waitpid(posix_spawn(sys.executable, arguments, environment), 0)
                 assert status == 0
 
         def test_executed():
             child = os.fork()
             if not child:
-                os.execve(sys.executable, [sys.executable, "-c", "'executed'"], {})
+                execve(sys.executable, [sys.executable, "-c", "'executed'"], {})
             assert os.waitpid(child, 0) == (child, 0)
     """
     mission = """

@@ -41,6 +41,18 @@ MISSION = """
         command = [sys.executable, "-c", code]
         _, status = os.waitpid(os.posix_spawn(sys.executable, command, os.environ), 0)
         return os.waitstatus_to_exitcode(status) / 100
+
+    def with_nothing(name, start):
+        code = f"import sys; sys.path[:0] = {sys.path!r}; import mission, os; "
+        code += f"os._exit(int(100 * mission.{name}(0.25)) % 256)"
+        command = [sys.executable, "-c", code]
+        if start == "posix_spawn":
+            pid = os.posix_spawn(sys.executable, command, {})
+        elif start == "spawn":
+            pid = os.spawnve(os.P_NOWAIT, sys.executable, command, {"LANG": "C"})
+        elif (pid := os.fork()) == 0:
+            os.execve(path=sys.executable, argv=command, env={})
+        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) / 100
 """
 #: what runs a function that moves the robot
 WAYS = {
@@ -49,8 +61,11 @@ WAYS = {
     "nested": "run('spawn', {}_below)",
     "executor": "next(ProcessPoolExecutor(1, mp_context=mp.get_context('spawn')).map({}, [0.25]))",
     "posix_spawn": "by_posix_spawn('{}')",
+    "empty_spawn": "with_nothing('{}', 'posix_spawn')",
+    "spawnve": "with_nothing('{}', 'spawn')",
+    "execve": "with_nothing('{}', 'execve')",
 }
-LONGER = {"forkserver", "nested", "executor"}
+LONGER = {"forkserver", "nested", "executor", "spawnve", "execve"}
 
 
 def project(folder: Path, ways: list[str]) -> Path:
@@ -75,7 +90,9 @@ def project(folder: Path, ways: list[str]) -> Path:
     return write_project(folder, mission, tests, configuration=configuration)
 
 
-@pytest.mark.parametrize("ways", [["spawn", "posix_spawn"], pytest.param([*LONGER], marks=pytest.mark.whole)])
+@pytest.mark.parametrize(
+    "ways", [["spawn", "posix_spawn", "empty_spawn"], pytest.param([*LONGER], marks=pytest.mark.whole)]
+)
 def test_processes_below_a_fork_are_its_mutant(tmp_path: Path, ways: list[str]) -> None:
     found = run(project(tmp_path, ways), engine="auto", only=("reverse",))
     assert {(one.verdict, one.test) for one in found.values()} == {

@@ -17,7 +17,8 @@ import os
 import re
 import struct
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import wraps
 from itertools import takewhile
 from typing import Any
 
@@ -49,6 +50,9 @@ def _hear(event: str, arguments: tuple[Any, ...]) -> None:
 STARTUP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "startup")
 #: which argument of ``fork_exec`` is the environment, <Lib/subprocess.py>
 _ENVIRONMENT = 5
+#: functions of ``os`` that start a program with an environment of its own, the third argument, ``env``;
+#: the others that take one call ``execve``
+_WITH_ENVIRONMENT = ("posix_spawn", "posix_spawnp", "execve")
 #: audit events of the start of a program; the last is our own: ``multiprocessing`` makes none
 STARTS = ("os.system", "subprocess.Popen", "os.posix_spawn", "os.exec", "mutabot.fork_exec")
 #: those of the copy of a process
@@ -90,9 +94,39 @@ def _hook_starts() -> None:
         return start(*arguments)
 
     _posixsubprocess.fork_exec = fork_exec
+    for name in _WITH_ENVIRONMENT:
+        setattr(os, name, _completing(getattr(os, name)))
     if "subprocess" in sys.modules:
         _replace(fork_exec)
     listen(STARTS, lambda event, arguments: _about_to_start(event, fork_exec))
+
+
+def _completing(start: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of ``os`` that completes the environment of the program it starts."""
+
+    @wraps(start)
+    def started(*arguments: Any, **options: Any) -> Any:
+        if len(arguments) > 2:
+            arguments = (*arguments[:2], _with_variables(arguments[2]), *arguments[3:])
+        elif "env" in options:
+            options["env"] = _with_variables(options["env"])
+        return start(*arguments, **options)
+
+    for known in (os.supports_fd, os.supports_dir_fd, os.supports_follow_symlinks):
+        if start in known:
+            known.add(started)
+    return started
+
+
+def _with_variables(environment: Any) -> Any:
+    """An environment as a mapping, with these variables; anything else as it is, for ``os`` to refuse."""
+    if not isinstance(environment, Mapping) or environment is os.environ:
+        return environment  # ours has been completed already
+    try:
+        entries = [os.fsencode(name) + b"=" + os.fsencode(value) for name, value in environment.items()]
+    except TypeError:
+        return environment
+    return dict(entry.partition(b"=")[::2] for entry in completed(entries))
 
 
 def _about_to_start(event: str, fork_exec: Callable[..., Any]) -> None:
