@@ -1,17 +1,20 @@
-"""Plain projects, conventional mutants: what mutabot and irradiate cost, and whether pytest says the same.
+"""Plain projects, conventional mutants: what mutabot and two others cost, and whether pytest says the same.
 
-Three projects of others come from their source distributions, pinned below, and each tool is installed in a
-virtual environment of its own with the same pytest. On a copy of each project both draw as many mutants and
-run them in one process at a time. Measured is processor time, of everything that the command starts. Of each
-tool's verdicts some survivors and some kills are then made by hand, by editing the text of a copy, and plain
-pytest says whether the suite notices. Survivors of mutabot were run to the end of the suite.
+Projects of others come from their source distributions, pinned below, and each tool is installed in a virtual
+environment of its own with the same pytest. On a copy of each project all draw as many mutants and run them
+in one process at a time. Measured is processor time, of everything that the command starts. Of each tool's
+verdicts some survivors and some kills are then made by hand, by editing the text of a copy, and plain pytest
+says whether the suite notices.
 
-The tools have other operators, so their mutants and scores differ; what can be compared is what a mutant
-costs and how often a verdict is right.
+The tools have other operators, so their mutants and scores differ; what can be compared is what a verdict
+costs and how often one is right. moonbuggy draws no sample: it is given one by its own functions, which its
+command calls. It needs Python 3.12, and is left out below that.
 
-Use: ``python benchmarks/plain_projects.py [NAME…] [--mutants 60] [--judged 8] [--repeat 1] [--venvs FOLDER]
-[--json FILE]``. With ``--venvs`` the environments are kept there and used again. The exit code is 1 if plain
-pytest contradicts a verdict of mutabot's.
+Use: ``python benchmarks/plain_projects.py [NAME…] [--tools TOOL…] [--mutants 60] [--judged 8] [--judge TOOL…]
+[--repeat 1] [--venvs FOLDER] [--sources FOLDER] [--json FILE]``. With ``--venvs`` the environments are kept
+there and used again. A distribution without tests is left out, unless there is a checkout under its name in
+``--sources``.
+The exit code is 1 if plain pytest contradicts a verdict of mutabot's.
 """
 
 from __future__ import annotations
@@ -36,17 +39,55 @@ sys.path.insert(0, str(HERE.parent / "tests"))
 
 from suites.editor import CannotWriteError, Source, text_edit  # noqa: E402
 
-#: by name: distribution, the program in it, its tests, what it needs
-PROJECTS: dict[str, tuple[str, str, str, list[str]]] = {
-    "python-slugify": ("python-slugify==9.2.0", "slugify", "tests", ["text-unidecode==1.3"]),
-    "inflection": ("inflection==0.5.1", "inflection", "test_inflection.py", []),
-    "cachetools": ("cachetools==5.5.0", "src/cachetools", "tests", []),
-}
-PYTEST, IRRADIATE = "pytest==9.2.0", "irradiate==0.4.3"
-#: seconds that plain pytest may take for an edited copy; a suite that hangs notices
+
+@dataclass(frozen=True)
+class Project:
+    """A project: its version, the program in it, its tests, what these need, and options of pytest."""
+
+    version: str
+    program: str
+    tests: str = "tests"
+    needs: tuple[str, ...] = ()
+    options: str = ""
+    #: whether its source distribution has its tests
+    has_tests: bool = True
+
+
+PROJECTS = {
+    "python-slugify": Project("9.2.0", "slugify", needs=("text-unidecode==1.3",)),
+    "inflection": Project("0.5.1", "inflection", "test_inflection.py"),
+    "cachetools": Project("5.5.0", "src/cachetools"),
+    "humanize": Project("4.17.0", "src/humanize", needs=("freezegun==1.5.5",),
+                        options="--ignore=tests/test_benchmarks.py"),
+    "tomlkit": Project("0.15.2", "tomlkit", needs=("PyYAML==6.0.4",)),
+    "boltons": Project("26.2.0", "boltons"),
+    "packaging": Project("25.0", "src/packaging", needs=("pretend==1.0.9", "tomli_w==1.2.0")),
+    "sortedcontainers": Project("2.4.0", "sortedcontainers", has_tests=False),
+}  # fmt: skip
+TOOLS = {"mutabot": str(HERE.parent), "irradiate": "irradiate==0.4.3", "moonbuggy": "moonbuggy==0.2.0"}
+PYTEST = "pytest==9.2.0"
+#: what moonbuggy's command does with all of its mutants, done with some of them, drawn at random
+_MOONBUGGY = """
+import json, random, sys
+from pathlib import Path
+from moonbuggy.generate import generate_mutants
+from moonbuggy.inmemory import mutated_source
+from moonbuggy.report import record_for
+from moonbuggy.runner import run_session
+from moonbuggy.srcio import read_source
+program, mutants, timeout = Path(sys.argv[1]).resolve(), int(sys.argv[2]), float(sys.argv[3])
+every = [one for file in sorted(program.rglob("*.py"))
+         for one in generate_mutants(read_source(file), module=str(file.relative_to(Path.cwd())))]
+drawn = random.Random(0).sample(every, min(mutants, len(every)))
+_, results = run_session(Path.cwd(), drawn, program, timeout, jobs=1)
+text = lambda one: mutated_source(one.module, one.line, one.mutated)
+print(json.dumps([{**record_for(one), "text": text(one.mutant)} for one in results]))
+"""
+#: seconds that plain pytest may take for an edited copy, and at least; a suite that hangs notices
 _PATIENCE = 60
-_NOTICED = {"killed", "timeout", "Killed", "Timeout", "invalid"}
-_MISSED = {"survived", "Survived", "no effect"}
+_NOTICED = {"killed", "timeout", "Killed", "Timeout", "invalid", "KILLED", "KILLED_BY_ERROR", "TIMEOUT"}
+_NOT_REACHED = {"not covered", "NoCoverage", "NO_COVERAGE"}
+_MISSED = {"survived", "Survived", "no effect", "SURVIVED", *_NOT_REACHED}
 
 
 @dataclass
@@ -59,7 +100,13 @@ class Figures:
     survived: int
     right: int = 0
     wrong: list[str] = field(default_factory=list)
+    #: processor time of each campaign
+    every: list[float] = field(default_factory=list)
     unwritable: int = 0
+
+
+class ToolError(Exception):
+    """A tool has no verdicts on a project; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -75,72 +122,102 @@ def main() -> int:
     """Run both tools on the projects and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", default=list(PROJECTS), help="projects; default all")
+    parser.add_argument("--tools", nargs="+", default=list(TOOLS), choices=TOOLS)
     parser.add_argument("--mutants", type=int, default=60)
     parser.add_argument(
         "--judged", type=int, default=8, help="survivors, and kills, of each tool that pytest judges"
     )
-    parser.add_argument("--repeat", type=int, default=1, help="the least of so many campaigns counts")
+    parser.add_argument("--judge", nargs="+", default=list(TOOLS), choices=TOOLS, help="whose verdicts")
+    parser.add_argument("--repeat", type=int, default=1, help="campaigns of each tool, one after another")
     parser.add_argument("--venvs", type=Path, help="keep the environments in this folder")
+    parser.add_argument("--sources", type=Path, help="folder with checkouts of projects")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     given = parser.parse_args()
     found: dict[str, dict[str, Any]] = {}
     with tempfile.TemporaryDirectory() as folder:
         venvs = given.venvs.resolve() if given.venvs else Path(folder, "venvs")
-        needs = [need for *_, more in PROJECTS.values() for need in more]
-        ours = _environment(venvs / "mutabot", [str(HERE.parent), PYTEST, *needs])
-        theirs = _environment(venvs / "irradiate", [IRRADIATE, PYTEST, *needs])
-        here = [ours, "-m", "pip", "install", "-q", "--no-deps", "--force-reinstall", str(HERE.parent)]
-        subprocess.run(here, check=True)  # an environment that was kept has an older one
+        pythons = {tool: _environment(venvs / tool, tool) for tool in given.tools}
         for name in given.names:
-            project = _project(name, Path(folder, name))
-            suite, done = min((_cpu([theirs, "-m", "pytest", "-q"], project) for _ in range(3)), key=_seconds)
-            if done.returncode:
-                raise SystemExit(f"{name}: plain pytest fails: {done.stdout[-2000:]}")
-            tools = {"mutabot": (_mutabot, ours), "irradiate": (_irradiate, theirs)}
-            found[name] = {"pytest": round(suite, 2)}
-            for tool, (run, python) in tools.items():
-                figures, judged = min(
-                    (run(python, project, given.mutants) for _ in range(given.repeat)),
-                    key=lambda one: one[0].cpu,
-                )
-                for one in _drawn(judged, given.judged):
-                    _judge(theirs, project, one, figures)
-                found[name][tool] = asdict(figures)
-                _print(name, suite, tool, figures)
+            project = _project(name, Path(folder, name), given.sources)
+            if project is None:
+                print(f"{name}: its distribution has no tests; give a checkout in --sources")
+                continue
+            found[name] = _compare(project, PROJECTS[name], pythons, given)
     if given.json:
         given.json.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
-    return int(any(one["mutabot"]["wrong"] for one in found.values()))
+    return int(any(one.get("mutabot", {}).get("wrong") for one in found.values()))
+
+
+def _compare(
+    folder: Path, project: Project, pythons: dict[str, str], given: argparse.Namespace
+) -> dict[str, Any]:
+    """What the tools did with one project. They take turns; of each the cheapest campaign counts."""
+    name = folder.parent.name
+    python = next(iter(pythons.values()))
+    suite, done = min((_cpu([python, "-m", "pytest", "-q"], folder) for _ in range(3)), key=_seconds)
+    if done.returncode:
+        raise SystemExit(f"{name}: plain pytest fails: {done.stdout[-2000:]}")
+    runs: dict[str, list[tuple[Figures, list[Judged]]]] = {tool: [] for tool in pythons}
+    for _ in range(given.repeat):
+        for tool, campaigns in runs.items():
+            try:
+                campaigns.append(_RUNS[tool](pythons[tool], folder, project, given.mutants))
+            except ToolError as error:
+                print(f"{name}: {tool} {error}", flush=True)
+    found: dict[str, Any] = {"pytest": round(suite, 2)}
+    for tool, campaigns in runs.items():
+        if campaigns:
+            figures, judged = min(campaigns, key=lambda one: one[0].cpu)
+            figures.every = [one.cpu for one, _ in campaigns]
+            for one in _drawn(judged, given.judged if tool in given.judge else 0):
+                _judge(python, folder, one, figures, suite)
+            found[tool] = asdict(figures)
+            _print(name, suite, tool, figures)
+    return found
 
 
 def _seconds(done: tuple[float, Any]) -> float:
     return done[0]
 
 
-def _environment(folder: Path, needs: list[str]) -> str:
-    """The Python of a virtual environment with these packages, made if it is not there."""
-    python = folder / "bin" / "python"
-    if not python.exists():
+def _environment(folder: Path, tool: str) -> str:
+    """The Python of a virtual environment with this tool and what the projects need."""
+    python = str(folder / "bin" / "python")
+    install = [python, "-m", "pip", "install", "-q"]
+    if not Path(python).exists():
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        subprocess.run([python, "-m", "pip", "install", "-q", *needs], check=True)
-    return str(python)
+        needs = [need for project in PROJECTS.values() for need in project.needs]
+        done = subprocess.run([*install, TOOLS[tool], PYTEST, *needs], check=False)
+        if done.returncode:
+            raise SystemExit(f"{tool} cannot be installed by Python {sys.version.split()[0]}")
+    if tool == "mutabot":  # an environment that was kept has an older one
+        subprocess.run([*install, "--no-deps", "--force-reinstall", TOOLS[tool]], check=True)
+    return python
 
 
-def _project(name: str, folder: Path) -> Path:
-    """The project from its source distribution, told where its program and its tests are."""
-    requirement, program, tests, _ = PROJECTS[name]
+def _project(name: str, folder: Path, sources: Path | None) -> Path | None:
+    """The project from its source distribution or checkout, told where its program and its tests are."""
+    it = PROJECTS[name]
     folder.mkdir()
-    command = [sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--no-binary", ":all:"]
-    subprocess.run([*command, "-d", folder, requirement], check=True)
-    (archive,) = folder.glob("*.tar.gz")
-    with tarfile.open(archive) as tar:
-        tar.extractall(folder, filter="data")
-    (root,) = (path for path in folder.iterdir() if path.is_dir())
-    project = root.rename(folder / "project")
+    project = folder / "project"
+    if sources and (sources / name).is_dir():
+        shutil.copytree(sources / name, project, ignore=shutil.ignore_patterns(".git", "tox.ini"))
+    elif it.has_tests:
+        command = [sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--no-binary", ":all:"]
+        subprocess.run([*command, "-d", folder, f"{name}=={it.version}"], check=True)
+        (archive,) = folder.glob("*.tar.gz")
+        with tarfile.open(archive) as tar:
+            tar.extractall(folder, filter="data")
+        (root,) = (path for path in folder.iterdir() if path.is_dir())
+        root.rename(project)
+    else:
+        return None
     (project / "pytest.ini").write_text(
-        f"[pytest]\ntestpaths = {tests}\npythonpath = . {Path(program).parent}\n"
+        f"[pytest]\ntestpaths = {it.tests}\npythonpath = . {Path(it.program).parent}\n"
+        f"addopts = {it.options}\n"
     )
     (project / "mutabot.toml").write_text(
-        f'program = ["{program}"]\ntests = ["{tests}"]\nfamilies = ["conventional"]\n'
+        f'program = ["{it.program}"]\ntests = ["{it.tests}"]\nfamilies = ["conventional"]\n'
     )
     return project
 
@@ -149,6 +226,7 @@ def _cpu(command: list[str], folder: Path) -> tuple[float, subprocess.CompletedP
     """Processor seconds of a command and of all that it waited for, and what it printed."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+    environment["PATH"] = f"{Path(command[0]).parent}:{environment['PATH']}"
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=environment)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, done
@@ -161,17 +239,17 @@ def _copy(project: Path, name: str) -> Path:
     return copy
 
 
-def _mutabot(python: str, project: Path, mutants: int) -> tuple[Figures, list[Judged]]:
-    copy = _copy(project, "mutabot")
+def _mutabot(python: str, folder: Path, project: Project, mutants: int) -> tuple[Figures, list[Judged]]:
+    copy = _copy(folder, "mutabot")
     command = [python, "-m", "mutabot.cli.app", "run", "--sample", str(mutants), "-j", "1", "--json"]
     cpu, done = _cpu(command, copy)
     if done.returncode:
-        raise SystemExit(f"mutabot: exit code {done.returncode}: {done.stderr[-2000:]}")
+        raise ToolError(f"ends with exit code {done.returncode}: {done.stderr[-2000:]}")
     found = json.loads(done.stdout)["mutants"]
 
     def writer(mutant: dict[str, Any]) -> Callable[[], tuple[str, bytes]]:
         def write() -> tuple[str, bytes]:
-            source = Source(project / mutant["file"], mutant["file"])
+            source = Source(folder / mutant["file"], mutant["file"])
             return mutant["file"], text_edit(source, mutant).applied(source.bytes)
 
         return write
@@ -180,26 +258,40 @@ def _mutabot(python: str, project: Path, mutants: int) -> tuple[Figures, list[Ju
     return _figures(cpu, judged), judged
 
 
-def _irradiate(python: str, project: Path, mutants: int) -> tuple[Figures, list[Judged]]:
-    copy = _copy(project, "irradiate")
-    _, program, tests, _ = PROJECTS[project.parent.name]
-    command = [str(Path(python).with_name("irradiate")), "run", program, "--tests-dir", tests]
+def _irradiate(python: str, folder: Path, project: Project, mutants: int) -> tuple[Figures, list[Judged]]:
+    copy = _copy(folder, "irradiate")
+    program = project.program
+    command = [str(Path(python).with_name("irradiate")), "run", program, "--tests-dir", project.tests]
     command += ["--python", python, "--workers", "1", "--sample", str(mutants)]
+    command += ["--worker-timeout", "300", "--stats-timeout", "900"]
     command += ["--no-cache", "--report", "json", "-o", "report.json"]
     cpu, done = _cpu(command, copy)
     report = copy / "report.json"
     if not report.exists():
-        raise SystemExit(
-            f"irradiate: exit code {done.returncode}: {done.stdout[-2000:]}{done.stderr[-2000:]}"
-        )
+        raise ToolError(f"ends with exit code {done.returncode}: {done.stdout[-2000:]}{done.stderr[-2000:]}")
     # it names files from the folder of the package, and has no text of them if that is not the project's own
-    files = [str(path.relative_to(project)) for path in (project / program).rglob("*.py")]
+    files = [str(path.relative_to(folder)) for path in (folder / program).rglob("*.py")]
     place = {str(Path(file).relative_to(Path(program).parent)): file for file in files}
     judged = [
-        Judged(one["id"], one["status"], _written_by_location(project, place.get(file, file), one))
+        Judged(one["id"], one["status"], _written_by_location(folder, place.get(file, file), one))
         for file, found in json.loads(report.read_text())["files"].items()
         for one in found["mutants"]
     ]
+    return _figures(cpu, judged), judged
+
+
+def _moonbuggy(python: str, folder: Path, project: Project, mutants: int) -> tuple[Figures, list[Judged]]:
+    copy = _copy(folder, "moonbuggy")
+    command = [python, "-c", _MOONBUGGY, project.program, str(mutants), str(_PATIENCE)]
+    cpu, done = _cpu(command, copy)
+    if done.returncode:
+        raise ToolError(f"ends with exit code {done.returncode}: {done.stderr[-2000:]}")
+
+    def writer(mutant: dict[str, Any]) -> Callable[[], tuple[str, bytes]]:
+        return lambda: (mutant["file"], mutant["text"].encode())
+
+    found = json.loads(done.stdout.splitlines()[-1])
+    judged = [Judged(one["id"], one["status"], writer(one)) for one in found]
     return _figures(cpu, judged), judged
 
 
@@ -217,6 +309,9 @@ def _written_by_location(project: Path, file: str, mutant: dict[str, Any]) -> Ca
     return write
 
 
+_RUNS = {"mutabot": _mutabot, "irradiate": _irradiate, "moonbuggy": _moonbuggy}
+
+
 def _figures(cpu: float, judged: list[Judged]) -> Figures:
     killed = sum(one.verdict in _NOTICED for one in judged)
     survived = sum(one.verdict in _MISSED for one in judged)
@@ -224,13 +319,14 @@ def _figures(cpu: float, judged: list[Judged]) -> Figures:
 
 
 def _drawn(judged: list[Judged], count: int) -> Iterator[Judged]:
-    """Some survivors and some kills, always the same ones."""
+    """Some survivors and some kills, always the same ones; what no test reaches only if there are too few."""
     for verdicts in (_MISSED, _NOTICED):
         some = sorted((one for one in judged if one.verdict in verdicts), key=lambda one: one.name)
-        yield from Random(1).sample(some, min(count, len(some)))
+        Random(1).shuffle(some)
+        yield from sorted(some, key=lambda one: one.verdict in _NOT_REACHED)[:count]
 
 
-def _judge(python: str, project: Path, mutant: Judged, figures: Figures) -> None:
+def _judge(python: str, project: Path, mutant: Judged, figures: Figures, suite: float) -> None:
     """Ask plain pytest about an edited copy."""
     try:
         file, text = mutant.write()
@@ -242,9 +338,10 @@ def _judge(python: str, project: Path, mutant: Judged, figures: Figures) -> None
     (copy / file).write_bytes(text)
     shutil.copy(HERE.parent / "tests" / "suites" / "planted.py", copy / "_planted.py")
     command = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
+    patience = max(_PATIENCE, 20 * suite)  # of the wall clock, on a busy machine
     try:
         notices = bool(
-            subprocess.run(command, cwd=copy, capture_output=True, timeout=_PATIENCE, check=False).returncode
+            subprocess.run(command, cwd=copy, capture_output=True, timeout=patience, check=False).returncode
         )
     except subprocess.TimeoutExpired:
         notices = True
@@ -257,9 +354,11 @@ def _judge(python: str, project: Path, mutant: Judged, figures: Figures) -> None
 
 def _print(name: str, suite: float, tool: str, figures: Figures) -> None:
     judged = figures.right + len(figures.wrong)
+    verdicts = figures.killed + figures.survived
     print(
-        f"{name:15} {tool:10} {figures.cpu:6.1f} s, suite {suite:.1f} s: {figures.mutants} mutants, "
-        f"{figures.killed} killed, {figures.survived} survived; plain pytest agrees with "
+        f"{name:16} {tool:10} {' '.join(map(str, figures.every))} s, suite {suite:.1f} s: {figures.killed} "
+        f"killed and {figures.survived} survived of {figures.mutants}, "
+        f"{figures.cpu / max(verdicts, 1):.2f} s a verdict; plain pytest agrees with "
         f"{figures.right} of {judged}, {figures.unwritable} cannot be written",
         flush=True,
     )
