@@ -253,9 +253,10 @@ class TestHooks:
             item.config.option.tbstyle = "no"  # what a fork reports else is that text
         report = yield
         if report.failed:
-            # what was to fail and did not raises nothing
-            passed = TestEnd(node_id(item), FAILED, By.CHECK, message=str(report.longrepr))
-            self._note_failure(self._classified(item, call) or passed, call.when)
+            end = self._classified(item, call)
+            if end is None:  # what was to fail and did not raises nothing
+                end = TestEnd(node_id(item), FAILED, By.CHECK, message=str(report.longrepr))
+            self._note_failure(end, call.when)
         elif self._outcome != FAILED:
             self._outcome = outcome_so_far(report, self._outcome)
             if report.skipped and hasattr(report, "wasxfail"):  # it failed as the test said it would
@@ -321,7 +322,7 @@ class TestHooks:
             trace=tuple(session.recorder.trace) if is_compared else (),
             returned=tuple(returns.entries) if is_compared and returns is not None else (),
             moments=tuple(session.along.entries) if is_compared else (),
-            checks=tuple(self.looks.noted.values()) if is_compared else (),
+            checks=self.looks.noted if is_compared else (),
         )
 
 

@@ -38,19 +38,32 @@ _OPERATORS: dict[type[ast.cmpop], str] = {
 class Looks:
     """What the checks of the running test compared.
 
+    It keeps texts and numbers alone, by place and text: a test may count the objects that the collector of
+    garbage knows, between two of its checks.
+
     Attributes:
-        noted: the checks, by place and text.
-        more: those that were made beyond these.
+        more: the checks that were made beyond those that are noted.
     """
 
     def __init__(self) -> None:
-        self.noted: dict[tuple[str, str], Check] = {}
-        self.more: set[tuple[str, str]] = set()
+        self._seen: dict[str, str] = {}
+        self._least: dict[str, float] = {}
+        self._times: dict[str, int] = {}
+        self.more: set[str] = set()
 
     def clear(self) -> None:
         """Another test begins."""
-        self.noted.clear()
-        self.more.clear()
+        for kept in (self._seen, self._least, self._times, self.more):
+            kept.clear()
+
+    @property
+    def noted(self) -> tuple[Check, ...]:
+        """The checks."""
+        return tuple(map(self._check, self._seen))
+
+    def _check(self, key: str) -> Check:
+        place, _, text = key.rpartition("\n")  # which no text of a check has in it
+        return Check(place, text[:_LONGEST], self._seen[key], self._least.get(key), self._times[key])
 
     def checked(self, place: str, text: str, *compared: Any) -> None:
         """Note a check that has held; ``compared``: left side, operator and right side of a comparison."""
@@ -61,16 +74,16 @@ class Looks:
                 self._note(place, text, None, lambda: "")
 
     def _note(self, place: str, text: str, spare: float | None, words: Callable[[], str]) -> None:
-        key = place, text
-        before = self.noted.get(key)
-        if before is None and len(self.noted) >= MOST:
+        key = f"{place}\n{text}"
+        is_new = key not in self._seen
+        if is_new and len(self._seen) >= MOST:
             self.more.add(key)
-        elif before is None:
-            self.noted[key] = Check(place, text[:_LONGEST], words(), spare)
-        else:
-            is_nearer = spare is not None and (before.spare is None or spare < before.spare)
-            seen, least = (words(), spare) if is_nearer else (before.seen, before.spare)
-            self.noted[key] = Check(place, before.text, seen, least, before.times + 1)
+            return
+        if is_new or (spare is not None and spare < self._least.get(key, math.inf)):
+            self._seen[key] = words()
+            if spare is not None:
+                self._least[key] = spare
+        self._times[key] = self._times.get(key, 0) + 1
 
 
 def margin(left: Any, operator: str, right: Any) -> float | None:

@@ -374,6 +374,8 @@ class Sightings:
 class _Witness:
     """Looks at one place.
 
+    What it keeps, it has from the start: a test may count the objects that the collector of garbage knows.
+
     Attributes:
         place: its number.
         looks, looks_around: since the start of the test.
@@ -385,10 +387,11 @@ class _Witness:
         self._variable = place.text if place is not None and place.variable else None
         self._lacking = {one.needs for one in place.alternatives if one.needs} if place is not None else set()
         self._is_around = self._variable is not None  # as far as is known, others may stand in its place
+        self._has_looked_around = False
         self.hits = self.looks = self.looks_around = 0
         self._types: set[type] = set()
         self._kinds: set[str] = set()
-        self._variables: set[str] | None = None
+        self._variables: set[str] = set()
 
     def start(self) -> None:
         """A new test begins."""
@@ -417,18 +420,20 @@ class _Witness:
     def _note_kind(self, kind: type, value: Any) -> None:
         self._types.add(kind)
         self._kinds.add(kind_of(value))
-        self._lacking = {one for one in self._lacking if self._kinds.isdisjoint(FITTING.get(one, ()))}
+        self._lacking -= {one for one in self._lacking if not self._kinds.isdisjoint(FITTING.get(one, ()))}
         self.looks_around = 0
 
     def _look_around(self, value: Any, frame: types.FrameType) -> None:
         """Keep the variables that are of the value's type at every look."""
-        names = set(_alike(value, frame, self._variables)) if is_variable(value) else set()
-        self._variables = names - {self._variable}
-        self._is_around = bool(self._variables)
+        among = self._variables if self._has_looked_around else None
+        names = set(_alike(value, frame, among)) - {self._variable} if is_variable(value) else set()
+        self._variables.clear()
+        self._variables |= names
+        self._has_looked_around, self._is_around = True, bool(names)
 
     def sighting(self) -> Sighting:
         """What was seen."""
-        kinds, variables = sorted(self._kinds), sorted(self._variables or ())
+        kinds, variables = sorted(self._kinds), sorted(self._variables)
         return Sighting(self.place, self.hits, tuple(kinds), tuple(variables))
 
 
