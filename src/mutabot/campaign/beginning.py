@@ -192,7 +192,8 @@ def check(request: Request, progress: Progress) -> CheckReport:
     previews = dict(_previews(request.configuration))
     with at_it(request, progress) as opened, ExitStack() as stack:
         folders = {folder for one in previews.values() for folder in one.folders_left_out}
-        with OpenedFiles(request.root, folders) as watch, OriginalRuns(request, None, progress) as original:
+        # files that the first reads itself are not opened by tests: it begins before the second
+        with OriginalRuns(request, None, progress) as original, OpenedFiles(request.root, folders) as watch:
             campaign, _ = begin(request, opened, progress, original=original, stack=stack)
         plan = make_plan(campaign.baseline, request.project)
         mutants = selected(campaign, plan).mutants

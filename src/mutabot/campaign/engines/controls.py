@@ -200,11 +200,15 @@ class ForkTrust:
     Args:
         campaign: the campaign.
         controls: those that are forked now, by the ids of their mutants.
+
+    Attributes:
+        is_open: whether an outcome may depend on them; most come when that is over.
     """
 
     def __init__(self, campaign: Campaign, controls: Mapping[str, Control]) -> None:
         self._campaign, self._controls = campaign, controls
         self._awaited = set(controls)
+        self.is_open = bool(controls)
         self._first = sys.maxsize  # number of the first test of which forks are not believed
 
     def take(self, outcome: Outcome) -> Iterator[ControlEnd]:
@@ -214,6 +218,7 @@ class ForkTrust:
         wrong = control.what_is_wrong(outcome)
         if wrong is None:
             self._campaign.proven.add((FORK, *control.way))
+            self.is_open = bool(self._awaited) or self._first < sys.maxsize
             yield control.end(outcome)
             return
         is_of_test = control.name == IDENTITY and outcome.test in control.tests
