@@ -183,7 +183,7 @@ def test_the_configuration_can_say_real_ros(tmp_path: Path) -> None:
 
 @pytest.mark.whole
 def test_what_ends_otherwise_over_real_ros_ends_so(tmp_path: Path) -> None:
-    results = campaign(tmp_path, "assert heard(mission.run) == [0.5] or not simulation.is_running()")
+    results = campaign(tmp_path, "assert heard(mission.run) == [0.5] or not ros_in_process.is_running()")
     assert verdicts(results) == [Verdict.SURVIVED]
     assert results.verification is not None
     (one,) = results.verification.disagreements
