@@ -2,7 +2,8 @@
 
 A process that computes is ended by its processor time, which other processes on the machine do not change.
 One that waits uses none: the wall clock ends it, without the time in which it wanted a processor and had
-none.
+none. Nobody counts the time that a host takes from a virtual machine. So a process that has used most of its
+processor time is given up to twice the wall clock's limit to use the rest.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ class Deadline:
             self.until = self.used.began + self.limit.least
             return False
         wall, processor = self.used.remaining(self.limit.wall, self.limit.processor, [process])
-        left = wall if processor is None else min(wall, processor)
+        left = wall if processor is None else self._left(wall, processor)
         if left > 0:
             self.until = monotonic() + max(left, _LEAST)
             return False
@@ -86,6 +87,12 @@ class Deadline:
             self.hindered = self.used.hindrance([process])
             self.is_starved = self.used.age >= MOST * self.limit.wall
         return True
+
+    def _left(self, wall: float, processor: float) -> float:
+        """Seconds left in both budgets; in that of processor time for a process that uses it."""
+        most = self.limit.processor or 0.0
+        computes = processor < most / 2 and self.used.age < 2 * self.limit.wall
+        return processor if computes else min(wall, processor)
 
     def overdue(self, test: str | None) -> str:
         """Which limit is exceeded, in words; without a ``test``, before it began one."""

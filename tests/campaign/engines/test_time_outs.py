@@ -251,6 +251,24 @@ def test_what_waits_is_ended_by_the_clock_on_the_wall(clock: Clock) -> None:
     assert time.hindered is None
 
 
+def test_what_computes_is_not_ended_by_the_wall_clock_though_a_host_took_its_time(clock: Clock) -> None:
+    time = Deadline(Limit(wall=4.0, processor=4.0), is_counted=True)
+    clock.passes(4.1, ran=3.0)
+    assert not time.is_over(1)
+    clock.passes(1.5, ran=1.1)
+    assert time.is_over(1)
+    assert time.overdue("t") == "no end after 4 s of processor time"
+
+
+def test_what_computed_and_then_waits_is_ended_after_twice_the_wall_clock(clock: Clock) -> None:
+    time = Deadline(Limit(wall=4.0, processor=4.0), is_counted=True)
+    clock.passes(4.1, ran=3.0)
+    assert not time.is_over(1)
+    clock.passes(4)
+    assert time.is_over(1)
+    assert time.overdue("t") == "no end after 4 s of wall clock"
+
+
 def test_what_waits_for_a_processor_gets_its_time(clock: Clock) -> None:
     time = Deadline(LIMITS, is_counted=True)
     clock.passes(100, ran=0.1, queued=50)
