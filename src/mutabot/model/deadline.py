@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from mutabot.frozen import frozen
 from mutabot.model.clocks import monotonic
-from mutabot.model.process_time import MOST, TimeUsed, below, children
+from mutabot.model.process_time import MOST, TimeUsed, below
 
 #: seconds after which the accounts of a process are read for the first time, which takes milliseconds: most
 #: tests are over by then
@@ -74,7 +74,7 @@ class Deadline:
     def is_over(self, process: int) -> bool:
         """Whether a process has used its time. To be called at ``until``, which is then set anew."""
         if not self.is_counted:
-            self.is_counted, self.used = True, TimeUsed.from_now(below([process], children()))
+            self.is_counted, self.used = True, TimeUsed.from_now(below([process]))
             self.until = self.used.began + self.limit.least
             return False
         wall, processor = self.used.remaining(self.limit.wall, self.limit.processor, [process])

@@ -49,7 +49,34 @@ def accounts_of(processes: Iterable[int]) -> Accounts:
     return found
 
 
-def children() -> dict[int, list[int]]:
+def below(roots: Iterable[int]) -> set[int]:
+    """These processes and all below them."""
+    found, due = set[int](), list(roots)
+    children = _children_of if _are_listed() else _all_children().get
+    while due:
+        pid = due.pop()
+        if pid not in found:
+            found.add(pid)
+            due += children(pid, ())
+    return found
+
+
+@cache
+def _are_listed() -> bool:
+    """Whether the kernel lists the children of a task: to look for them takes long if many processes run."""
+    return os.path.exists("/proc/thread-self/children")  # noqa: PTH110  # pathlib takes long to load
+
+
+def _children_of(pid: int, nothing: Iterable[int]) -> Iterable[int]:
+    """The children of all tasks of a process."""
+    found = list(nothing)
+    for task in _names(f"/proc/{pid}/task"):
+        with suppress(OSError, ValueError):
+            found += map(int, _read(f"/proc/{pid}/task/{task}/children").split())
+    return found
+
+
+def _all_children() -> dict[int, list[int]]:
     """The children of every process that has any."""
     found: dict[int, list[int]] = {}
     for name in _names("/proc"):
@@ -57,17 +84,6 @@ def children() -> dict[int, list[int]]:
             with suppress(OSError, IndexError, ValueError):
                 parent = int(_read(f"/proc/{name}/stat").rpartition(")")[2].split()[1])
                 found.setdefault(parent, []).append(int(name))
-    return found
-
-
-def below(roots: Iterable[int], children: Mapping[int, Iterable[int]]) -> set[int]:
-    """These processes and all below them."""
-    found, due = set[int](), list(roots)
-    while due:
-        pid = due.pop()
-        if pid not in found:
-            found.add(pid)
-            due += children.get(pid, ())
     return found
 
 
@@ -80,7 +96,7 @@ def ran_below() -> float:
     except ChildProcessError:  # there is none: to look for them would take long
         return seconds
     here = os.getpid()
-    found = accounts_of(below([here], children()) - {here})
+    found = accounts_of(below([here]) - {here})
     return seconds + sum(account.ran for account in (found or {}).values())
 
 
@@ -184,7 +200,7 @@ class TimeUsed:
     def _had(self, processes: Iterable[int]) -> tuple[float, float]:
         """Seconds that all their tasks together were on a processor, and stood in the queue for one."""
         roots = list(processes)
-        found = accounts_of(below(roots, children())) if roots else None
+        found = accounts_of(below(roots)) if roots else None
         if not found:
             return 0.0, 0.0
         before = self.accounts or {}

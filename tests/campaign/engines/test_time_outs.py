@@ -213,7 +213,7 @@ class Clock:
         for module in (deadline, process_time):
             monkeypatch.setattr(module, "monotonic", lambda: self.now)
         monkeypatch.setattr(process_time, "shortage", lambda: 0.0)
-        monkeypatch.setattr(process_time, "children", dict)
+        monkeypatch.setattr(process_time, "below", set)
         monkeypatch.setattr(process_time, "accounts_of", self.accounts)
 
     def accounts(self, processes: Iterable[int]) -> dict[int, process_time.Account]:
@@ -299,3 +299,20 @@ def test_where_the_kernel_keeps_no_accounts_the_clock_on_the_wall_ends_all(
     assert not time.is_over(1)
     clock.passes(31)
     assert time.is_over(1)
+
+
+@pytest.mark.parametrize("lists", [True, False])
+def test_processes_below_are_found_whether_or_not_the_kernel_lists_children(
+    lists: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(process_time, "_are_listed", lambda: lists)
+    code = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'print(1, flush=True); input()'])"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.readline()  # the inner one runs
+        found = process_time.below([process.pid])
+        process.communicate("\n")
+    assert process.pid in found
+    assert len(found) == 2
