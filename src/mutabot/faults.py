@@ -1,12 +1,10 @@
 """Providers of faults: where they can act, what they would do, and how they become active in a process.
 
 A provider has two halves. The one here works in the controller: it says what it needs of the baseline, and
-makes the mutants of it. The other lives in the processes of the tests, and is one of three:
-
-- operators change intercepted **calls** (``mutabot/runtime/interception``): the core's own providers;
-- an alternative is switched on in the **program text** (``PlannedMutant.choice``, ``runtime.program_text``);
-- anything else is put in place by **code of the provider's own** before each test
-  (``PlannedMutant.in_process``, ``mutabot/runtime/process_fault.py``).
+makes the mutants of it. The other lives in the processes of the tests: a
+``mutabot.runtime.active_fault.ActiveFault``, which ``PlannedMutant.active`` names. The core has two of these:
+one changes intercepted calls (``mutabot/runtime/interception``), one switches alternatives in the text of the
+program (``mutabot/runtime/program_text``). Packages bring any other.
 
 A package names its provider under ``faults`` of its ``Extension`` (``mutabot/extensions.py``). Nothing that a
 campaign without its mutants has no use for is to be imported with it.
@@ -15,7 +13,7 @@ campaign without its mutants has no use for is to be imported with it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -25,13 +23,14 @@ from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought, not_installed
 from mutabot.families import OF_CALLS
 from mutabot.frozen import frozen
-from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
+from mutabot.model import LeftOut, Moment, Mutant, ProgramText, Vocabulary
+from mutabot.model.activation import Activation
 from mutabot.model.graded import Demand
-from mutabot.model.job import InProcess
 from mutabot.model.mutant import Place
 
 if TYPE_CHECKING:
     from mutabot.operators.operator import Rule
+    from mutabot.original import Original
 
 
 @frozen
@@ -70,38 +69,6 @@ class Preparation:
 
 
 @frozen
-class TextSeen:
-    """What the baseline saw of instrumented program text in a round.
-
-    Attributes:
-        imported: the files that were imported.
-        sightings: what was seen at places.
-        reached: numbers of the places that each test reached; the test ``""`` stands for before any test.
-        below: the same in processes below the tests, by the origin of these.
-        refused: files that could not be instrumented, with the reason.
-    """
-
-    imported: frozenset[str] = frozenset()
-    sightings: tuple[Sighting, ...] = ()
-    reached: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
-    below: Mapping[str, Mapping[str, tuple[int, ...]]] = field(default_factory=dict)
-    refused: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(slots=True)
-class Original:
-    """What is known of the unmutated program when mutants are planned.
-
-    Attributes:
-        tests: per round, the tests that can be relied on, in the suite's order.
-        text: what was seen of instrumented program text, by round.
-    """
-
-    tests: list[list[str]] = field(default_factory=list)
-    text: dict[int, TextSeen] = field(default_factory=dict)
-
-
-@frozen
 class PlannedMutant:
     """A mutant plus data that only the controller needs.
 
@@ -111,16 +78,14 @@ class PlannedMutant:
         order: which comes first among the mutants of its provider, and of those that are numbered with it;
             what is equal keeps its order.
         does: what it does beyond what its id says, as plain data: its outcomes depend on it.
-        choice: the alternative in the program text that it is.
-        in_process: what puts it in place before each test.
+        active: how it becomes active in the processes of the tests; None for one that is left out.
     """
 
     mutant: Mutant
     reason: str | None = None
     order: tuple[int, ...] = ()
     does: Any = None
-    choice: Choice | None = None
-    in_process: InProcess | None = None
+    active: Activation | None = None
 
     @property
     def as_left_out(self) -> LeftOut:

@@ -279,6 +279,7 @@ def _only(task: Task, mutants: set[str]) -> Task:
     own = replace(
         forking,
         mutants=tuple(one for one in forking.mutants if one.id in mutants),
-        choices={mutant: found for mutant, found in forking.choices.items() if mutant in mutants},
+        keys={mutant: found for mutant, found in forking.keys.items() if mutant in mutants},
     )
-    return replace(task, job=replace(task.job, forking=own))
+    active = {mutant: found for mutant, found in task.job.active.items() if mutant in mutants}
+    return replace(task, job=replace(task.job, forking=own, active=active))

@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mutabot.faults import FaultProvider, Original, Planned, Preparation, Project, TextSeen
+from mutabot.faults import FaultProvider, Planned, Preparation, Project
 from mutabot.languages.front_end import program_files
 from mutabot.model.mutant import Place, ProgramText
+from mutabot.original import Original, TextSeen
 
 from .extension import OF_TEXT, PROVIDER
 

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from mutabot.faults import PlannedMutant
 from mutabot.model import Mutant
+from mutabot.model.activation import Activation
 from mutabot.model.codec import to_data
-from mutabot.model.mutant import FITTING, Alternative, Choice, ProgramText, Sighting, TextPlace
+from mutabot.model.mutant import FITTING, Alternative, ProgramText, Sighting, TextPlace
 
 from . import registry
 from .extension import PROVIDER
@@ -33,7 +34,7 @@ def planted_of(place: TextPlace, index: int, reason: str | None = None) -> Plann
         _mutant_of(place, alternative),
         reason,
         does=to_data(alternative),
-        choice=Choice(place.number, index),
+        active=Activation.of_text(place.number, index),
     )
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from mutabot.model import Choice, Clock, Instrumentation, Mutant, Operation, Role, Site, Span, Vocabulary
+from mutabot.model import Clock, Instrumentation, Mutant, Operation, Role, Site, Span, Vocabulary
+from mutabot.model.activation import Activation
 from mutabot.model.job import Job
 
 SITE = Site(Span("a.py", 1, 0, 1, 3, "f"), "x", 1, Role.PROGRAM)
@@ -18,14 +19,14 @@ PARTS: dict[str, Any] = {
 
 def test_processes_below_a_fork_are_told_what_they_need() -> None:
     job = Job(vocabulary=Vocabulary(), reaching={"m": (0,)}, **PARTS)
-    below = job.below(MUTANT, (Choice(1, 0),))
+    below = job.below(MUTANT, Activation.of_text(1, 0))
     assert (below.mutant, below.tests, below.reaching, below.simulated) == (MUTANT, None, {}, {})
-    assert below.instrumentation == Instrumentation((), active=(Choice(1, 0),))
+    assert below.active == {MUTANT.id: Activation.of_text(1, 0)}
     assert job.is_of_text
 
 
 def test_where_calls_are_seen_they_count_for_the_limits_of_tests() -> None:
     operations = (Operation("robot:Arm.move", ()),)
     for vocabulary in (Vocabulary(operations=operations), Vocabulary(clock=Clock("robot:now"))):
-        below = Job(vocabulary=vocabulary, **PARTS).below(MUTANT, ())
+        below = Job(vocabulary=vocabulary, **PARTS).below(MUTANT, Activation.of_text(1, 0))
         assert (below.simulated, below.extensions) == (PARTS["simulated"], PARTS["extensions"])

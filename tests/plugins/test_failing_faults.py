@@ -6,6 +6,8 @@ import importlib
 import json
 import sys
 from collections.abc import Iterator
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 from textwrap import dedent, indent
@@ -18,18 +20,19 @@ from tests.plugins.test_faults import PACKAGE, PROJECT, by_parameter, write
 from tests.plugins.test_plugins import ERRORS, mutabot
 
 from mutabot.model import Mutant, Site
-from mutabot.model.job import InProcess
+from mutabot.model.activation import Activation
+from mutabot.runtime.active_fault import ActiveFault
 from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.fault_runner import FaultRunner
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.process_fault import PlacedFault, ProcessFault
 
 #: a fault that stands around a command of the robot, and a helper of its own
 FAULT = """
     import json
     from lab_helper import parsed
-    from mutabot.runtime.process_fault import ProcessFault
+    from mutabot.runtime.active_fault import ActiveFault
 
-    class Slow(ProcessFault):
+    class Slow(ActiveFault):
         def start_test(self, test, random):
             self.call = self.data["call"]
             self.acts()
@@ -69,17 +72,33 @@ def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]
         sys.modules.pop(name, None)
 
 
-def placed(call: Any, told: list[str] | None = None) -> PlacedFault:
+def placed(call: Any, told: list[str] | None = None) -> FaultRunner:
     mutant = Mutant(1, "world", "slow", Site.of_parameter("robot", "speed"), "", None, None, "", "")
-    found = PlacedFault((told if told is not None else []).append)
-    found.place(mutant, InProcess("lab_fault:Slow", {"call": call}))
-    found.start_test("t", lambda mutant: Random(1))
+    found = FaultRunner(Process(told if told is not None else []), lambda mutant: Random(1))
+    found.take_on(mutant, Activation("lab_fault:Slow", {"call": call}))
+    found.start_test()
     return found
 
 
-def met(fault: PlacedFault, name: str) -> str | None:
+@dataclass
+class Process:
+    """What a fault is given of its process, of which the tests are told when it acts."""
+
+    told: list[str]
+    round: int = 0
+    test: str = "t"
+    seconds: float | None = None
+
+    def untracked(self) -> AbstractContextManager[None]:
+        return nullcontext()
+
+    def acted(self) -> None:
+        self.told.append("acted")
+
+
+def met(fault: FaultRunner, name: str) -> str | None:
     """How the mutant's code failed, as far as the exception tells that a test meets."""
-    own: ProcessFault | None = fault._fault
+    own: ActiveFault | None = fault._fault
     try:
         getattr(own, name)()
     except BaseException as error:
@@ -126,7 +145,7 @@ def test_a_fault_that_cannot_be_taken_away_has_failed(lab: ModuleType, error: st
 def test_evidence_that_cannot_be_read_is_a_failure(lab: ModuleType, evidence: Any) -> None:
     fault = placed(None)
     own: Any = fault._fault
-    own.evidence = evidence
+    own._evidence = evidence
     assert "slow cannot be asked what it did: TypeError" in (fault.evidence.failure or "")
 
 
@@ -135,7 +154,7 @@ WRONG = {
     "gravity": "setattr(self.world, 'seconds_to_fall', lambda height: 1 + '1')",
     "colour": "raise SystemExit(0)",
     "mass": "self.end_test = lambda: 1 / 0",
-    "wind": "self.evidence = None",
+    "wind": "self._evidence = None",
 }
 
 

@@ -47,7 +47,7 @@ ENDS = {
 }
 PACKAGE = {
     "toy_world.py": """
-        from mutabot.model.job import InProcess
+        from mutabot.model.activation import Activation
         from mutabot.extensions import INTERFACE, Extension
         from mutabot.faults import FaultProvider, Planned, PlannedMutant
         from mutabot.model import Mutant, Site
@@ -78,8 +78,8 @@ PACKAGE = {
                         0, "world", "parameter", site, "", None, None, f"{value:g}",
                         f"world.{name} is {value:g}", provider="toy",
                     )
-                    how = InProcess("toy_world_inside:Parameter", {"name": name, "value": value})
-                    planned.mutants.append(PlannedMutant(mutant, does=how.data, in_process=how))
+                    how = Activation("toy_world_inside:Parameter", {"name": name, "value": value})
+                    planned.mutants.append(PlannedMutant(mutant, does=how.data, active=how))
                     for round, tests in enumerate(original.tests):
                         planned.reached[round, Place.of(mutant)] = tests
                 return planned
@@ -88,9 +88,9 @@ PACKAGE = {
     "toy_world_inside.py": """
         from importlib import import_module
 
-        from mutabot.runtime.process_fault import ProcessFault
+        from mutabot.runtime.active_fault import ActiveFault
 
-        class Parameter(ProcessFault):
+        class Parameter(ActiveFault):
             def start_test(self, test, random):
                 self.world, name, value = import_module("world"), self.data["name"], self.data["value"]
                 self.before = getattr(self.world, name)
@@ -133,10 +133,10 @@ def by_parameter(found: dict[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.whole
-def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: Path) -> None:
-    done = mutabot(site, project, "run", "--json", "-o", "repeats=false")
+@pytest.mark.parametrize("engine", ["fork", "replay"])
+def test_parameters_get_verdicts(engine: str, site: Path, project: Path) -> None:
+    done = mutabot(site, project, "run", "--json", "-o", "repeats=false", "--engine", engine)
     assert done.returncode == ERRORS, done.stderr
-    assert "4 mutants: each is in place from the start of each test" in done.stderr
     found = by_parameter(json.loads(done.stdout))
     rounds = {name: one["rounds"][0] for name, one in found.items()}
     assert {name: one["verdict"] for name, one in rounds.items()} == {
@@ -144,7 +144,7 @@ def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: 
     }
     assert found["gravity"]["id"] == "world:gravity:parameter=5"
     assert rounds["gravity"]["test"] == "tests/test_world.py::test_it_falls_in_time"
-    assert rounds["gravity"]["engine"] == "replay"
+    assert rounds["gravity"]["engine"] == engine
     assert (rounds["colour"]["hits"], rounds["colour"]["acted"]) == (3, 3)
     assert (rounds["mass"]["hits"], rounds["mass"]["acted"]) == (3, 0)
     assert rounds["mass"]["message"] == "the site was reached, but no value changed"
@@ -155,16 +155,20 @@ def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: 
     )
     told = python(site, "-c", every % ([["-C", str(project), *words] for words in reports], len(reports)))
     assert told.returncode == 0, told.stderr
-    again = mutabot(site, project, "run", "--json", "-o", "repeats=false")
+    again = mutabot(site, project, "run", "--json", "-o", "repeats=false", "--engine", engine)
     assert by_parameter(json.loads(again.stdout))["colour"]["rounds"][0]["verdict"] == "survived"
 
 
-def test_what_only_forks_may_judge_is_handed_on_with_the_reason(site: Path, project: Path) -> None:
+def test_what_only_forks_may_judge_is_handed_on_with_the_reason(tmp_path: Path, project: Path) -> None:
+    unforked = PACKAGE["toy_world.py"].replace('"value": value})', '"value": value}, keys=())')
+    site = write(tmp_path / "site", {**PACKAGE, "toy_world.py": unforked})
     done = mutabot(site, project, "run", "--json", "--engine", "fork", "--only", "1")
     (found,) = mutants(done, code=ERRORS).values()
     end = found["rounds"][0]
     assert end["verdict"] == "error"
-    assert end["message"] == "it could not be forked: it is in place from the start of each test"
+    assert (
+        end["message"] == "it could not be forked: it is active before any point at which it could be forked"
+    )
 
 
 def test_its_operators_are_listed_and_its_family_is_known(site: Path, project: Path) -> None:

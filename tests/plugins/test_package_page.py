@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.plugins.test_faults import write
+from tests.plugins.test_faults_in_time import PROJECT as BELT
 from tests.plugins.test_plugins import mutabot, mutants
 from tests.plugins.test_plugins import project as project  # noqa: PLC0414  # a fixture
 
@@ -35,10 +37,10 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return target
 
 
-def test_the_package_has_sixty_lines_of_code() -> None:
+def test_the_package_has_a_hundred_and_twenty_lines_of_code() -> None:
     lines = [line for name, text in files().items() if name.endswith(".py") for line in text.splitlines()]
-    assert len(files()) == 5
-    assert 30 < sum(bool(line.strip()) for line in lines) <= 60
+    assert len(files()) == 7
+    assert 60 < sum(bool(line.strip()) for line in lines) <= 120
 
 
 def test_its_operator_executor_and_format_are_at_work(installed: Path, project: Path) -> None:
@@ -51,6 +53,13 @@ def test_its_operator_executor_and_format_are_at_work(installed: Path, project: 
     told = mutabot(installed, project, "report", "--format", "survivors").stdout
     survivors = {name for name, one in found.items() if one["rounds"][0]["verdict"] == "survived"}
     assert len(told.splitlines()) == len(survivors) > 0
+
+
+def test_its_fault_of_the_world_is_at_work(installed: Path, tmp_path: Path) -> None:
+    found = mutants(mutabot(installed, write(tmp_path, BELT), "run", "--json"))
+    end = found["slip"]["rounds"][0]
+    assert (end["verdict"], end["engine"], end["acted"]) == ("killed", "fork", 1)
+    assert end["test"] == "tests/test_mission.py::test_a_long_way"
 
 
 def test_a_wrong_value_of_its_option_is_told_before_anything_runs(installed: Path, project: Path) -> None:

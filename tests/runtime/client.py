@@ -18,8 +18,10 @@ from types import ModuleType, SimpleNamespace
 from typing import Any
 
 from mutabot.model import Mutant, Operation, Role, Site, Vocabulary
+from mutabot.model.activation import Activation
 from mutabot.model.events import SiteSeen
 from mutabot.model.job import Job
+from mutabot.model.mutant import Place
 from mutabot.model.operation import Form
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
@@ -207,6 +209,7 @@ class ClientStage:
             seed=1,
             round=0,
             mutant=mutant,
+            active={} if mutant is None else {mutant.id: Activation.of_call(Place.of(mutant))},
             inspect=False,
             oracle_nodes=oracle_nodes,
         )

@@ -19,8 +19,10 @@ from unittest import mock
 
 from mutabot.config.vocabulary import load
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
+from mutabot.model.activation import Activation
 from mutabot.model.events import Event, SiteSeen
 from mutabot.model.job import Job
+from mutabot.model.mutant import Place
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import compiling
@@ -99,6 +101,7 @@ class Stage:
             seed=1,
             round=0,
             mutant=mutant,
+            active={} if mutant is None else {mutant.id: Activation.of_call(Place.of(mutant))},
             simulated={} if simulated is None else {"test": simulated},
             inspect=inspect,
             record=record,

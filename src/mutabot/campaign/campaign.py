@@ -88,8 +88,8 @@ class Campaign:
             round, tests, [mutant],
             mutant=mutant,
             stop_at_kill=stop and not request.every_test,
-            instrumentation=faults.instrumentation([mutant], active=True),
-            faults=faults.in_process(mutant),
+            instrumentation=faults.instrumentation([mutant]),
+            active={mutant.id: faults.active(mutant)},
         )  # fmt: skip
         limits, alone = self.limits(round, tests), self.baseline.is_exclusive(round)
         return Task((mutant, round), job, limits, self.startup_limit, self.startup_limit, alone=alone)

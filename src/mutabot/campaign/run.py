@@ -35,8 +35,10 @@ from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.errors import ControlError, JournalError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
+from mutabot.faults import PlannedMutant
 from mutabot.journal import records
 from mutabot.journal.journal import Journal, JournalReader
+from mutabot.model.activation import Activation
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
 
@@ -334,9 +336,11 @@ def anew(
 
 def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:
     """The mutant in the program as it is now: edits elsewhere move it."""
-    if Place.of(mutant) in baseline.hits:
-        return mutant
     planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
+    place = Place.of(mutant)
+    if place in baseline.hits:  # which it also is if nobody asks for its family or magnitude now
+        baseline.faults.by_id[mutant.id] = PlannedMutant(mutant, active=Activation.of_call(place))
+        return mutant
     if mutant.id not in planned:
         problem = f"the program has changed: no test reaches {mutant.id} any more"
         raise SelectionError(problem)

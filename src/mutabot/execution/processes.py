@@ -434,6 +434,7 @@ def _template(job: Job) -> Job:
         moments={},
         inspect=False,
         forking=None,
+        active={},
     )
 
 

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
         FATAL,
         IDENTITY,
         Alternative,
-        Choice,
         Instrumentation,
         Moment,
         Mutant,
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from mutabot.model.quantity import Kind, Mode, Quantity
 
 __all__ = [
-    "ANY", "FATAL", "IDENTITY", "Alternative", "By", "Call", "CallFault", "Case", "Check", "Choice",
+    "ANY", "FATAL", "IDENTITY", "Alternative", "By", "Call", "CallFault", "Case", "Check",
     "Clock", "Compared", "Diverged", "Instrumentation", "Kill", "Kind", "LeftOut", "Looked", "Middleware",
     "Mode", "Moment", "Mutant", "NotToldError", "Operation", "Outcome", "Path", "Pattern", "Probe",
     "Proceed", "ProgramText", "Quantity", "Reply", "Role", "Sighting", "Site", "Span", "TextPlace",
@@ -43,7 +42,7 @@ _HOMES = {
     "quantity": ("Kind", "Mode", "Quantity"),
     "call": ("Call", "Middleware", "CallFault", "NotToldError", "Proceed", "Reply"),
     "mutant": (
-        "FATAL", "IDENTITY", "Alternative", "Choice", "Instrumentation", "Moment", "Mutant", "ProgramText",
+        "FATAL", "IDENTITY", "Alternative", "Instrumentation", "Moment", "Mutant", "ProgramText",
         "Role", "Sighting", "Site", "Span", "TextPlace",
     ),
     "operation": ("ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait"),

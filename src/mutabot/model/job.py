@@ -14,11 +14,12 @@ from dataclasses import field, replace
 from typing import Any
 
 from mutabot.frozen import frozen
+from mutabot.model.activation import TEXT_FAULT, Activation, Key
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.deadline import Limit
 from mutabot.model.event_file import FOLDER
 from mutabot.model.files import open_file, read_file
-from mutabot.model.mutant import Choice, Instrumentation, Mutant, Span
+from mutabot.model.mutant import Instrumentation, Mutant, Span
 from mutabot.model.operation import Vocabulary
 
 #: environment variable that names the job file; the plugin sleeps without it
@@ -43,19 +44,6 @@ class RefusedAt:
 
 
 @frozen
-class InProcess:
-    """What puts a fault in place that is neither one of calls nor an alternative in the program text.
-
-    Attributes:
-        reference: ``module:attribute`` of a ``mutabot.runtime.process_fault.ProcessFault``.
-        data: what it is told, as plain data.
-    """
-
-    reference: str
-    data: Any = None
-
-
-@frozen
 class Forking:
     """How a fork parent forks: which mutants, with how many processes, for how long.
 
@@ -65,10 +53,8 @@ class Forking:
         limits: the time that a fork may take for a test, by test.
         limit: the same for tests that are missing there.
         startup: the same until its first test begins.
-        choices: of mutants that are alternatives in the program text: which, by id.
         every_test: whether a fork goes on after a test that decided about its mutant.
-        at_start: test to ids of mutants that are forked before it begins, if they were not before: they may
-            be hit in processes below it.
+        keys: where each mutant is forked, by its id: at the first of these keys that is reached.
         serial: whether the fork parent waits for each fork, since two of them would get in each other's way.
     """
 
@@ -77,10 +63,9 @@ class Forking:
     limits: Mapping[str, Limit] = field(default_factory=dict)
     limit: Limit = Limit(600.0)
     startup: Limit = Limit(600.0)
-    choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
     every_test: bool = False
     serial: bool = False
-    at_start: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    keys: Mapping[str, tuple[Key, ...]] = field(default_factory=dict)
 
 
 @frozen
@@ -132,7 +117,7 @@ class Job:
         evidence: whether to record what the world does while tests run.
         pictures: which test is filmed; None for none.
         extensions: references to what packages bring, by kind and name, see ``extensions.use``.
-        faults: what puts the mutant in place, or parts of it, if it does so by itself: by the part's id.
+        active: how the mutant, or those to be forked, become active, by their ids.
         key: of the seals on its events, see ``event_file``.
     """
 
@@ -163,18 +148,22 @@ class Job:
     evidence: bool = False
     pictures: Pictures | None = None
     extensions: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    faults: Mapping[str, InProcess] = field(default_factory=dict)
+    active: Mapping[str, Activation] = field(default_factory=dict)
     key: str = ""
 
     @property
     def is_of_text(self) -> bool:
-        """Whether it has to do with the program text alone: no call, no clock, nothing put in place."""
-        return not (self.vocabulary.operations or self.vocabulary.clock or self.faults)
+        """Whether it has to do with the program text alone: no call, no clock, no other fault."""
+        is_of_text = all(one.reference == TEXT_FAULT for one in self.active.values())
+        return is_of_text and not (self.vocabulary.operations or self.vocabulary.clock)
 
-    def below(self, mutant: Mutant, choices: tuple[Choice, ...]) -> Job:
+    def below(self, mutant: Mutant, activation: Activation) -> Job:
         """The job of the processes below a fork that is this mutant, which all read it: what they need."""
-        text = self.instrumentation.only(choices) if self.instrumentation is not None else None
-        slim = replace(self, mutant=mutant, forking=None, instrumentation=text, reaching={}, tests=None)
+        text = self.instrumentation.only(activation.places) if self.instrumentation is not None else None
+        slim = replace(
+            self, mutant=mutant, active={mutant.id: activation}, forking=None, instrumentation=text,
+            reaching={}, tests=None,
+        )  # fmt: skip
         return replace(slim, simulated={}, extensions={}) if self.is_of_text else slim
 
     def left_out(self, mutant: str) -> frozenset[str]:

@@ -8,7 +8,7 @@ examined, and put in place where the program runs; they cross the process border
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import field, replace
 from enum import StrEnum
 from functools import lru_cache
@@ -469,40 +469,24 @@ class ProgramText:
 
 
 @frozen
-class Choice:
-    """One alternative at one place.
-
-    Attributes:
-        place: number of the place.
-        index: 0-based index of the alternative there; ``IDENTITY`` and ``FATAL`` are possible everywhere.
-    """
-
-    place: int
-    index: int
-
-
-@frozen
 class Instrumentation:
     """What to put into the program while it is imported.
 
     Attributes:
         texts: the files and the places in them; fewer places cost less.
         record: whether to note the kinds of values instead of offering alternatives.
-        active: alternatives in force from the start; none for the original.
     """
 
     texts: tuple[ProgramText, ...]
     record: bool = False
-    active: tuple[Choice, ...] = ()
 
-    def only(self, active: tuple[Choice, ...]) -> Instrumentation:
-        """These alternatives in force, and no places but theirs."""
-        places = {choice.place for choice in active}
+    def only(self, places: Collection[int]) -> Instrumentation:
+        """The same with these places alone, by their numbers."""
         texts = (
             replace(text, places=tuple(place for place in text.places if place.number in places))
             for text in self.texts
         )
-        return Instrumentation(tuple(text for text in texts if text.places), active=active)
+        return replace(self, texts=tuple(text for text in texts if text.places))
 
 
 @frozen

@@ -10,30 +10,34 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
+from mutabot.model.activation import CALL_FAULT, at_text
 from mutabot.model.events import Acted, Called, CallsAsked, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Idle
 from mutabot.model.operation import owner_of
 from mutabot.runtime.evidence import Evidence, Meter
+from mutabot.runtime.fault_runner import FaultRunner
 from mutabot.runtime.inspection import Inspection
-from mutabot.runtime.interception.active_mutant import ActiveMutant, is_refusal
+from mutabot.runtime.interception.active_mutant import is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
 from mutabot.runtime.observation.clock import ClockReader, Instances, ProgramTime
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
-from mutabot.runtime.process_fault import PlacedFault
 from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.standing import Handing, Standing, StandIns
+from mutabot.runtime.reached_keys import ReachedKeys
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import Finding, Handler, Messages
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
-    from mutabot.model import Choice, Moment, Mutant, Operation, Probe
+    from mutabot.model import Moment, Mutant, Operation, Probe
+    from mutabot.model.activation import Activation, Key
     from mutabot.model.job import Job
     from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import EventWriter
+    from mutabot.runtime.interception.active_mutant import ActiveMutant
     from mutabot.runtime.isolation.fork_parent import ForkParent
     from mutabot.runtime.program_text.returns import Returns
 
@@ -61,7 +65,8 @@ class Session:
         test: node id of the running test.
         noted: in the baseline, calls of the running test that the robot refused, or that returned its memory.
         on_noted: told of each of them; None if nobody asks.
-        placed: the mutant, if it is a fault that its provider puts in place before each test.
+        fault: the fault of this process; idle in the original's.
+        fork_parent: forks for each mutant, while this process runs the original; else None.
     """
 
     call_sites: CallSites
@@ -74,7 +79,9 @@ class Session:
         self.instances = Instances()
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(job.vocabulary, job.inspect, self._send)
-        self.placed = PlacedFault(self._acted)
+        self.fault = FaultRunner(self, lambda mutant: Random(self.seed_of(mutant)))
+        self.fork_parent: ForkParent | None = None
+        self.reached = ReachedKeys(self._reach, self.fault.tick)
         self.callables = Callables(self.inspection.target_is_wrong)
         self.messages: Messages | None = None
         self.targets: list[Callables | Messages] = [self.callables]
@@ -97,7 +104,7 @@ class Session:
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
-        self.text = SessionText.of(self.job, self.pipe, partial(self._acted, ""))
+        self.text = SessionText.of(self.job, self.pipe, self.acted)
         if self.returns is not None:
             self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
@@ -112,18 +119,17 @@ class Session:
         self.instances.watch(map(owner_of, (*waits, *(probe.target for probe in vocabulary.probes))))
         if vocabulary.clock is not None:
             clock = vocabulary.clock
-            reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
+            reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong, self.reached.tick)
             self.callables.wrap(clock.tick, reader.handle)
         self._listen()
         self._ask_for_answers()
-        if self.job.mutant is not None:
-            self.activate(self.job.mutant)
         if self.job.record or self.job.serving is not None:
             # what the program does while it is imported counts for every test that comes after
             self.passing.meter = Meter()
             is_original = self.job.mutant is None
             self.recorder.answers = Answers(handles_of(vocabulary)) if is_original else None
-            self._start_mutant()
+        if self.job.mutant is not None:
+            self._take_on(self.job.mutant, self.job.active[self.job.mutant.id])
 
     def _ask_for_answers(self) -> None:
         """Find the mutants of the job that may ask what a command answered last."""
@@ -209,10 +215,7 @@ class Session:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
-        self.look_back()
-        if self.text is not None and self.text.is_mutant:
-            return self.text.evidence
-        return self.mutant.evidence if self.mutant is not None else self.placed.evidence
+        return self.fault.evidence
 
     def look_back(self, *, at_all: bool = False) -> None:
         """Look whether the program has written to copies that the mutant handed out; ``at_all`` of them."""
@@ -224,39 +227,53 @@ class Session:
         """Operations of the running test that made the robot do something."""
         return sum(adapter.commands for adapter in self._adapters)
 
-    def activate(self, mutant: Mutant) -> None:
-        """Take on a mutant. What of it is an alternative in the program text stands there already."""
-        operation = self.job.vocabulary.operation(mutant.operation)
-        if mutant.id in self.job.faults:
-            self.placed.place(mutant, self.job.faults[mutant.id])
-        elif operation is not None:
-            operation = operation.by_numbers() if mutant.by_number else operation
-            refusals = self._refusals(operation)
-            on_act = partial(self._acted, mutant.id)
-            told = (on_act, self._in_mutated_call, self._time.now_if_known)
-            self.passing.mutant = ActiveMutant(mutant, operation, refusals, *told)
+    def _take_on(self, mutant: Mutant, activation: Activation) -> None:
+        """Be a mutant from here on."""
+        self.fault.take_on(mutant, activation)
+        self._watch(activation.keys)
+
+    def _watch(self, keys: Iterable[Key]) -> None:
+        self.reached.watch(keys)
+        activation = self.fault.activation
+        # a mutant of calls meets its own by itself
+        is_asked = activation is None or activation.reference != CALL_FAULT
+        self.passing.on_reach = self.reached.call if is_asked and self.reached.asks_calls else None
+
+    def _reach(self, keys: list[Key], number: int | None) -> None:
+        """The running test reaches these keys, at a call of this number among those of its site."""
+
+        def is_due(mutant: Mutant) -> bool:
+            return number is None or mutant.moment is None or self.is_moment(mutant, number)
+
+        if self.fork_parent is not None:
+            self.fork_parent.reach(*keys, is_due=is_due)
+        for key in keys:  # this process may be the fork by now
+            self.fault.reach(key)
 
     def grow(self, parent: ForkParent) -> None:
         """Run the original from now on, and fork a process for each of the parent's mutants."""
-        self.passing.fork_parent = parent
-        parent.is_moment = self._is_moment
+        self.fork_parent = parent
         self._watch_text()
+        self._watch(parent.keys)
 
     def _watch_text(self) -> None:
-        parent = self.passing.fork_parent
-        if self.text is not None and parent is not None:
-            self.text.watch(parent.fork_at_place, parent.places())
+        if self.text is not None and self.fork_parent is not None:
+            self.text.watch(self._reach_text, self.fork_parent.places())
 
-    def become(self, mutant: Mutant, choices: Iterable[Choice]) -> None:
-        """In a process that was just forked: be this mutant, with its alternatives in the program text."""
-        self.passing.fork_parent, self.is_fork = None, True
+    def _reach_text(self, place: int, indexes: frozenset[int]) -> None:
+        """Alternatives in the program text are about to differ from the original."""
+        if self.fork_parent is not None:
+            self.fork_parent.reach(*(at_text(place, index) for index in indexes))
+
+    def become(self, mutant: Mutant, activation: Activation) -> None:
+        """In a process that was just forked: be this mutant."""
+        self.fork_parent, self.is_fork = None, True
         if self.meter is not None:
             self.meter.go_on_in_copy()
-        self.activate(mutant)
-        self._start_mutant()
         if self.text is not None:
             self.text.alternatives.on_place = None
-            self.text.alternatives.activate(*choices)
+            self.text.alternatives.activate()
+        self._take_on(mutant, activation)
 
     def take_on(self, job: Job, pipe: EventWriter) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
@@ -276,8 +293,6 @@ class Session:
         if self.meter is not None and not self.test:  # the first test
             for call in self.recorder.trace:
                 self.pipe.send(Called(*call))
-            if self.mutant is not None:
-                self.mutant.early = self.mutant.evidence
         self.test = test
         self.standing.note_modules(self.call_sites.loaded)
         self.passing.meter = Meter(self.job.simulated.get(test), self.job.spare)
@@ -300,8 +315,8 @@ class Session:
         if self.text is not None:
             self.text.start_test(test)
             self._watch_text()
-        self._start_mutant()
-        self.placed.start_test(test, lambda mutant: Random(self._seed_of(mutant)))
+        self.reached.start_test()
+        self.fault.start_test()
         self.recording.start(test, is_wanted=self.job.evidence)
 
     def _aside(self) -> Untracked:
@@ -309,35 +324,46 @@ class Session:
         is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
         return Untracked(self.returns if is_main else None)
 
-    def _seed_of(self, mutant: Mutant) -> int:
+    def untracked(self) -> Untracked:
+        """See ``FaultContext.untracked``."""
+        return self._aside()
+
+    @property
+    def round(self) -> int:
+        """The round, from 0."""
+        return self.job.round
+
+    @property
+    def seconds(self) -> float | None:
+        """Simulated seconds since the first tick of the running test; None without a clock."""
+        return self.seconds_if_known()
+
+    def seconds_if_known(self) -> float | None:
+        """The same."""
+        return self._time.now_if_known()
+
+    def seed_of(self, mutant: Mutant) -> int:
         """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
         return derive(self.job.seed, self.job.round, self.test, mutant.ladder or mutant.id)
 
-    def _start_mutant(self) -> None:
-        if self.mutant is not None:
-            mutant = self.mutant.mutant
-            seed = self._seed_of(mutant)
-            usual = self.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
-            self.mutant.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
-
-    def _moment_of(self, mutant: Mutant) -> Moment | None:
+    def moment_of(self, mutant: Mutant) -> Moment | None:
         """At which calls of the running test a mutant acts."""
         if mutant.moment is None:
             return None
         seed = derive(self.job.seed, self.job.round, self.test, mutant.site.id, "moment")
         return mutant.moment.drawn(self.job.round, self.test, seed)
 
-    def _is_moment(self, mutant: Mutant, number: int) -> bool:
+    def is_moment(self, mutant: Mutant, number: int) -> bool:
         """Whether a mutant acts at this call of its site in the running test."""
-        moment = self._moment_of(mutant)
-        return moment is None or moment.holds(number, self._time.now_if_known())
+        moment = self.moment_of(mutant)
+        return moment is None or moment.holds(number, self.seconds_if_known())
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""
         self.passing.meter = None
         if self.text is not None:
-            if self.passing.fork_parent is not None:
-                self.passing.fork_parent.tell_undiverged(self.text.alternatives.hits)
+            if self.fork_parent is not None:
+                self.fork_parent.tell_undiverged(self.text.alternatives.hits)
             self.text.end_test()
 
     def take_probes(self) -> Reading:
@@ -382,8 +408,8 @@ class Session:
 
         ``texts`` is what processes below the tests saw of the program text.
         """
-        if self.passing.fork_parent is not None:
-            self.passing.fork_parent.finish()
+        if self.fork_parent is not None:
+            self.fork_parent.finish()
         if self.text is not None:
             self.text.finish(texts)
         if self.job.record and self.job.mutant is None:
@@ -408,7 +434,7 @@ class Session:
         self.inspection.inspect(self.targets)
 
     def _raised(self, error: BaseException, made: SiteCall) -> None:
-        names = self._refusals(made.call.operation)
+        names = self.refusals_of(made.call.operation)
         refused = self.passing.refused
         if refused.on_refused is not None and is_refusal(error, names):
             refused.on_refused(made)
@@ -427,9 +453,10 @@ class Session:
         """How the mutant's own code failed, if that is where an exception comes from; None if it is not."""
         operations = self.job.vocabulary.operations
         robots = {one.target.partition(":")[0] for one in operations if one.named is None}
-        return self.placed.failure_in(error, robots, self.locator)
+        return self.fault.failure_in(error, robots, self.locator)
 
-    def _refusals(self, operation: Operation) -> frozenset[str]:
+    def refusals_of(self, operation: Operation) -> frozenset[str]:
+        """Names of the exceptions by which the robot refuses a call of an operation."""
         return frozenset((*operation.refusals, *self.job.vocabulary.refusals))
 
     def _send(self, line: Event) -> None:
@@ -439,16 +466,23 @@ class Session:
         if not self.is_fork:  # a fork sends its sites with its end
             self.pipe.send(site)
 
-    def _acted(self, mutant: str) -> None:
-        """The mutant changed something; what is of the program text has no name."""
-        time = self.recorder.began if mutant else self.recording.clock()
-        self.recording.note_fault(len(self.recorder.trace), time)
+    def acted(self) -> None:
+        """The fault changed something in the running test."""
+        self._tell_acted(self.recording.clock())
+
+    def acted_in_call(self) -> None:
+        """The same, in a call: it did so when that began."""
+        self._tell_acted(self.recorder.began)
+
+    def _tell_acted(self, seconds: float | None) -> None:
+        self.recording.note_fault(len(self.recorder.trace), seconds)
         self.pipe.send(Acted(self.test))
 
     def _simulated(self) -> float | None:
         return self.meter.simulated if self.meter is not None else None
 
-    def _in_mutated_call(self, began: bool) -> None:
+    def in_mutated_call(self, began: bool) -> None:
+        """A mutated call begins, or has returned or raised."""
         self.pipe.send(Acted(self.test, began))
 
     def _clock_is_wrong(self, key: str, text: str) -> None:

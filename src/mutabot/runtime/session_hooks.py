@@ -129,20 +129,20 @@ class SessionHooks:
             track_event_loops()
             pipe, tests = self.session.pipe, job.tests or ()
             assert isinstance(pipe, EventFile)
-            more = (self._become, has_nodes, members.have_begun)
+            more = (job.active, self._become, has_nodes, members.have_begun)
             self.session.grow(ForkParent(job.forking, tests, pipe, self._files, *more))
 
     def _become(self, mutant: Mutant, folder: str) -> None:
         """In a process that was just forked: go on as this mutant."""
-        assert self.session.passing.fork_parent is not None
+        assert self.session.fork_parent is not None
         self.tests.start_clocks(is_new=True)
         self.tests.left_out = self.job.left_out(mutant.id)
         if self.config is not None:
             # nobody reads a fork's traceback, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
-        fork = ForkedRun(self.tests, self.session.passing.fork_parent, mutant, self._files.home)
-        self.session.become(mutant, fork.choices)
+        fork = ForkedRun(self.tests, self.session.fork_parent, mutant, self._files.home)
+        self.session.become(mutant, fork.activation)
 
     def _is_of_tests(self, path: str) -> bool:
         """Whether a file is the project's own, and not the program's."""

@@ -46,15 +46,11 @@ class ForkedRun:
         parent: what has forked it.
         mutant: its mutant.
         home: the home of its parent, in which it finds its own processes.
-
-    Attributes:
-        choices: what its mutant is in the program text.
     """
 
     def __init__(self, tests: TestHooks, parent: ForkParent, mutant: Mutant, home: str) -> None:
         session, tests.fork, tests.members = tests.session, self, None
-        self.mutant = mutant
-        self.choices = parent.choices_of(mutant)
+        self.mutant, self.activation = mutant, parent.activation_of(mutant)
         self._tests, self._session, self._parent, self._home = tests, session, parent, home
         self._pid = os.getpid()
         self._shared = session.meter.simulated if session.meter is not None else None
@@ -103,9 +99,11 @@ class ForkedRun:
 
     def _own_processes(self) -> Members:
         session, job = self._session, self._session.job
-        below = job.below(self.mutant, tuple(self.choices))
+        below = job.below(self.mutant, self.activation)
         write_job(self._home, below)
-        session.job = replace(job, mutant=self.mutant, instrumentation=below.instrumentation)
+        session.job = replace(
+            job, mutant=self.mutant, active=below.active, instrumentation=below.instrumentation
+        )
         members = Members(self._home, session, has_acted=self._has_acted)
         members.start_test(session.test)
         watch_forks(members.folder, session)
@@ -176,7 +174,7 @@ class TestHooks:
             return (yield)
         self._start(item, test)
         result = yield
-        session.placed.end_test()
+        session.fault.end_test()
         end = self._test_end(test)
         if self.members is not None:
             end = self.members.merged(end)
@@ -184,8 +182,8 @@ class TestHooks:
             self.fork.end_test(end)
         session.end_test()
         if self.fork is None:
-            if session.passing.fork_parent is not None:
-                session.passing.fork_parent.end_test()
+            if session.fork_parent is not None:
+                session.fork_parent.end_test()
             session.pipe.send(end)
         if session.job.stop_at_kill and end.is_decided:
             item.session.shouldstop = "the mutant's verdict is known"
@@ -202,8 +200,8 @@ class TestHooks:
         if limit is not None:
             session.pipe.send(limit)
         seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
-        if session.passing.fork_parent is not None:
-            session.passing.fork_parent.begin_test(test)
+        if session.fork_parent is not None:
+            session.fork_parent.begin_test(test)
         self.start_clocks()
         if self.members is not None:
             self.members.start_test(test)
@@ -219,10 +217,10 @@ class TestHooks:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """The fixtures of a test are next."""
-        if self.session.passing.fork_parent is not None:
+        if self.session.fork_parent is not None:
             drop_idle_watchdog(item)
-        if self.session.placed.fatal is not None:
-            raise self.session.placed.fatal
+        if self.session.fault.fatal is not None:
+            raise self.session.fault.fatal
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:

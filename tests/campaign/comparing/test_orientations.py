@@ -8,13 +8,14 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.baseline.baseline import Baseline, Hit
+from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.unfit import refuse_unfit
 from mutabot.campaign.comparison import OTHER_WORLD, Difference, Observation, TraceCall, compare
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Mode, Operation, Path, Probe, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Place
+from mutabot.original import Hit
 from tests.campaign.project import CONFIGURATION, REPLAY, run, write_project
 
 TARGET = "cell:Arm.tool"

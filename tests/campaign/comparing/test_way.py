@@ -10,7 +10,7 @@ from mutabot.campaign.comparison import Observation, TraceCall, compare
 from mutabot.campaign.request import REPLAY
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Probe, Verdict
-from mutabot.runtime.program_text.switches import Alternatives, Choice
+from mutabot.runtime.program_text.switches import Alternatives
 from tests.campaign.project import Quiet, outcomes, request_for, write_project
 
 MISSION = """
@@ -84,7 +84,7 @@ def test_a_moment_at_which_nothing_could_be_read_is_none() -> None:
 
 def test_places_that_are_paused_are_the_originals_and_count_nothing() -> None:
     places = Alternatives(2)
-    places.activate(Choice(1, 0))
+    places.activate(1, 0)
     with places.paused():
         assert places.switches[1:] == [False, False]
     assert places.switches[1]

@@ -13,7 +13,10 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import FATAL, IDENTITY, IMPORT, ForkTrust, controls_of
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ControlError
+from mutabot.families import CALLS
+from mutabot.faults import Planned, PlannedMutant
 from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
+from mutabot.model.activation import Activation
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Place
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
@@ -166,6 +169,8 @@ def baseline_of(reached: dict[int, list[str]], early: set[int]) -> tuple[Baselin
     }
     baseline = Baseline(tests=[SUITE], ends=ends)
     mutants = {line: mutant_at(line) for line in reached}
+    planned = [PlannedMutant(one, active=Activation.of_call(Place.of(one))) for one in mutants.values()]
+    baseline.take_in({CALLS: Planned(planned)})
     baseline.early = {Place.of(mutants[line]) for line in early}
     for line, tests in reached.items():
         baseline.reach(0, Place.of(mutants[line]), None if line in early else tests)

@@ -8,13 +8,14 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.baseline.baseline import Baseline, Hit, RecordedAnswers
+from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.plan import Plan, make_plan
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE, ROBOT
 from mutabot.faults import Project
 from mutabot.model import Kind, Mode, Operation, Path, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.mutant import Place
 from mutabot.model.operation import Form, Named
+from mutabot.original import Hit, RecordedAnswers
 
 SPEED = Quantity("speed", Path("speed"), Kind.SPEED, unit="m/s")
 RATIO = Quantity("power", Path("power"), Kind.RATIO, unit="percent")

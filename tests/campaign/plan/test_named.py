@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from mutabot.campaign.baseline.baseline import Baseline, Hit, RecordedAnswers
+from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.plan import make_plan
 from mutabot.families import ROBOT
 from mutabot.faults import Project
 from mutabot.model import Kind, Mode, Mutant, Operation, Path, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.mutant import Place
 from mutabot.model.operation import Form, Named
+from mutabot.original import Hit, RecordedAnswers
 
 Y = Quantity(
     *("pose.position.y", Path.parse("message.pose.position.y", rooted=True), Kind.TRANSLATION, "y", "m"),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from mutabot.campaign.baseline.baseline import Baseline, Hit
+from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.plan import Plan, make_plan
 from mutabot.families import MIDDLEWARE, ROBOT
 from mutabot.faults import Project
 from mutabot.model import Operation, Role, Site, Span, Vocabulary
 from mutabot.model.mutant import Place
 from mutabot.model.operation import Form
+from mutabot.original import Hit
 from mutabot_catalogue._examples import (
     ADVERTISE,
     HEARD_FRAME,

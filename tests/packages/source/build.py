@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
+from mutabot.model import Alternative, Instrumentation, ProgramText, Sighting, TextPlace
 from mutabot.runtime.program_text import compiling
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.switches import hand_through
@@ -56,10 +56,12 @@ def spliced(source: str, place: TextPlace, alternative: Alternative) -> str:
 
 @contextmanager
 def imported(
-    folder: Path, text: ProgramText, *active: Choice, record: bool = False
+    folder: Path, text: ProgramText, *active: tuple[int, int], record: bool = False
 ) -> Iterator[tuple[ModuleType, SessionText]]:
     """The module of a text, instrumented, and the hook."""
-    hook = SessionText(str(folder), Instrumentation((text,), record, active))
+    hook = SessionText(str(folder), Instrumentation((text,), record))
+    for place, index in active:
+        hook.alternatives.activate(place, index)
     hook.install()
     try:
         yield load(folder / text.file), hook
@@ -87,10 +89,10 @@ def load(path: Path) -> ModuleType:
     return module
 
 
-def choices(text: ProgramText) -> list[tuple[Choice, TextPlace, Alternative]]:
+def choices(text: ProgramText) -> list[tuple[tuple[int, int], TextPlace, Alternative]]:
     """All alternatives of a text."""
     return [
-        (Choice(place.number, index), place, alternative)
+        ((place.number, index), place, alternative)
         for place in text.places
         for index, alternative in enumerate(place.alternatives)
     ]

@@ -58,7 +58,7 @@ def test_every_alternative_does_what_its_text_says(tmp_path: Path) -> None:
     alternatives = Alternatives(len(text.places))
     setattr(builtins, RUNTIME, alternatives.switches)
     for choice, place, alternative in choices(text):
-        alternatives.activate(choice)
+        alternatives.activate(*choice)
         assert outcome(code) == outcome(spliced(MISSION, place, alternative)), (place.text, alternative)
     alternatives.activate()
     assert outcome(code) == outcome(MISSION)
@@ -195,7 +195,7 @@ def test_an_alternative_chosen_at_the_first_evaluation_stands_at_once(tmp_path: 
         def fork(number: int, alike: Sequence[frozenset[int]]) -> None:
             told.append(number)
             if len(told) == 2:  # the second test is where this process becomes the mutant
-                hook.alternatives.activate(choices(text)[0][0])
+                hook.alternatives.activate(*choices(text)[0][0])
 
         hook.alternatives.on_place = fork
         hook.alternatives.watch({place.number: frozenset(range(8))})
@@ -216,7 +216,7 @@ def test_one_alternative_at_a_time(tmp_path: Path) -> None:
     with imported(tmp_path, text, first) as (module, hook):
         assert module.f(5, 3) == [2, 15]
         assert hook.alternatives.hits == {add.number: 1}
-        hook.alternatives.activate(second)
+        hook.alternatives.activate(*second)
         assert module.f(5, 3) == [8, 8]
         assert hook.alternatives.hits == {add.number: 1, multiply.number: 1}
 

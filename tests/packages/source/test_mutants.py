@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.errors import OperatorError
-from mutabot.model import Choice, Sighting
+from mutabot.model import Sighting
+from mutabot.model.activation import Activation
 from mutabot_source.refine import merge, plant, refine
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
@@ -52,8 +53,8 @@ def test_ids_are_unique_and_stable_under_edits_elsewhere(tmp_path: Path) -> None
 def test_mutants_know_what_turns_them_on(tmp_path: Path) -> None:
     text = text_of(tmp_path, SOURCE)
     planted = plant([text])
-    assert [one.choice for one in planted] == [choice for choice, _, _ in choices(text)]
-    assert planted[0].choice == Choice(1, 0)
+    assert [one.active.data for one in planted if one.active] == [choice for choice, _, _ in choices(text)]
+    assert planted[0].active == Activation.of_text(1, 0)
 
 
 def test_taught_points_and_defaults_are_evaluated_at_import(tmp_path: Path) -> None:

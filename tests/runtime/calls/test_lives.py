@@ -6,14 +6,18 @@ import gc
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from random import Random
 from typing import Any
 
 import pytest
 
 from mutabot.model import Mutant, Role, Site, Vocabulary
+from mutabot.model.activation import Activation
 from mutabot.model.events import SiteSeen
+from mutabot.model.mutant import Place
 from mutabot.operators import Subject, names, operator
 from mutabot.operators.command import CONTROLS
+from mutabot.runtime.fault_runner import FaultRunner
 from mutabot.runtime.session import Session
 from tests.runtime.stage import Make, Stage
 
@@ -227,8 +231,9 @@ def test_no_mutant_keeps_what_a_call_was_given(
 def become(session: Session, mutant: Mutant, *, is_fork: bool) -> None:
     """Begin a test as a mutant, or become one in it, as a fork does."""
     session.passing.mutant, session.is_fork = None, False
+    session.fault, session.test = FaultRunner(session, lambda mutant: Random(1)), ""
     if not is_fork:
-        session.activate(mutant)
+        session.fault.take_on(mutant, Activation.of_call(Place.of(mutant)))
     session.start_test("test")
     if is_fork:
-        session.become(mutant, ())
+        session.become(mutant, Activation.of_call(Place.of(mutant)))

@@ -7,7 +7,6 @@ of one place returned says what a mutant that leaves them out answers.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from importlib.util import decode_source
@@ -15,26 +14,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.comparison import Observation, TraceCall, as_steady
-from mutabot.errors import MutabotError
 from mutabot.families import CALLS, CONTROL, MESSAGES
-from mutabot.faults import Original, Planned, PlannedMutant, Preparation
-from mutabot.frozen import frozen
+from mutabot.faults import Planned, PlannedMutant, Preparation
 from mutabot.journal.records import Untested
 from mutabot.languages.front_end import SiteName, front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
-from mutabot.model import FATAL, IDENTITY, Operation, Pattern, Vocabulary
-from mutabot.model.answer import is_plain
+from mutabot.model.activation import Activation
 from mutabot.model.events import Remark, SiteSeen, TestEnd
-from mutabot.model.job import Idle, InProcess, RefusedAt
-from mutabot.model.mutant import Choice, Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
-from mutabot.model.source_units import ExecutedByTests
-from mutabot.operators.command import Identity
+from mutabot.model.job import RefusedAt
+from mutabot.model.mutant import Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
+from mutabot.original import Original
 
 if TYPE_CHECKING:
     from mutabot.execution.task import Result
-
-#: what a control is at a place of a fault that is put in place by its provider's own code
-_CONTROLS = "mutabot.runtime.process_fault"
+    from mutabot.model import Vocabulary
 
 
 @dataclass(slots=True)
@@ -53,7 +46,7 @@ class PlantedFaults:
     left_out_beforehand: list[PlannedMutant] = field(default_factory=list)
     texts: tuple[ProgramText, ...] = ()
     providers: dict[Place, str] = field(default_factory=dict)
-    _numbers: dict[Place, int] = field(default_factory=dict)
+    _at_place: dict[Place, Activation] = field(default_factory=dict)
 
     @classmethod
     def of(cls, planned: Mapping[str, Planned]) -> PlantedFaults:
@@ -65,120 +58,30 @@ class PlantedFaults:
             for one in found.mutants:
                 if one.reason is None:
                     made.by_id[one.mutant.id] = one
-                    if one.choice is not None:
-                        made._numbers.setdefault(Place.of(one.mutant), one.choice.place)
+                    if one.active is not None:
+                        made._at_place.setdefault(Place.of(one.mutant), one.active)
                 elif provider not in (CALLS, MESSAGES):
                     made.left_out_beforehand.append(one)
         return made
 
-    def choices(self, mutant: Mutant) -> tuple[Choice, ...]:
-        """The alternatives in the program text that a mutant is."""
+    def active(self, mutant: Mutant) -> Activation:
+        """How a mutant, or a control at the place of one, becomes active."""
         if mutant.family == CONTROL:
-            number = self._numbers.get(Place.of(mutant))
-            index = IDENTITY if mutant.operator == Identity.name else FATAL
-            return () if number is None else (Choice(number, index),)
-        planted = self.by_id.get(mutant.id)
-        return () if planted is None or planted.choice is None else (planted.choice,)
+            return self._at_place[Place.of(mutant)].control(mutant.operator)
+        found = self.by_id[mutant.id].active
+        assert found is not None  # else it was left out
+        return found
 
-    def in_process(self, mutant: Mutant) -> dict[str, InProcess]:
-        """What puts a mutant in place that its provider does by itself, by the mutant's id."""
-        if mutant.family == CONTROL:
-            place = Place.of(mutant)
-            is_own = place in self.providers and place not in self._numbers
-            how = InProcess(f"{_CONTROLS}:Process{mutant.operator.capitalize()}") if is_own else None
-        else:
-            planted = self.by_id.get(mutant.id)
-            how = planted.in_process if planted is not None else None
-        return {} if how is None else {mutant.id: how}
-
-    def instrumentation(self, mutants: Iterable[Mutant], *, active: bool = False) -> Instrumentation | None:
-        """The program text with the places of these mutants, or None if they have none there.
-
-        Args:
-            mutants: the mutants.
-            active: whether their alternatives are in force from the start.
-        """
-        choices = [choice for mutant in mutants for choice in self.choices(mutant)]
-        if not choices:
+    def instrumentation(self, mutants: Iterable[Mutant]) -> Instrumentation | None:
+        """The program text with the places of these mutants, or None if they have none there."""
+        needed = {place for mutant in mutants for place in self.active(mutant).places}
+        if not needed:
             return None
-        needed = {choice.place for choice in choices}
         texts = [
             replace(text, places=tuple(place for place in text.places if place.number in needed))
             for text in self.texts
         ]
-        return Instrumentation(
-            tuple(text for text in texts if text.places), active=tuple(choices) if active else ()
-        )
-
-
-#: characters that all answers of one mutant may take; they go to every process that runs it
-LIMIT = 1_000_000
-
-
-class NoAnswerError(MutabotError):
-    """Nobody knows what the program would get if the robot did nothing; the text says why."""
-
-
-@dataclass(slots=True)
-class RecordedAnswers:
-    """The notes of what calls of one place returned, as ``runtime.interception.adapter`` writes them.
-
-    Attributes:
-        first: note of the first call that returned, by test (``Idle.key``).
-        varying: the tests in which later calls returned something else.
-        has_raised: whether any call raised.
-    """
-
-    first: dict[str, Any] = field(default_factory=dict)
-    varying: dict[str, None] = field(default_factory=dict)
-    has_raised: bool = False
-
-    @property
-    def is_nothing(self) -> bool:
-        """Whether all calls that returned, returned nothing (None)."""
-        return not self.varying and all(note is None for note in self.first.values())
-
-    def add(self, round: int, test: str, note: Any) -> None:
-        """The next call of the place in this test has returned, or raised."""
-        if isinstance(note, dict) and "raised" in note:
-            self.has_raised = True
-            return
-        key = Idle.key(round, test)
-        first = self.first.setdefault(key, note)
-        if first is note or note == {"same": True}:
-            return
-        if type(first) is not type(note) or first != note:
-            self.varying[key] = None
-
-
-def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnswers) -> Any:
-    """What the program gets when the command is left out, as a mutant carries it.
-
-    What the vocabulary says goes first. Raises NoAnswerError.
-    """
-    told = pattern.idle if pattern is not None and pattern.idle is not None else operation.idle
-    if told is not None:
-        return Idle((told,)).data()
-    if not answers.first:
-        raise NoAnswerError(f"no recorded call returned, so nobody knows what it answers; {_HINT}")
-    texts = {key: json.dumps(_kept(note)) for key, note in answers.first.items()}
-    numbers = {text: number for number, text in enumerate(dict.fromkeys(texts.values()))}
-    if sum(map(len, numbers)) > LIMIT:
-        raise NoAnswerError(f"what it answers in all tests is more than {LIMIT} characters; {_HINT}")
-    is_single = len(numbers) == 1 and not answers.varying
-    of_test = {} if is_single else {key: numbers[text] for key, text in texts.items()}
-    return Idle(tuple(map(json.loads, numbers)), of_test, tuple(answers.varying)).data()
-
-
-_HINT = "say in the vocabulary what to answer while the robot does nothing: idle = …"
-
-
-def _kept(note: Any) -> Any:
-    if is_plain(note):
-        return note
-    if "kept" not in note:
-        raise NoAnswerError(f"what it answers cannot be kept ({note['opaque']}); {_HINT}")
-    return note["kept"]
+        return Instrumentation(tuple(text for text in texts if text.places))
 
 
 @dataclass(slots=True)
@@ -225,15 +128,6 @@ def _extent(span: Span) -> Extent:
     return (span.line, span.column, span.end_line, span.end_column)
 
 
-@frozen
-class Hit:
-    """One recorded call: the values it wrote and read, and the round and test in which it was made."""
-
-    written: Mapping[str, Any]
-    read: Mapping[str, Any]
-    where: tuple[int, str] = (0, "")
-
-
 @dataclass(slots=True)
 class Baseline(Original):
     """What is known about the original.
@@ -241,12 +135,6 @@ class Baseline(Original):
     Outside of this room it is changed by its methods alone: each stands for something that was learned.
 
     Attributes, beside those that all providers of faults know:
-        tests: per round, the tests that ended alike in all repetitions and let the suite pass, in its order.
-            A test that was skipped or failed as expected belongs to them: a mutant can make it fail.
-        ends: the report of each (round, test), from the first repetition.
-        executed: what was executed in this, by round.
-        hits: recorded calls by place, in the order in which places were first reached.
-        answers: what these calls returned.
         reaching: (round, place) to the tests that reach it, fastest first.
         observations: (round, test) to what is compared with a mutant's.
         unstable: tests excluded as flaky, with the reason, by (round, test).
@@ -255,7 +143,6 @@ class Baseline(Original):
         exits: per round, the exit code of the suite on the original.
         probe_intervals: after every how many commands probes are read along the way, by round and test.
         refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
-        written_through: places that return the robot's own memory, to which the program writes.
         nondeterministic: (round, test) whose trace or probes differ between repetitions; never compared.
         doubted: tests that have failed once where equal runs pass.
         inexact: (round, test) that were not the same to the last bit in all runs of the original.
@@ -268,27 +155,17 @@ class Baseline(Original):
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there acts in all tests.
         collected: per round, all that the original collects.
-        unread: whether nobody uses what the calls of a place return.
-        stand_ins: places at which a mock or a fake of the project gets calls.
         shares_files: whether runs see each other's files.
         may_share: whether the original runs alike in copies of one process that has collected the tests.
         untested: what no test reaches of the program.
-        unreached: places of calls in it, found by the names of operations; a mutant there is not covered.
     """
 
-    ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
-    executed: dict[int, ExecutedByTests] = field(default_factory=dict)
-    hits: dict[Place, list[Hit]] = field(default_factory=dict)
-    answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
-    unread: dict[Place, bool] = field(default_factory=dict)
-    stand_ins: set[Place] = field(default_factory=set)
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
     probe_intervals: Mapping[int, Mapping[str, int]] = field(default_factory=dict)
     refused: dict[tuple[int, str], tuple[RefusedAt, ...]] = field(default_factory=dict)
-    written_through: set[Place] = field(default_factory=set)
     nondeterministic: set[tuple[int, str]] = field(default_factory=set)
     inexact: set[tuple[int, str]] = field(default_factory=set)
     doubted: set[str] = field(default_factory=set)
@@ -305,7 +182,6 @@ class Baseline(Original):
     may_share: bool = True
     collected: dict[int, frozenset[str]] = field(default_factory=dict)
     untested: Untested = field(default_factory=Untested)
-    unreached: tuple[Place, ...] = ()
 
     def suite(self, round: int) -> tuple[str, ...]:
         """The tests that a mutant is run with, in their order: all that can be relied on."""
@@ -335,8 +211,8 @@ class Baseline(Original):
         return next(((test, why) for test, why in ends if why is not None), None)
 
     def is_apart(self, mutant: Mutant) -> bool:
-        """Whether a mutant needs a process of its own: it is in place from the start of each test."""
-        return bool(self.faults.in_process(mutant))
+        """Whether a mutant needs a process of its own: it is active before any point to fork at."""
+        return not self.faults.active(mutant).keys
 
     def is_early(self, mutant: Mutant) -> bool:
         """Whether a mutant may act before any test begins."""

@@ -19,7 +19,6 @@ from mutabot.config.mistakes import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.execution.task import ABNORMAL, Result, Task, death, said_in
 from mutabot.families import OF_CALLS
-from mutabot.faults import Preparation, TextSeen
 from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
@@ -28,11 +27,13 @@ from mutabot.model.events import Event, Remark, TestEnd
 from mutabot.model.outcome import first_line
 from mutabot.model.source_units import ExecutedByTests
 from mutabot.operators import load_all
+from mutabot.original import Hit, RecordedAnswers, TextSeen
 
-from .baseline import Baseline, Hit, RecordedAnswers, Sources, observation, refused_of
+from .baseline import Baseline, Sources, observation, refused_of
 from .untested import add_untested
 
 if TYPE_CHECKING:
+    from mutabot.faults import Preparation
     from mutabot.model.mutant import Place
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance

@@ -35,6 +35,7 @@ from mutabot.execution.task import Result, Task, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
+from mutabot.model.activation import EACH_TEST, Key, at_test
 from mutabot.model.deadline import Limit
 from mutabot.model.job import Forking
 
@@ -307,7 +308,7 @@ class Unhandled:
     def why(self, mutant: Mutant) -> str:
         """Why a mutant is left, in words."""
         if mutant.id in self.apart:
-            return "it is in place from the start of each test"
+            return "it is active before any point at which it could be forked"
         return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
 
 
@@ -471,23 +472,19 @@ class _ForkRound:
         """The task that runs the fork parent."""
         campaign, baseline, mutants = self._campaign, self._baseline, self.mutants
         limits = campaign.limits(self._round, self._tests)
-        choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
-        at_start: dict[str, tuple[str, ...]] = {}  # where tests have processes below them
-        for mutant in mutants:
-            for test in baseline.tests_reaching(self._round, mutant):
-                if baseline.ends[self._round, test].processes:
-                    at_start[test] = (*at_start.get(test, ()), mutant.id)
         forking = Forking(
             mutants=mutants,
             limits=limits,
             limit=max(limits.values(), key=lambda one: one.wall, default=campaign.startup_limit),
             startup=campaign.startup_limit,
-            choices={mutant: found for mutant, found in choices.items() if found},
             every_test=campaign.request.every_test,
             serial=baseline.is_exclusive(self._round),
-            at_start=at_start,
+            keys={mutant.id: self._keys(mutant) for mutant in mutants},
         )
-        job = campaign.job(self._round, self._tests, mutants, forking=forking, instrumentation=text)
+        active = {mutant.id: baseline.faults.active(mutant) for mutant in mutants}
+        job = campaign.job(
+            self._round, self._tests, mutants, forking=forking, instrumentation=text, active=active
+        )
         for fork in self._open.values():
             fork.left_out = job.left_out(fork.mutant.id)
         # it waits for forks that go to the end
@@ -497,6 +494,19 @@ class _ForkRound:
         return Task(
             key, job, {}, patience, patience, is_fork_parent=True, may_share=may_share, alone=forking.serial
         )
+
+    def _keys(self, mutant: Mutant) -> tuple[Key, ...]:
+        """Where a mutant is forked.
+
+        In a test with processes below it that is its start: the mutant may be hit in them.
+        """
+        keys = self._baseline.faults.active(mutant).keys
+        tests = [
+            at_test(test)
+            for test in self._baseline.tests_reaching(self._round, mutant)
+            if EACH_TEST in keys or self._baseline.ends[self._round, test].processes
+        ]
+        return (*(key for key in keys if key != EACH_TEST), *tests)
 
     def take(self, event: events.Event) -> Iterator[Outcome]:
         """Sort in an event. Yields the outcomes that it settles.

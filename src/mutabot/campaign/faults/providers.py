@@ -14,13 +14,11 @@ from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar
 
-from mutabot.campaign.baseline.baseline import Baseline, Hit, NoAnswerError, RecordedAnswers, idle_of
 from mutabot.campaign.faults.demanded import ladders_last, with_demanded
 from mutabot.errors import ExtensionError, MutabotError, OperatorError, unknown_name_text
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_CALLS, ROBOT
 from mutabot.faults import (
     FaultProvider,
-    Original,
     Planned,
     PlannedMutant,
     Preparation,
@@ -28,6 +26,7 @@ from mutabot.faults import (
     brought_providers,
 )
 from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
+from mutabot.model.activation import Activation
 from mutabot.model.mutant import Place, When
 from mutabot.model.quantity import holds_number, is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all
@@ -36,11 +35,12 @@ from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
 from mutabot.operators.registry import operator as operator_named
 from mutabot.operators.value import NOT_PASSED, NOT_RETURNED, label
+from mutabot.original import Hit, NoAnswerError, Original, RecordedAnswers, idle_of
 
 
 def at_moments(
     planted: Sequence[PlannedMutant],
-    baseline: Baseline,
+    original: Original,
     vocabulary: Vocabulary,
     wanted: Sequence[Moment | None],
 ) -> list[PlannedMutant]:
@@ -48,21 +48,21 @@ def at_moments(
     found = [one for one in planted if one.reason is not None]
     for one in planted:
         for moment in wanted if one.reason is None else ():
-            made = one.mutant if moment is None else _at(one.mutant, moment, baseline)
-            reason = _why_not(made, vocabulary, baseline)
+            made = one.mutant if moment is None else _at(one.mutant, moment, original)
+            reason = _why_not(made, vocabulary, original)
             order = one.order if reason is None else (1, *one.order[1:])  # left out here: behind the others
             found.append(replace(one, mutant=made, reason=reason, order=order))
     return found
 
 
-def _at(mutant: Mutant, moment: Moment, baseline: Baseline) -> Mutant:
+def _at(mutant: Mutant, moment: Moment, original: Original) -> Mutant:
     if moment.when is When.ONCE:
-        counts = {f"{round} {test}": count for (round, test), count in _calls_at(mutant, baseline).items()}
+        counts = {f"{round} {test}": count for (round, test), count in _calls_at(mutant, original).items()}
         moment = replace(moment, calls=counts)
     return replace(mutant, moment=moment, description=f"{mutant.description}, {moment.words}")
 
 
-def _why_not(mutant: Mutant, vocabulary: Vocabulary, baseline: Baseline) -> str | None:
+def _why_not(mutant: Mutant, vocabulary: Vocabulary, original: Original) -> str | None:
     moment = mutant.moment
     if moment is None:
         return None
@@ -70,16 +70,16 @@ def _why_not(mutant: Mutant, vocabulary: Vocabulary, baseline: Baseline) -> str 
         return "what it does to a call depends on earlier ones, so that it acts at all of them"
     if moment.asks_time and vocabulary.clock is None:
         return "the vocabulary names no clock"
-    most = max(_calls_at(mutant, baseline).values(), default=0)
-    is_reached = Place.of(mutant) in baseline.hits
+    most = max(_calls_at(mutant, original).values(), default=0)
+    is_reached = Place.of(mutant) in original.hits
     if is_reached and moment.first > most and not moment.asks_time:
         return f"no test makes call {moment.first:g} here; the most are {most}"
     return None
 
 
-def _calls_at(mutant: Mutant, baseline: Baseline) -> Counter[tuple[int, str]]:
+def _calls_at(mutant: Mutant, original: Original) -> Counter[tuple[int, str]]:
     """How many calls the site has in each test of each round."""
-    return Counter(hit.where for hit in baseline.hits.get(Place.of(mutant), ()))
+    return Counter(hit.where for hit in original.hits.get(Place.of(mutant), ()))
 
 
 #: why a speed or ratio is not reversed
@@ -89,10 +89,10 @@ NO_SIGN = (
 )
 
 
-def _has_negative(baseline: Baseline, place: Place, subject: Subject) -> bool:
+def _has_negative(original: Original, place: Place, subject: Subject) -> bool:
     """Whether any call of the same command has a negative value of the subject's quantity."""
     command = place.operation, place.pattern
-    same = (hits for other, hits in baseline.hits.items() if (other.operation, other.pattern) == command)
+    same = (hits for other, hits in original.hits.items() if (other.operation, other.pattern) == command)
     values = (_value(subject, hit) for hits in same for hit in hits)
     items = (item for value in values for item in (value if isinstance(value, list | tuple) else [value]))
     return any(is_number(item) and item < 0 for item in items)
@@ -128,7 +128,6 @@ class CallFaults(FaultProvider):
 
         Those with sizes come behind all others, whose numbers are the same with and without them.
         """
-        assert isinstance(original, Baseline)
         operators = [rule for rule in self.rules() if _is_asked_for(rule, project)]
         found = list(_at_places(original, project.vocabulary, operators, self.name))
         found += _not_covered(original, project.vocabulary, operators, self.name)
@@ -161,44 +160,44 @@ def _is_asked_for(rule: Operator, project: Project) -> bool:
 
 
 def _at_places(
-    baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
+    original: Original, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
 ) -> Iterator[PlannedMutant]:
     """All mutants of these operators at all places that the tests reach, and those that are left out."""
     taken: set[str] = set()
-    operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in baseline.hits})
+    operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in original.hits})
     ranks = {rule.name: rank for rank, rule in enumerate(load_all())}
-    for index, (place, hits) in enumerate(baseline.hits.items()):
+    for index, (place, hits) in enumerate(original.hits.items()):
         operation = vocabulary.operation(place.operation)
         if operation is None:
             continue
-        operation = operation.by_numbers() if place in baseline.stand_ins else operation
-        is_shared = operations_at[place.site] > 1
+        operation = operation.by_numbers() if place in original.stand_ins else operation
+        is_shared, active = operations_at[place.site] > 1, Activation.of_call(place)
         for subject, rule in _subjects(operators, operation, place):
             with _named(rule, operation):
                 seen, foreseen = _foresee(rule, subject, hits)
                 needs, only_reads = rule.needs_of(subject), rule.only_reads(subject)
                 text = _description(rule, subject, place, seen, is_shared=is_shared)
             mutant = replace(_distinct(_mutant(rule, subject, place, provider), taken), description=text)
-            unmet = {need: _why_unmet(need, subject, place, baseline, vocabulary) for need in needs}
+            unmet = {need: _why_unmet(need, subject, place, original, vocabulary) for need in needs}
             later = (unmet.get(need) for need in (Need.CLOCK, Need.WAIT, Need.SIGN))
             reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), foreseen, *later)
             reason = next(filter(None, reasons), None)
-            if reason is None and baseline.unread.get(place, False) and only_reads:
+            if reason is None and original.unread.get(place, False) and only_reads:
                 reason = "nobody reads what the call returns: it is a statement by itself"
             is_read_alone = subject.quantity in subject.read and subject.quantity not in subject.written
-            if place in baseline.written_through and is_read_alone:
+            if place in original.written_through and is_read_alone:
                 reason = _LOST_WRITE
             if Need.IDLE in rule.needs and reason is None:
                 try:
-                    answers = _answers(baseline, place, of_any=Need.ERROR in rule.needs)
+                    answers = _answers(original, place, of_any=Need.ERROR in rule.needs)
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
                 except NoAnswerError as error:  # of a statement by itself nobody needs one
-                    reason = None if baseline.unread.get(place, False) else str(error)
-            yield PlannedMutant(mutant, reason, (0, index, ranks[rule.name]))
+                    reason = None if original.unread.get(place, False) else str(error)
+            yield PlannedMutant(mutant, reason, (0, index, ranks[rule.name]), active=active)
 
 
 def _not_covered(
-    baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
+    original: Original, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
 ) -> list[PlannedMutant]:
     """The mutants of these operators at calls that no test reaches: all that the vocabulary allows.
 
@@ -207,33 +206,31 @@ def _not_covered(
     taken: set[str] = set()
     ranks = {rule.name: rank for rank, rule in enumerate(load_all())}
     found = []
-    for index, place in enumerate(baseline.unreached, start=len(baseline.hits)):
-        operation = vocabulary.operation(place.operation)
+    for index, place in enumerate(original.unreached, start=len(original.hits)):
+        operation, active = vocabulary.operation(place.operation), Activation.of_call(place)
         for subject, rule in _subjects(operators, operation, place) if operation is not None else ():
             with _named(rule, subject.operation):
                 needs = rule.needs_of(subject)
                 text = _description(rule, subject, place, None, is_shared=False)
-            unmet = (_why_unmet(need, subject, place, baseline, vocabulary) for need in needs)
+            unmet = (_why_unmet(need, subject, place, original, vocabulary) for need in needs)
             mutant = _distinct(_mutant(rule, subject, place, provider), taken)
-            order = (0, index, ranks[rule.name])
-            found.append(
-                PlannedMutant(replace(mutant, description=text), next(filter(None, unmet), None), order)
-            )
+            mutant, reason = replace(mutant, description=text), next(filter(None, unmet), None)
+            found.append(PlannedMutant(mutant, reason, (0, index, ranks[rule.name]), active=active))
     return found
 
 
-def _answers(baseline: Baseline, place: Place, *, of_any: bool) -> RecordedAnswers:
+def _answers(original: Original, place: Place, *, of_any: bool) -> RecordedAnswers:
     """What calls of a place returned; where all of them raised, what the same command returned elsewhere.
 
     That is taken for what it answers here if it returned nothing wherever it returned; or, with ``of_any``,
     whatever it was.
     """
-    own = baseline.answers[place]
+    own = original.answers[place]
     if own.first:
         return own
     others = [
         answers
-        for other, answers in baseline.answers.items()
+        for other, answers in original.answers.items()
         if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
     ]
     is_told = others and (of_any or all(one.is_nothing for one in others))
@@ -329,11 +326,11 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Forese
 
 
 def _why_unmet(
-    need: Need, subject: Subject, place: Place, baseline: Baseline, vocabulary: Vocabulary
+    need: Need, subject: Subject, place: Place, original: Original, vocabulary: Vocabulary
 ) -> str | None:
     """Why what an operator needs is not to be had; None if it is."""
     match need:
-        case Need.ERROR if not _has_raised(baseline, place):
+        case Need.ERROR if not _has_raised(original, place):
             return "no call raises in the baseline"
         case Need.PLACE if not _is_told(subject, vocabulary):
             return f"{subject.current or 'no reading'} does not tell where it is"
@@ -341,18 +338,18 @@ def _why_unmet(
             return "the vocabulary names no clock"
         case Need.WAIT if vocabulary.wait is None and subject.operation.named is None:
             return "the vocabulary does not say what lets the program's time pass (wait = …)"
-        case Need.SIGN if not _has_negative(baseline, place, subject):
+        case Need.SIGN if not _has_negative(original, place, subject):
             return NO_SIGN
     return None
 
 
-def _has_raised(baseline: Baseline, place: Place) -> bool:
+def _has_raised(original: Original, place: Place) -> bool:
     """Whether a call of a place raised; of one that no test reaches, whether any call of the command did."""
-    if place in baseline.answers:
-        return baseline.answers[place].has_raised
+    if place in original.answers:
+        return original.answers[place].has_raised
     command = place.operation, place.pattern
     of_command = (
-        one for other, one in baseline.answers.items() if (other.operation, other.pattern) == command
+        one for other, one in original.answers.items() if (other.operation, other.pattern) == command
     )
     return any(one.has_raised for one in of_command)
 

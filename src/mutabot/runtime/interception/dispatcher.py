@@ -22,6 +22,7 @@ import wrapt
 
 from mutabot.extensions import packages
 from mutabot.model import Call, Reply, Role, Span
+from mutabot.model.activation import Key, at_call
 from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 from mutabot.operators.passage import Carried, run
@@ -36,7 +37,6 @@ from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
-    from mutabot.runtime.isolation.fork_parent import ForkParent
     from mutabot.runtime.program_text.returns import Returns
 
 #: what runs in this context: the program, what an operation does or has begun, or what is nobody's
@@ -89,7 +89,8 @@ class Dispatcher:
         on_end: told of each call that is over, with what it read; None if nobody asks.
         turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
-        fork_parent: set while this process runs the original and forks for each mutant.
+        on_reach: told of each call before it is made, by its key, and by its number among those of its site;
+            None if nobody asks.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         mutant: the mutant of calls that is at work; None for the original, and for other mutants.
         on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
@@ -106,7 +107,7 @@ class Dispatcher:
     on_end: Callable[[Call, Mapping[str, Value]], None] | None = None
     turn: Callable[[], None] | None = None
     meter: Meter | None = None
-    fork_parent: ForkParent | None = None
+    on_reach: Callable[[Key, int], None] | None = None
     mutant: ActiveMutant | None = None
     oracle_nodes: tuple[str, ...] = ()
     on_live: Callable[[SiteCall], None] | None = None
@@ -218,8 +219,8 @@ class Dispatcher:
             try:
                 # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
                 #    original; a fork comes back from here as its mutant.
-                if self.fork_parent is not None:
-                    self.fork_parent.fork_at(site[0], call, made.number)
+                if self.on_reach is not None:
+                    self.on_reach(at_call(*key), made.number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = self.mutant
                 hits = mutant.evidence.hits if mutant is not None else 0

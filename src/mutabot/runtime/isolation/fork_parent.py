@@ -18,11 +18,12 @@ import random
 import select
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from mutabot.model import IDENTITY, Call, Choice, Mutant, Span
+from mutabot.model import Mutant
+from mutabot.model.activation import TEXT, Activation, Key, at_test, at_text, of_kind
 from mutabot.model.clocks import monotonic
 from mutabot.model.deadline import Deadline, Limit
 from mutabot.model.events import ForkDied, ForkEnded, TestControls, TokensHeld, Undiverged, Unforked
@@ -43,8 +44,6 @@ STOPPED = 116
 _NUMBER_BYTES = 4
 _TOKEN = b"t"
 
-#: where to fork for a mutant: a site with its operation and pattern, or a place of the program text
-ForkPoint = tuple[Span, str, str | None] | int
 _NODES = "its nodes would meet those of other mutants"
 _INTERRUPTED = "the campaign was interrupted"
 #: seconds between two looks whether it is, while this process waits
@@ -92,30 +91,30 @@ class ForkParent:
         tests: the tests of the session, in their order.
         pipe: the file of events.
         files: those of this process, which keep a child apart from it.
+        active: how each mutant becomes active, by its id.
         become: called in a child, with its mutant and its folder: it goes on as that mutant.
         has_nodes: whether nodes below a child would meet those below others.
         has_started: whether processes of the program were started, which have run it as the original.
-        is_moment: whether a mutant acts at a call, given the call's number among those of its site in the
-            running test.
     """
 
     forking: Forking
     tests: tuple[str, ...]
     pipe: EventFile
     files: PrivateFiles
+    active: Mapping[str, Activation]
     become: Callable[[Mutant, str], None]
     has_nodes: bool
     has_started: Callable[[], bool]
-    is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
 
     def __post_init__(self) -> None:
         self._test, self._number, self._held, self._pid = "", -1, 1, os.getpid()
         self._test_controls = 0
         self._overtaken = self._forking = self._copied = self._stopped = False
-        self._live: dict[ForkPoint, list[Mutant]] = {}
+        self._live: dict[Key, list[Mutant]] = {}
         self._gone: set[str] = set()
         self._children: dict[int, Child] = {}
         self._places: dict[int, frozenset[int]] | None = None
+        self._of_control = Activation("")
         os.register_at_fork(before=self._note_copy)
         self._numbers = {test: number for number, test in enumerate(self.tests)}
         self._slots = {mutant.id: slot for slot, mutant in enumerate(self.forking.mutants)}
@@ -125,42 +124,43 @@ class ForkParent:
         self._finished, self._tests = board[:count], board[count:]
         self._known = forkable.open_now()
         for mutant in self.forking.mutants:
-            keys: list[ForkPoint] = [(mutant.site.span, mutant.operation, mutant.pattern)]
-            keys += [choice.place for choice in self.forking.choices.get(mutant.id, ())]
-            for key in keys:
+            for key in self.forking.keys[mutant.id]:
                 self._live.setdefault(key, []).append(mutant)
 
     def begin_test(self, test: str) -> None:
-        """A test is about to begin: fork for the mutants that may be hit in processes below it."""
+        """A test is about to begin: fork for the mutants that differ from its start on, or below it."""
         self._is_overtaken()  # also if no place is reached before
         self._test, self._number = test, self._numbers[test]
         self._copied, self._test_controls = False, 0
         self._is_stopped()
-        due = set(self.forking.at_start.get(test, ())) - self._gone
+        key = at_test(test)
+        due = {one.id for one in self._live.get(key, ())} - self._gone
         if due and self.has_nodes:
             self._gone |= due
             self.pipe.send(Unforked(test, tuple(sorted(due)), _NODES))
-        elif due:
-            self._fork([one for one in self.forking.mutants if one.id in due])
+        self.reach(key)
 
-    def fork_at(self, span: Span, call: Call, number: int) -> None:
-        """Fork for each mutant that acts at this call and has no process yet.
+    @property
+    def keys(self) -> Collection[Key]:
+        """What the parent is to be told of."""
+        return self._live.keys()
 
-        In a child this process is its mutant from here on.
+    def reach(self, *keys: Key, is_due: Callable[[Mutant], bool] = lambda mutant: True) -> None:
+        """These keys are reached: fork for each mutant that differs from here on and has no process yet.
+
+        In a child this process is its mutant from here on. ``is_due``: whether a mutant does differ.
         """
-        pattern = call.pattern.text if call.pattern is not None else None
-        here = self._live.get((span, call.operation.target, pattern), ())
-        self._fork([one for one in here if one.moment is None or self.is_moment(one, number)])
-
-    def fork_at_place(self, place: int, indexes: frozenset[int]) -> None:
-        """The same at a place of the program text, for the mutants that are these alternatives."""
-        self._fork([one for one in self._live.get(place, ()) if self._index(one) in indexes])
+        here = [mutant for key in keys for mutant in self._live.get(key, ())]
+        if here:
+            self._fork([mutant for mutant in here if is_due(mutant)])
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
         if self._places is None:
-            found = {place: frozenset(map(self._index, here)) for place, here in self._live_places()}
-            self._places = {place: indexes for place, indexes in found.items() if indexes}
+            found: dict[int, set[int]] = {}
+            for _, place, index in of_kind((key for key, here in self._live.items() if here), TEXT):
+                found.setdefault(place, set()).add(index)
+            self._places = {place: frozenset(indexes) for place, indexes in found.items()}
         return self._places
 
     def tell_undiverged(self, hits: Mapping[int, int]) -> None:
@@ -174,20 +174,12 @@ class ForkParent:
             return
         same = {
             mutant.id: hits[place]
-            for place, here in self._live_places()
-            if hits.get(place)
-            for mutant in here
-            if self._index(mutant) >= 0
+            for _, place, index in of_kind(self._live, TEXT)
+            if hits.get(place) and index >= 0
+            for mutant in self._live[at_text(place, index)]
         }
         if same:
             self.pipe.send(Undiverged(self._test, same))
-
-    def _live_places(self) -> Iterator[tuple[int, list[Mutant]]]:
-        return ((key, here) for key, here in self._live.items() if isinstance(key, int))
-
-    def _index(self, mutant: Mutant) -> int:
-        """Which alternative the mutant is; negative if it cannot wait until that changes something."""
-        return self.forking.choices[mutant.id][0].index
 
     def _fork(self, mutants: Iterable[Mutant]) -> None:
         due = [mutant for mutant in mutants if mutant.id not in self._gone]
@@ -219,6 +211,7 @@ class ForkParent:
         """The identity at this mutant's place, which shows what forking alone does to the test."""
         self._test_controls += 1
         name = Identity.name
+        self._of_control = self.active[mutant.id].control(name)
         return Mutant(
             0, Identity.family, name, mutant.site, mutant.operation, mutant.pattern, None, self._test, name,
             provider=mutant.provider,
@@ -228,13 +221,9 @@ class ForkParent:
         """Whether it is the control of one test, whose process ends with that test."""
         return mutant.id not in self._slots
 
-    def choices_of(self, mutant: Mutant) -> tuple[Choice, ...]:
-        """A mutant's alternatives in the program text."""
-        if not self.is_test_control(mutant):
-            return self.forking.choices.get(mutant.id, ())
-        key = (mutant.site.span, mutant.operation, mutant.pattern)
-        mutants = (one for one in self.forking.mutants if (one.site.span, one.operation, one.pattern) == key)
-        return tuple({replace(choice, index=IDENTITY) for one in mutants for choice in self.choices_of(one)})
+    def activation_of(self, mutant: Mutant) -> Activation:
+        """How a mutant becomes active; or the control of one test."""
+        return self._of_control if self.is_test_control(mutant) else self.active[mutant.id]
 
     def end_test(self) -> None:
         """The test is over: wait for its controls, holding no token meanwhile, and tell their number."""

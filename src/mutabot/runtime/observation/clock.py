@@ -211,12 +211,17 @@ class ClockReader:
         clock: what the vocabulary says.
         meter: the meter of the running test; None between tests.
         on_problem: told why a call gives no time: (key, text).
+        on_tick: told the simulated seconds of the running test after each call.
     """
 
     def __init__(
-        self, clock: Clock, meter: Callable[[], Meter | None], on_problem: Callable[[str, str], None]
+        self,
+        clock: Clock,
+        meter: Callable[[], Meter | None],
+        on_problem: Callable[[str, str], None],
+        on_tick: Callable[[float], None],
     ) -> None:
-        self._clock, self._meter, self._on_problem = clock, meter, on_problem
+        self._clock, self._meter, self._on_problem, self._on_tick = clock, meter, on_problem, on_tick
         self._path = Path.parse(clock.time, rooted=clock.rooted)
         self._step = None if clock.step is None else convert(clock.step, clock.unit, "s")
         self._is_direct = not clock.time and self._step is None and clock.unit == "s"
@@ -229,6 +234,7 @@ class ClockReader:
             meter = self._meter()
             if meter is not None:
                 meter.tick(result)
+                self._on_tick(meter.simulated or 0.0)
         elif type(result) is CoroutineType:  # nothing has happened yet
             return self._awaited(result, wrapped, instance, args, kwargs)
         else:
@@ -250,6 +256,9 @@ class ClockReader:
             meter.advance(self._step)
         elif (time := self._time(result, *call)) is not None:
             meter.tick(time)
+        else:
+            return
+        self._on_tick(meter.simulated or 0.0)
 
     def _time(self, result: Any, *call: Any) -> float | None:
         """Simulated time in s after the call; None, and a problem, if there is none."""

@@ -12,6 +12,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -27,6 +28,7 @@ from mutabot.runtime.evidence import Evidence, Meter, TimeExceeded, failure_in, 
 from mutabot.runtime.processes.environment import STARTS, Now, carry, listen, starts_a_killer
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
+from mutabot.runtime.program_text.text_mutant import TextMutant
 
 if TYPE_CHECKING:
     from mutabot.runtime.event_file import EventWriter
@@ -45,20 +47,27 @@ class TextOnly:
         test: node id of the running test.
         meter: what the running test has used.
         commands, is_fork: of calls there are none.
+        seconds: there is no clock.
     """
 
     commands = 0
     is_fork = False
+    seconds: float | None = None
 
     def __init__(self, job: Job, pipe: EventWriter) -> None:
         self.job, self.pipe = job, pipe
         self.text: SessionText | None = None
         self.test = ""
         self.meter = Meter()
+        self._fault: TextMutant | None = None
 
     def install(self) -> None:
         """Instrument the program from now on, and the mutant with it."""
-        self.text = SessionText.of(self.job, self.pipe, self._acted)
+        self.text = SessionText.of(self.job, self.pipe, self.acted)
+        if self.job.mutant is not None:
+            activation = self.job.active[self.job.mutant.id]
+            self._fault = TextMutant(self.job.mutant, activation.data, self)
+            self._fault.prepare_process()
 
     def start_test(self, test: str) -> None:
         """A test begins."""
@@ -73,9 +82,19 @@ class TextOnly:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
-        return self.text.evidence if self.text is not None and self.text.is_mutant else Evidence()
+        return self._fault.evidence if self._fault is not None else Evidence()
 
-    def _acted(self) -> None:
+    @property
+    def round(self) -> int:
+        """The round, from 0."""
+        return self.job.round
+
+    def untracked(self) -> AbstractContextManager[None]:
+        """No calls are tracked."""
+        return nullcontext()
+
+    def acted(self) -> None:
+        """The mutant changed something for the first time in a test."""
         self.pipe.send(events.Acted(self.test))
 
 
@@ -198,7 +217,7 @@ class Member:
         """End the test for the mutant."""
         self.session.look_back(at_all=True)
         if not isinstance(self.session, TextOnly):
-            self.session.placed.end_test()
+            self.session.fault.end_test()
 
     def send(self, line: events.Event) -> None:
         """What the session tells: written down, as far as it is news."""
@@ -346,7 +365,7 @@ class Member:
 
 def _session(job: Job, pipe: Member) -> Session | TextOnly:
     text = job.instrumentation
-    if text is not None and not (text.active or text.record):
+    if text is not None and job.mutant is None and not text.record:
         text = None  # those below a fork parent are the original, and fork for nobody
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
     if job.is_of_text:

@@ -320,7 +320,6 @@ class SessionText:
         self._places = {place.number: place for text in texts for place in text.places}
         size = max(self._places, default=0)
         self.alternatives = Alternatives(size)
-        self.alternatives.activate(*instrumentation.active)
         self.alternatives.forms = cache(self._forms)
         self.alternatives.on_act = on_act
         self.sightings: Sightings | None = None

@@ -22,7 +22,7 @@ from functools import cache
 from typing import Any, NoReturn
 
 from mutabot.model.data import is_of_numpy
-from mutabot.model.mutant import FATAL, FITTING, IDENTITY, Choice, Sighting, TextPlace
+from mutabot.model.mutant import FATAL, FITTING, IDENTITY, Sighting, TextPlace
 from mutabot.model.path import class_name
 from mutabot.runtime.program_text.foresee import Forms, locals_of
 
@@ -112,7 +112,7 @@ class Alternatives:
 
     def __init__(self, size: int) -> None:
         """``size``: the largest number of a place."""
-        self.active: Choice | None = None
+        self.active: tuple[int, int] | None = None  # its place, and its index there
         self.hits: dict[int, int] = {}
         self.idle: dict[int, int] = {}
         self.example: tuple[Any, Any] | None = None
@@ -136,7 +136,7 @@ class Alternatives:
     @property
     def place(self) -> int:
         """The place of the active alternative; 0 for the original."""
-        return self.active.place if self.active is not None else 0
+        return self.active[0] if self.active is not None else 0
 
     @property
     def acted(self) -> int:
@@ -158,9 +158,9 @@ class Alternatives:
             self._has_told = True
             self.on_act()
 
-    def activate(self, choice: Choice | None = None) -> None:
-        """Make this alternative, and no other, stand for the original."""
-        self.active = choice
+    def activate(self, place: int = 0, index: int = 0) -> None:
+        """Make this alternative, and no other, stand for the original; 0: none."""
+        self.active = (place, index) if place else None
         self._set({})
 
     def watch(self, live: Mapping[int, frozenset[int]]) -> None:
@@ -188,7 +188,7 @@ class Alternatives:
             self.on_first(place)
         if switch.watched:
             self._look_ahead(switch, frame)
-        index = self.active.index if self.active is not None and self.active.place == place else None
+        index = self.active[1] if self.active is not None and self.active[0] == place else None
         if index is not None and index < 0:
             self._control(place, index)
             return False
@@ -236,8 +236,8 @@ class Alternatives:
         for place, indexes in watched.items():
             switches[place] = Switch(self, place, None, indexes)
         if self.active is not None:
-            place, watching = self.active.place, watched.get(self.active.place, frozenset())
-            switches[place] = Switch(self, place, self.active.index, watching)
+            place, index = self.active
+            switches[place] = Switch(self, place, index, watched.get(place, frozenset()))
         self.switches[1:] = switches[1:]  # at once: other threads may look at them
 
     # what templates may call (``HELPER``); none of it belongs to one operator

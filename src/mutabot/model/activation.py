@@ -1,0 +1,110 @@
+"""How a mutant becomes active in the processes of the tests, and where these first differ from the original.
+
+A fork parent runs the original and forks a process for each mutant where that first differs: at a *key*. Keys
+are plain data. Who reaches one, tells it: a call of an operation, a place of the program text, a moment of
+simulated time, the start of a test. To everybody else they are opaque.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+from mutabot.frozen import frozen
+from mutabot.model.mutant import FATAL, IDENTITY, Place, Span
+
+#: a point at which the process of a mutant first differs from the original's
+Key = tuple[Any, ...]
+
+CALL, TEXT, TIME, TEST, NTH = "call", "text", "time", "test", "nth"
+#: the start of each test that reaches the mutant
+EACH_TEST: Key = (TEST,)
+
+#: what a fault awaits in a process before it is made there: nothing, so that it is made before any module of
+#: the program is imported; the first test; the clock's first tick. Any other text is the name of a module
+AT_ONCE, FIRST_TEST, FIRST_TICK = "", "<test>", "<tick>"
+
+#: the faults of the core, and what stands for the controls of all others
+CALL_FAULT = "mutabot.runtime.interception.call_mutant:CallMutant"
+TEXT_FAULT = "mutabot.runtime.program_text.text_mutant:TextMutant"
+IDENTITY_CONTROL = "mutabot.runtime.active_fault:IdentityControl"
+FATAL_CONTROL = "mutabot.runtime.active_fault:FatalControl"
+
+
+def at_call(span: Span, operation: str, pattern: str | None) -> Key:
+    """A call of an operation, or of one of its text commands, at a site."""
+    return (CALL, span, operation, pattern)
+
+
+def at_text(place: int, index: int) -> Key:
+    """A place of the program text, where this alternative is about to differ from the original, or may."""
+    return (TEXT, place, index)
+
+
+def at_time(seconds: float) -> Key:
+    """The first tick of the vocabulary's clock in a test by which so many simulated seconds have passed."""
+    return (TIME, seconds)
+
+
+def at_test(test: str) -> Key:
+    """The start of a test, before its fixtures."""
+    return (TEST, test)
+
+
+def nth(number: int, key: Key) -> Key:
+    """The time of this number, from 1, at which a key is reached in a test."""
+    return (NTH, number, key)
+
+
+def of_kind(keys: Iterable[Key], kind: str) -> list[Key]:
+    """Those of the keys that are of this kind."""
+    return [key for key in keys if key[0] == kind]
+
+
+@frozen
+class Activation:
+    """How a mutant becomes active in a process of the tests.
+
+    Attributes:
+        reference: ``module:attribute`` of a ``mutabot.runtime.active_fault.ActiveFault``.
+        data: what it is told, as plain data.
+        keys: where a process with this mutant first differs from the original: a fork parent forks at the
+            first of them that is reached. None: it cannot be forked, and runs in processes of its own.
+        awaits: what must be there before the fault is made: ``AT_ONCE``, ``FIRST_TEST``, ``FIRST_TICK`` or
+            the name of a module, which is then imported. Processes below the tests await it likewise.
+        identity, fatal: the controls at the place of the mutant; None for those that any fault has.
+    """
+
+    reference: str
+    data: Any = None
+    keys: tuple[Key, ...] = (EACH_TEST,)
+    awaits: str = FIRST_TEST
+    identity: Activation | None = None
+    fatal: Activation | None = None
+
+    @classmethod
+    def of_call(cls, place: Place) -> Activation:
+        """Of a mutant of the calls at a place."""
+        key = at_call(place.site.span, place.operation, place.pattern)
+        own = cls(CALL_FAULT, keys=(key,), awaits=AT_ONCE)
+        return cls(CALL_FAULT, keys=(key,), awaits=AT_ONCE, identity=own, fatal=own)
+
+    @classmethod
+    def of_text(cls, place: int, index: int) -> Activation:
+        """Of an alternative in the program text, by the number of its place and its index there."""
+        own, identity, fatal = (
+            cls(TEXT_FAULT, (place, one), (at_text(place, one),), AT_ONCE) for one in (index, IDENTITY, FATAL)
+        )
+        return replace(own, identity=identity, fatal=fatal)
+
+    def control(self, name: str) -> Activation:
+        """The control of this name, ``identity`` or ``fatal``, at the same place."""
+        own = self.identity if name == "identity" else self.fatal
+        reference = IDENTITY_CONTROL if name == "identity" else FATAL_CONTROL
+        return own or Activation(reference, self.data, self.keys, self.awaits)
+
+    @property
+    def places(self) -> frozenset[int]:
+        """The places of the program text at which it differs."""
+        return frozenset(place for _, place, _ in of_kind(self.keys, TEXT))

@@ -1,0 +1,150 @@
+"""What is known of the original, the unmutated program, when mutants are planned."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.errors import MutabotError
+from mutabot.frozen import frozen
+from mutabot.model import Operation, Pattern, Sighting
+from mutabot.model.answer import is_plain
+from mutabot.model.events import TestEnd
+from mutabot.model.job import Idle
+from mutabot.model.mutant import Place
+from mutabot.model.source_units import ExecutedByTests
+
+
+@frozen
+class TextSeen:
+    """What the baseline saw of instrumented program text in a round.
+
+    Attributes:
+        imported: the files that were imported.
+        sightings: what was seen at places.
+        reached: numbers of the places that each test reached; the test ``""`` stands for before any test.
+        below: the same in processes below the tests, by the origin of these.
+        refused: files that could not be instrumented, with the reason.
+    """
+
+    imported: frozenset[str] = frozenset()
+    sightings: tuple[Sighting, ...] = ()
+    reached: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    below: Mapping[str, Mapping[str, tuple[int, ...]]] = field(default_factory=dict)
+    refused: Mapping[str, str] = field(default_factory=dict)
+
+
+@frozen
+class Hit:
+    """One recorded call: the values it wrote and read, and the round and test in which it was made."""
+
+    written: Mapping[str, Any]
+    read: Mapping[str, Any]
+    where: tuple[int, str] = (0, "")
+
+
+#: characters that all answers of one mutant may take; they go to every process that runs it
+LIMIT = 1_000_000
+
+
+class NoAnswerError(MutabotError):
+    """Nobody knows what the program would get if the robot did nothing; the text says why."""
+
+
+@dataclass(slots=True)
+class RecordedAnswers:
+    """The notes of what calls of one place returned, as ``runtime.interception.adapter`` writes them.
+
+    Attributes:
+        first: note of the first call that returned, by test (``Idle.key``).
+        varying: the tests in which later calls returned something else.
+        has_raised: whether any call raised.
+    """
+
+    first: dict[str, Any] = field(default_factory=dict)
+    varying: dict[str, None] = field(default_factory=dict)
+    has_raised: bool = False
+
+    @property
+    def is_nothing(self) -> bool:
+        """Whether all calls that returned, returned nothing (None)."""
+        return not self.varying and all(note is None for note in self.first.values())
+
+    def add(self, round: int, test: str, note: Any) -> None:
+        """The next call of the place in this test has returned, or raised."""
+        if isinstance(note, dict) and "raised" in note:
+            self.has_raised = True
+            return
+        key = Idle.key(round, test)
+        first = self.first.setdefault(key, note)
+        if first is note or note == {"same": True}:
+            return
+        if type(first) is not type(note) or first != note:
+            self.varying[key] = None
+
+
+def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnswers) -> Any:
+    """What the program gets when the command is left out, as a mutant carries it.
+
+    What the vocabulary says goes first. Raises NoAnswerError.
+    """
+    told = pattern.idle if pattern is not None and pattern.idle is not None else operation.idle
+    if told is not None:
+        return Idle((told,)).data()
+    if not answers.first:
+        raise NoAnswerError(f"no recorded call returned, so nobody knows what it answers; {_HINT}")
+    texts = {key: json.dumps(_kept(note)) for key, note in answers.first.items()}
+    numbers = {text: number for number, text in enumerate(dict.fromkeys(texts.values()))}
+    if sum(map(len, numbers)) > LIMIT:
+        raise NoAnswerError(f"what it answers in all tests is more than {LIMIT} characters; {_HINT}")
+    is_single = len(numbers) == 1 and not answers.varying
+    of_test = {} if is_single else {key: numbers[text] for key, text in texts.items()}
+    return Idle(tuple(map(json.loads, numbers)), of_test, tuple(answers.varying)).data()
+
+
+_HINT = "say in the vocabulary what to answer while the robot does nothing: idle = …"
+
+
+def _kept(note: Any) -> Any:
+    if is_plain(note):
+        return note
+    if "kept" not in note:
+        raise NoAnswerError(f"what it answers cannot be kept ({note['opaque']}); {_HINT}")
+    return note["kept"]
+
+
+@dataclass(slots=True)
+class Original:
+    """What the baseline has seen of the original.
+
+    Attributes:
+        tests: per round, the tests that ended alike in all repetitions and let the suite pass, in its order.
+            A test that was skipped or failed as expected belongs to them: a mutant can make it fail.
+        ends: the report of each (round, test), from the first repetition.
+        executed: what was executed in this, by round.
+        text: what was seen of instrumented program text, by round.
+        hits: recorded calls by place, in the order in which places were first reached.
+        answers: what these calls returned.
+        unread: whether nobody uses what the calls of a place return.
+        stand_ins: places at which a mock or a fake of the project gets calls.
+        written_through: places that return the robot's own memory, to which the program writes.
+        unreached: places of calls that no test reaches, found by the names of operations: a mutant there is
+            not covered.
+    """
+
+    tests: list[list[str]] = field(default_factory=list)
+    ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
+    executed: dict[int, ExecutedByTests] = field(default_factory=dict)
+    text: dict[int, TextSeen] = field(default_factory=dict)
+    hits: dict[Place, list[Hit]] = field(default_factory=dict)
+    answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
+    unread: dict[Place, bool] = field(default_factory=dict)
+    stand_ins: set[Place] = field(default_factory=set)
+    written_through: set[Place] = field(default_factory=set)
+    unreached: tuple[Place, ...] = ()
+
+    def simulated(self, round: int, test: str) -> float:
+        """Simulated seconds that a test took; 0 without a clock, or if the test let none pass."""
+        return self.ends[round, test].simulated or 0.0

@@ -1,0 +1,179 @@
+"""The contract of a fault in the processes of the tests: one object, which is one mutant in one process.
+
+Mutants of calls and of the program text are such faults of the core. A package names its own subclass of
+``ActiveFault`` in ``mutabot.faults.PlannedMutant.active``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+from mutabot.model.activation import NTH, TEST, Key
+from mutabot.runtime.evidence import Evidence
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from mutabot.model import Mutant
+    from mutabot.operators.command import FatalFault
+
+
+class FaultContext(Protocol):
+    """What a process of the tests offers to its fault."""
+
+    @property
+    def round(self) -> int:
+        """The round, from 0."""
+
+    @property
+    def test(self) -> str:
+        """Node id of the running test; empty before the first one."""
+
+    @property
+    def seconds(self) -> float | None:
+        """Simulated seconds since the first tick of the running test; None without a clock."""
+
+    def untracked(self) -> AbstractContextManager[None]:
+        """A context in which calls of the robot's operations are the fault's own, not the program's.
+
+        The methods of a fault are called in it. What a fault puts into the program is not.
+        """
+
+    def acted(self) -> None:
+        """Tell the campaign that the fault has changed something in the running test."""
+
+
+class ActiveFault(ABC):
+    """One mutant in a process of the tests.
+
+    Its methods are called in this order: ``prepare_process`` once; in each test ``start_test``, ``reach`` for
+    each of its keys but those of the start of a test, and ``end_test``. In a process that was forked for it,
+    all begins where the fork is. What they raise is an error of the mutant, and no kill.
+
+    Class attributes:
+        is_checked: whether an exception that the program or a test meets is an error of the mutant if it
+            comes from the fault's own package. The core's own tell such errors themselves.
+
+    Attributes:
+        mutant: the mutant.
+        data: what its provider has told it, as ``mutabot.model.activation.Activation.data`` has it.
+        context: the process.
+        keys: where it first differs from the original.
+        meant: the exceptions that it has raised for the program on purpose.
+    """
+
+    is_checked: ClassVar[bool] = True
+
+    def __init__(self, mutant: Mutant, data: Any, context: FaultContext) -> None:
+        self.mutant, self.data, self.context = mutant, data, context
+        self.keys: tuple[Key, ...] = ()
+        self.meant: list[BaseException] = []
+        self._evidence = Evidence()
+
+    @property
+    def evidence(self) -> Evidence:
+        """What it did in the running test."""
+        return self._evidence
+
+    def prepare_process(self) -> None:  # noqa: B027  # most have nothing to prepare
+        """Prepare this process; as soon as what the fault awaits is there."""
+
+    @abstractmethod
+    def start_test(self, test: str, random: Random) -> None:
+        """A test begins, before its fixtures; or, in a process that was just forked, it goes on from here.
+
+        Args:
+            test: its node id.
+            random: of all that the fault draws in this test.
+        """
+
+    def reach(self, key: Key) -> None:  # noqa: B027  # most are in place from the start of a test
+        """The running test has reached a key of the fault's: from here on it may differ from the original."""
+
+    @abstractmethod
+    def end_test(self) -> None:
+        """The test and its fixtures are over: take the fault away."""
+
+    def begin_count(self) -> None:
+        """A test begins: what the fault did is counted anew."""
+        self._evidence = Evidence()
+
+    def reached(self) -> None:
+        """Report that the running test used the fault's target unchanged."""
+        self._evidence.hits += 1
+
+    def acts(self, before: Any = None, after: Any = None) -> None:
+        """Report that the running test used the fault's target, and that the fault changed it."""
+        self._evidence.hits += 1
+        self._evidence.acted += 1
+        if self._evidence.acted == 1:
+            self._evidence.example = (_plain(before), _plain(after))
+            self.context.acted()
+
+    def raising(self, error: BaseException) -> BaseException:
+        """Say that the program is to meet this exception: ``raise self.raising(TimeoutError("no answer"))``.
+
+        Any other that this fault's code raises is an error of the mutant.
+        """
+        self.meant.append(error)
+        return error
+
+
+class _ControlFault(ActiveFault):
+    """A control: it is reached where the mutants at its place first differ."""
+
+    is_checked: ClassVar[bool] = False
+
+    @property
+    def is_of_start(self) -> bool:
+        """Whether it is reached as a test begins."""
+        return all((key[2] if key[0] == NTH else key)[0] == TEST for key in self.keys)
+
+    def start_test(self, test: str, random: Random) -> None:
+        """At the start of each test, if that is its place."""
+        if self.is_of_start:
+            self.control()
+
+    def reach(self, key: Key) -> None:
+        """At each of its keys."""
+        self.control()
+
+    def end_test(self) -> None:
+        """Nothing was put in place."""
+
+    def control(self) -> None:
+        """What it does there."""
+
+
+class IdentityControl(_ControlFault):
+    """The control that changes nothing."""
+
+    def control(self) -> None:
+        """It is reached."""
+        self.reached()
+
+
+class FatalControl(_ControlFault):
+    """The control by which every test fails."""
+
+    def control(self) -> None:
+        """It raises."""
+        self.acts()
+        raise self.error
+
+    @property
+    def error(self) -> FatalFault:
+        """What it raises."""
+        from mutabot.operators.command import FatalFault  # noqa: PLC0415  # once in a campaign
+
+        return FatalFault(f"control: {self.mutant.site.place} fails")
+
+
+def _plain(value: Any) -> Any:
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    from mutabot.runtime.observation.probes import opaque  # noqa: PLC0415  # slow, and of no use to most
+
+    return opaque(value)

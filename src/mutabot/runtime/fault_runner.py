@@ -1,0 +1,182 @@
+"""Runs the fault of this process: makes it when what it awaits is there, and keeps its errors apart.
+
+Whatever the code of a fault raises is an error of its mutant: no test has noticed anything then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from importlib import import_module
+from random import Random
+from traceback import walk_tb
+from typing import TYPE_CHECKING, Any
+
+import wrapt
+
+from mutabot.errors import in_words
+from mutabot.model import Mutant
+from mutabot.model.activation import AT_ONCE, FIRST_TEST, FIRST_TICK, Activation, Key
+from mutabot.operators.command import FatalFault
+from mutabot.runtime.active_fault import ActiveFault, FatalControl, FaultContext
+from mutabot.runtime.evidence import Evidence, everything
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from mutabot.runtime.interception.trace import Locator
+
+#: modules that stand in for the robot in tests
+_MOCKS = "unittest.mock"
+
+
+@dataclass(slots=True)
+class FaultRunner:
+    """The fault of this process, if it has one.
+
+    Attributes:
+        context: what the fault is given.
+        random_of: makes the random numbers of a mutant in the running test.
+        activation: how the mutant becomes active; None for the original.
+        fatal: what the fatal control raised as the running test began: its setup is to fail with it.
+    """
+
+    context: FaultContext
+    random_of: Callable[[Mutant], Random]
+    activation: Activation | None = None
+    fatal: FatalFault | None = None
+    _mutant: Mutant | None = None
+    _fault: ActiveFault | None = None
+    _failure: str | None = None
+    _is_in_test: bool = False
+
+    def take_on(self, mutant: Mutant, activation: Activation) -> None:
+        """Be this mutant from here on, also within a test that has begun."""
+        self._mutant, self.activation = mutant, activation
+        self._is_in_test = bool(self.context.test)
+        awaited = activation.awaits
+        if awaited == AT_ONCE or (awaited in (FIRST_TEST, FIRST_TICK) and self._is_in_test):
+            self._make()
+        elif awaited not in (FIRST_TEST, FIRST_TICK):
+            wrapt.register_post_import_hook(lambda module: self._make(), awaited)
+
+    @property
+    def evidence(self) -> Evidence:
+        """What it did in the running test."""
+        found = Evidence()
+        if self._fault is not None:
+            with self._guarded("asked what it did"):
+                found = _checked(self._fault.evidence)
+        return found if self._failure is None else replace(found, failure=self._failure)
+
+    def start_test(self) -> None:
+        """A test begins."""
+        self.fatal, self._is_in_test = None, True
+        if self._fault is None and self.activation is not None and self.activation.awaits == FIRST_TEST:
+            self._make()
+        elif self._fault is not None:
+            self._start(self._fault)
+
+    def tick(self) -> None:
+        """The program's clock has begun."""
+        if self._fault is None and self.activation is not None and self.activation.awaits == FIRST_TICK:
+            self._make()
+
+    def reach(self, key: Key) -> None:
+        """The running test has reached a key. Raises FatalFault for the fatal control."""
+        fault = self._fault
+        if fault is None or key not in fault.keys:
+            return None
+        if isinstance(fault, FatalControl):
+            return fault.reach(key)
+        with self._guarded("put in place"), self.context.untracked():
+            fault.reach(key)
+        return None
+
+    def end_test(self) -> None:
+        """The test and its fixtures are over; what the fault did is asked after this."""
+        self._is_in_test = False
+        if self._fault is not None:
+            with self._guarded("taken away"), self.context.untracked():
+                self._fault.end_test()
+
+    def _make(self) -> None:
+        """Make the fault, once; within a test, it begins there."""
+        if self._fault is not None or self._failure is not None:
+            return
+        with self._guarded("put in place"), self.context.untracked():
+            self._fault = self._made()
+            self._fault.prepare_process()
+        if self._fault is not None and self._is_in_test:
+            self._start(self._fault)
+
+    def _start(self, fault: ActiveFault) -> None:
+        with self._guarded("put in place"), self.context.untracked():
+            fault.begin_count()
+            fault.start_test(self.context.test, self.random_of(fault.mutant))
+
+    @contextmanager
+    def _guarded(self, what: str) -> Iterator[None]:
+        """A provider may fail in any way: that is an error of its mutant, and says nothing of the tests."""
+        try:
+            yield
+        except BaseException as error:
+            if isinstance(error, FatalFault) and isinstance(self._fault, FatalControl):
+                self.fatal = error
+                return
+            operator = self._mutant.operator if self._mutant is not None else ""
+            self._failure = self._failure or f"{operator} cannot be {what}: {in_words(error)}"
+
+    def failure_in(self, error: BaseException, robots: Collection[str], locator: Locator) -> str | None:
+        """How its own code failed, if that is where an exception comes from that a test or process met.
+
+        Args:
+            error: the exception.
+            robots: the modules of the operations that are mutated.
+            locator: knows the files of the program and its tests.
+        """
+        fault = self._fault
+        if fault is None or not fault.is_checked:
+            return None
+        meant = {*map(id, fault.meant)}
+        for one in everything(error):
+            frames = (frame for frame, _ in reversed(list(walk_tb(one.__traceback__))))
+            told = (_is_own(frame, type(fault).__module__, robots, locator) for frame in frames)
+            # the nearest to the raise decides that is the fault's, the robot's, the program's or a test's
+            if id(one) not in meant and next((is_own for is_own in told if is_own is not None), False):
+                return f"{fault.mutant.operator} fails at work: {in_words(one)}"
+        return None
+
+    def _made(self) -> ActiveFault:
+        assert self._mutant is not None
+        assert self.activation is not None
+        module, _, name = self.activation.reference.partition(":")
+        made: Any = getattr(import_module(module), name)(self._mutant, self.activation.data, self.context)
+        if not isinstance(made, ActiveFault):
+            raise TypeError(f"{self.activation.reference} is no mutabot.runtime.active_fault.ActiveFault")
+        made.keys = self.activation.keys
+        return made
+
+
+def _is_own(frame: FrameType, module: str, robots: Collection[str], locator: Locator) -> bool | None:
+    """Whether a frame is of a fault's code, or of its package; None for those that say nothing."""
+    name = str(frame.f_globals.get("__name__", ""))
+    if name in robots:
+        return False
+    if _is_within(name, module.rpartition(".")[0] or module):
+        return True
+    if name.startswith(_MOCKS) or any(_is_within(name, one.partition(".")[0]) for one in robots):
+        return False
+    file = frame.f_code.co_filename
+    return False if locator.is_of_project(file) or locator.role(file) is not None else None
+
+
+def _is_within(name: str, package: str) -> bool:
+    return name == package or name.startswith(f"{package}.")
+
+
+def _checked(evidence: Any) -> Evidence:
+    if not isinstance(evidence, Evidence) or {type(evidence.hits), type(evidence.acted)} != {int}:
+        raise TypeError(f"its evidence is {type(evidence).__name__}, not as ActiveFault keeps it")
+    return evidence

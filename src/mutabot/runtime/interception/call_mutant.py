@@ -1,0 +1,67 @@
+"""A mutant of calls as the fault of its process: it acts where the dispatcher meets its site."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from mutabot.runtime.active_fault import ActiveFault
+from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.interception.active_mutant import ActiveMutant
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from mutabot.model import Mutant
+    from mutabot.runtime.session import Session
+
+
+class CallMutant(ActiveFault):
+    """A mutant of calls in this process."""
+
+    context: Session
+    is_checked: ClassVar[bool] = False
+
+    def __init__(self, mutant: Mutant, data: Any, context: Session) -> None:
+        super().__init__(mutant, data, context)
+        self._is_early = not context.test
+        operation = context.job.vocabulary.operation(mutant.operation)
+        self._active: ActiveMutant | None = None
+        if operation is not None:
+            operation = operation.by_numbers() if mutant.by_number else operation
+            told = (context.acted_in_call, context.in_mutated_call, context.seconds_if_known)
+            self._active = ActiveMutant(mutant, operation, context.refusals_of(operation), *told)
+
+    def prepare_process(self) -> None:
+        """What the program calls while it is imported counts for every test that comes after."""
+        self.context.passing.mutant = self._active
+        if self._is_early:
+            self._start()
+
+    def start_test(self, test: str, random: Random) -> None:
+        """A test begins, or goes on in this process, which was forked in it."""
+        if self._active is not None and self._is_early:
+            self._active.early = self._active.evidence
+        self._is_early = False
+        self._start()
+
+    def _start(self) -> None:
+        if self._active is None:
+            return
+        context, mutant = self.context, self.mutant
+        usual = context.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
+        seed, moment = context.seed_of(mutant), context.moment_of(mutant)
+        self._active.start(seed, context.round, context.test, moment, usual)
+
+    def end_test(self) -> None:
+        """It stays where it is: what runs between tests is mutated as well."""
+
+    def begin_count(self) -> None:
+        """The mutant counts by itself."""
+
+    @property
+    def evidence(self) -> Evidence:
+        """What it did in the running test."""
+        if self._active is None:
+            return Evidence()
+        self._active.look_back()
+        return self._active.evidence

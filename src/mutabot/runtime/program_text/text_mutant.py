@@ -1,0 +1,45 @@
+"""An alternative in the program text as the fault of its process: in place before any import."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+from mutabot.runtime.active_fault import ActiveFault, FaultContext
+from mutabot.runtime.evidence import Evidence
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from mutabot.runtime.program_text.instrument import SessionText
+
+
+class TextContext(FaultContext, Protocol):
+    """A process whose program text can be instrumented."""
+
+    text: SessionText | None
+
+
+class TextMutant(ActiveFault):
+    """An alternative in the program text; its data are the number of its place, and its index there."""
+
+    context: TextContext
+    is_checked: ClassVar[bool] = False
+
+    def prepare_process(self) -> None:
+        """Let it stand for the original."""
+        if self.context.text is not None:
+            self.context.text.alternatives.activate(*self.data)
+
+    def start_test(self, test: str, random: Random) -> None:
+        """The text itself counts from the start of a test."""
+
+    def end_test(self) -> None:
+        """It stays where it is."""
+
+    def begin_count(self) -> None:
+        """The text counts by itself."""
+
+    @property
+    def evidence(self) -> Evidence:
+        """What it did in the running test."""
+        return self.context.text.evidence if self.context.text is not None else Evidence()

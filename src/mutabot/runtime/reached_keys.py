@@ -1,0 +1,71 @@
+"""Which keys the running test reaches: simulated time, calls, and how often.
+
+Only keys that somebody awaits are looked for: the mutants of a fork parent, or the fault of this process. To
+both they are told in the same way, so that a fault begins in a fork where it does in a process of its own.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+
+from mutabot.model.activation import CALL, NTH, TIME, Key, at_time, nth, of_kind
+
+
+class ReachedKeys:
+    """The keys that are awaited in this process.
+
+    Args:
+        told: told the keys that are reached at once; of a call, also its number among those of its site.
+        on_first_tick: told when the clock begins in a test.
+
+    Attributes:
+        asks_calls: whether a call is awaited.
+    """
+
+    def __init__(
+        self, told: Callable[[list[Key], int | None], None], on_first_tick: Callable[[], None]
+    ) -> None:
+        self._told, self._on_first_tick = told, on_first_tick
+        self._times: tuple[float, ...] = ()
+        self._due: list[float] = []
+        self._counted: frozenset[Key] = frozenset()
+        self._counts: Counter[Key] = Counter()
+        self._has_ticked = False
+        self.asks_calls = False
+        self._passed = float("-inf")  # the last moment that was told in this test
+
+    def watch(self, keys: Iterable[Key]) -> None:
+        """Look for these keys from here on."""
+        keys = list(keys)
+        self._counted = frozenset(key[2] for key in of_kind(keys, NTH))
+        every = [*keys, *self._counted]
+        self._times = tuple(sorted({key[1] for key in of_kind(every, TIME)}))
+        self._due = [time for time in self._times if time > self._passed]
+        self.asks_calls = bool(of_kind(every, CALL))
+
+    def start_test(self) -> None:
+        """A test begins."""
+        self._due, self._has_ticked = list(self._times), False
+        self._passed = float("-inf")
+        self._counts.clear()
+
+    def tick(self, seconds: float) -> None:
+        """The clock stands at so many simulated seconds of the running test."""
+        if not self._has_ticked:
+            self._has_ticked = True
+            self._on_first_tick()
+        while self._due and self._due[0] <= seconds:
+            self._passed = self._due.pop(0)
+            self._reach(at_time(self._passed))
+
+    def call(self, key: Key, number: int) -> None:
+        """The program is about to make this call, by its number among those of its site in the test."""
+        self._reach(key, number)
+
+    def _reach(self, key: Key, number: int | None = None) -> None:
+        keys = [key]
+        if self._counted and key in self._counted:
+            self._counts[key] += 1
+            keys.append(nth(self._counts[key], key))
+        self._told(keys, number)

@@ -1,0 +1,158 @@
+"""A provider whose faults begin at a simulated time, in magnitudes, as a package outside brings it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.plugins.test_faults import write
+from tests.plugins.test_plugins import ERRORS, mutabot
+
+#: a box that slides on a belt until friction stops it; the program drives it to a mark
+PROJECT = {
+    "pyproject.toml": """
+        [tool.mutabot]
+        program = ["mission.py"]
+        vocabulary = ["belt.toml"]
+        families = ["world"]
+        """,
+    "belt.toml": """
+        clock = { tick = "belt:Belt.advance", unit = "s" }
+        """,
+    "belt.py": """
+        class Belt:
+            friction = 1.0
+
+            def __init__(self):
+                self.time, self.position = 0.0, 0.0
+
+            def advance(self, speed):
+                self.time += 0.1
+                self.position += 0.1 * speed * type(self).friction
+                return self.time
+        """,
+    "mission.py": """
+        import belt
+
+        def drive(seconds):
+            here = belt.Belt()
+            while here.time < seconds:
+                here.advance(1.0)
+            return here.position
+        """,
+    "conftest.py": "",
+    "tests/test_mission.py": """
+        import belt
+        import mission
+
+        def test_a_short_way():
+            assert abs(mission.drive(0.5) - 0.55) < 0.1
+
+        def test_a_long_way():
+            assert abs(mission.drive(3.0) - 3.0) < 0.5
+
+        def test_the_belt_is_as_it_was():
+            assert belt.Belt.friction == 1.0
+        """,
+}
+PACKAGE = {
+    "slippery.py": """
+        from mutabot.extensions import INTERFACE, Extension
+        from mutabot.faults import FaultProvider, Planned, PlannedMutant
+        from mutabot.model import Mutant, Site
+        from mutabot.model.activation import Activation, at_time
+        from mutabot.model.mutant import Place
+        from mutabot.operators.operator import Rule
+
+        EXTENSION = Extension(interface=INTERFACE, faults={"slippery": "slippery:Slippery"})
+        AT = 1.0
+
+        class Slip(Rule):
+            name = "slip"
+            family = "world"
+            summary = "From a simulated time on, things slip."
+
+        class Slippery(FaultProvider):
+            name = "slippery"
+            families = ("world",)
+            location = "parameter"
+
+            def rules(self):
+                return [Slip()]
+
+            def plan(self, project, prepared, original):
+                planned = Planned()
+                active = Activation("slippery_inside:Slip", {"at": AT}, (at_time(AT),), %(awaits)s)
+                site = Site.of_parameter("belt", "friction")
+                for size in (0.05, 0.5):
+                    mutant = Mutant(
+                        0, "world", "slip", site, "", None, None, f"{size:g}",
+                        f"friction is {size:g} less from {AT:g} s on", magnitude=size, has_sizes=True,
+                        provider="slippery",
+                    )
+                    planned.mutants.append(PlannedMutant(mutant, does=size, active=active))
+                for round, tests in enumerate(original.tests):
+                    reached = [test for test in tests if original.simulated(round, test) >= AT]
+                    planned.reached[round, Place.of(mutant)] = reached
+                return planned
+        """,
+    "slippery_inside.py": """
+        %(head)s
+        from mutabot.runtime.active_fault import ActiveFault
+
+        class Slip(ActiveFault):
+            def start_test(self, test, random):
+                self.before = None
+
+            def reach(self, key):
+                from belt import Belt
+                assert self.context.seconds >= self.data["at"], self.context.seconds
+                self.before = Belt.friction
+                Belt.friction -= self.mutant.magnitude
+                self.acts(self.before, Belt.friction)
+
+            def end_test(self):
+                if self.before is not None:
+                    from belt import Belt
+                    Belt.friction = self.before
+        """,
+    "slippery-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: slippery\nVersion: 1.0\n",
+    "slippery-1.0.dist-info/entry_points.txt": "[mutabot]\nslippery = slippery:EXTENSION\n",
+}
+
+
+def installed(folder: Path, head: str = "", awaits: str = "'<test>'") -> Path:
+    """A folder into which the package is installed."""
+    filled = {name: text % {"head": head, "awaits": awaits} for name, text in PACKAGE.items()}
+    return write(folder / "site", filled)
+
+
+def rounds(folder: Path, site: Path, *options: str) -> dict[str, dict[str, Any]]:
+    """How each mutant ended, by its magnitude."""
+    done = mutabot(site, folder, "run", "--json", "--fresh", *options)
+    assert done.returncode == 0, done.stderr
+    return {one["id"].rpartition("=")[2]: one["rounds"][0] for one in json.loads(done.stdout)["graded"]}
+
+
+@pytest.mark.parametrize("engine", ["fork", "replay"])
+def test_a_fault_begins_at_its_simulated_time(engine: str, tmp_path: Path) -> None:
+    site, project = installed(tmp_path), write(tmp_path / "project", PROJECT)
+    found = rounds(project, site, "--engine", engine)
+    assert {size: (one["verdict"], one["engine"]) for size, one in found.items()} == {
+        "0.05": ("survived", engine), "0.5": ("killed", engine),
+    }  # fmt: skip
+    assert found["0.5"]["test"] == "tests/test_mission.py::test_a_long_way"
+    assert {one["acted"] for one in found.values()} == {1}
+
+
+def test_a_fault_that_needs_a_simulator_waits_until_the_program_has_imported_it(tmp_path: Path) -> None:
+    head = "import sys; assert 'belt' in sys.modules, 'the simulator is not there yet'"
+    project = write(tmp_path / "project", PROJECT)
+    replay = ("--engine", "replay")
+    too_early = mutabot(installed(tmp_path / "a", head, "''"), project, "run", "--json", "--fresh", *replay)
+    assert too_early.returncode == ERRORS
+    assert "slip cannot be put in place: AssertionError: the simulator is not there yet" in too_early.stdout
+    found = rounds(project, installed(tmp_path / "b", head, "'belt'"), *replay)
+    assert {size: one["verdict"] for size, one in found.items()} == {"0.05": "survived", "0.5": "killed"}
