@@ -147,6 +147,50 @@ def test_a_fault_begins_at_its_simulated_time(engine: str, tmp_path: Path) -> No
     assert {one["acted"] for one in found.values()} == {1}
 
 
+#: an engine, and what the fault awaits
+WAYS = [(engine, awaits) for engine in ("fork", "replay") for awaits in ("'belt'", "'<tick>'")]
+#: the same, with the simulator in a process below the tests
+BELOW = {
+    **PROJECT,
+    "mission.py": """
+        import subprocess
+        import sys
+
+        def drive(seconds):
+            words = [sys.executable, "drive.py", str(seconds)]
+            return float(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+        """,
+    "drive.py": """
+        import sys
+        import belt
+
+        here = belt.Belt()
+        while here.time < float(sys.argv[1]):
+            here.advance(1.0)
+        print(here.position)
+        """,
+    "pyproject.toml": PROJECT["pyproject.toml"].replace('"mission.py"', '"mission.py", "drive.py"'),
+}
+
+
+@pytest.mark.parametrize(
+    ("engine", "awaits"),
+    [
+        ("fork", "'belt'"),
+        *(pytest.param(*one, marks=pytest.mark.whole) for one in WAYS if one != ("fork", "'belt'")),
+    ],
+)
+def test_a_process_below_the_tests_has_the_fault_when_it_has_what_that_needs(
+    engine: str, awaits: str, tmp_path: Path
+) -> None:
+    head = "import sys; assert 'belt' in sys.modules, 'the simulator is not there yet'"
+    site, project = installed(tmp_path, head, awaits), write(tmp_path / "project", BELOW)
+    found = rounds(project, site, "--engine", engine)
+    assert {size: (one["verdict"], one["engine"]) for size, one in found.items()} == {
+        "0.05": ("survived", engine), "0.5": ("killed", engine),
+    }  # fmt: skip
+
+
 def test_a_fault_that_needs_a_simulator_waits_until_the_program_has_imported_it(tmp_path: Path) -> None:
     head = "import sys; assert 'belt' in sys.modules, 'the simulator is not there yet'"
     project = write(tmp_path / "project", PROJECT)
