@@ -20,7 +20,7 @@ AUDIT  := $(VENV)-audit
 LOCKS  := $(wildcard requirements*.lock)
 
 # tests of the core that need no example
-CORE    = $(addprefix tests/,model config operators languages results journal campaign/plan plugins \
+CORE    = $(addprefix tests/,model config operators results journal campaign/plan plugins \
     test_extensions.py)
 
 of_ros  = $(wildcard $(addsuffix /test_ros$(1)*.py,tests/packages/ros tests/packages/ros/* tests/packages/ros_in_process))

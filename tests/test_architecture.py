@@ -24,7 +24,7 @@ ALLOWED = {
     "repository": set(),
     "shared_memory": set(),
     "model": {"errors", "extensions", "families", "limits"},
-    "languages": {"model"},
+    "languages": {"extensions", "model"},
     "operators": {"errors", "extensions", "families", "model"},
     "config": {"errors", "extensions", "families", "limits", "model", "operators", "faults"},
     "evidence": {"model"},

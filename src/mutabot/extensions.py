@@ -39,7 +39,7 @@ _OF_OWN_PACKAGES = {
     "operators": dict.fromkeys(("catalogue", "middleware"), "mutabot_catalogue"),
 }
 #: kinds of parts that processes of the tests need
-_OF_PROCESSES = ("operators", "middlewares", "environments", "futures", "failures")
+_OF_PROCESSES = ("operators", "middlewares", "environments", "futures", "failures", "languages")
 #: kinds of parts that are code or data of a package
 _REFERRING = (
     *_OF_PROCESSES, "vocabularies", "executors", "templates", "tables", "commands", "formats", "sections",
@@ -101,6 +101,8 @@ class Extension:
         simulations: subclasses of ``mutabot.campaign.simulation.SimulatedMiddleware``, by their names: what
             campaigns may run the tests over instead of the real middleware.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
+        languages: objects that keep ``mutabot.languages.front_end.FrontEnd``, by the languages' names: robot
+            programs in them run in an interpreter that is written in Python.
     """
 
     interface: int
@@ -120,6 +122,7 @@ class Extension:
     sections: Mapping[str, str] = field(default_factory=dict)
     simulations: Mapping[str, str] = field(default_factory=dict)
     faults: Mapping[str, str] = field(default_factory=dict)
+    languages: Mapping[str, str] = field(default_factory=dict)
 
 
 @frozen

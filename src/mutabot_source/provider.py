@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mutabot.faults import FaultProvider, Planned, Preparation, Project
-from mutabot.languages.front_end import program_files
+from mutabot.languages.registry import program_files
 from mutabot.model.mutant import Place, ProgramText
 from mutabot.original import Original, TextSeen
 

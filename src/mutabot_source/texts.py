@@ -10,9 +10,9 @@ from importlib.util import decode_source
 from itertools import chain
 from pathlib import Path
 
-from mutabot.languages.front_end import front_end_of
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
+from mutabot.languages.registry import front_end_of
 from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPlace
 from mutabot.model.source_units import digest
 

@@ -92,6 +92,9 @@ class Process:
     def untracked(self) -> AbstractContextManager[None]:
         return nullcontext()
 
+    def change_file(self, path: str, content: bytes) -> None:
+        raise AssertionError("this one changes none")
+
     def acted(self) -> None:
         self.told.append("acted")
 

@@ -28,7 +28,7 @@ from mutabot.extensions import brought
 from mutabot.families import CALLS, MESSAGES
 from mutabot.journal.files import at_work, refuse_tracked
 from mutabot.journal.journal import Journal, kept_original
-from mutabot.languages.front_end import program_files
+from mutabot.languages.registry import program_files
 from mutabot.model.codec import to_data
 from mutabot.model.events import Remark
 from mutabot.model.mutant import Place

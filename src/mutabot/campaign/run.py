@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
-from importlib.util import decode_source
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +37,7 @@ from mutabot.execution.interruption import interruptions_kept
 from mutabot.faults import PlannedMutant
 from mutabot.journal import records
 from mutabot.journal.journal import Journal, JournalReader
+from mutabot.languages.registry import front_end_of
 from mutabot.model.activation import Activation
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
@@ -269,7 +269,7 @@ def _text_of(file: Path) -> str:
     """A program text with ``\\n`` at the ends of lines, as far as it can be read."""
     source = file.read_bytes()
     try:
-        return decode_source(source)
+        return front_end_of(str(file)).text_of(source)
     except (SyntaxError, ValueError):
         return source.decode("utf-8", "replace")
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.errors import SelectionError, nearest_name
 from mutabot.faults import known_families
-from mutabot.languages.front_end import program_files
+from mutabot.languages.registry import program_files
 from mutabot.model.mutant import Role, fits, is_like, means_numbers
 from mutabot.operators import registry
 

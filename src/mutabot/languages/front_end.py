@@ -1,25 +1,20 @@
-"""The contract of a language's front end, and the front ends there are.
+"""The contract of a language's front end.
 
 A site is a call at its exact place. A front end tells where the running call stands, and, without running
 anything, what is written there.
 
-A language is one file in this folder with its front end as ``FRONT_END``. It runs beside the robot program
-too, so it may import the standard library and ``mutabot.model`` only. An interpreter in Python runs a program
-in another language; its front end knows the interpreter's frames. Only Python has mutants of its text.
+Python's is here; a package brings others under ``languages`` of its ``Extension``. An interpreter in Python
+runs a program in another language, and its front end knows the interpreter's frames. A front end works beside
+the robot program too: what it imports is imported there.
 """
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Mapping
-from functools import cache
-from importlib import import_module
+from collections.abc import Mapping
 from types import FrameType
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from mutabot.model.mutant import Extent
 
 
@@ -52,7 +47,13 @@ class FrontEnd(Protocol):
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """How its files end, such as ``.py``."""
+        """How its files end, such as ``.py``, in lower case; capital letters in a file's name are equal."""
+
+    def text_of(self, content: bytes) -> str:
+        """The text of a file, by the encoding that the language has.
+
+        Raises SyntaxError or ValueError for a file that it cannot read.
+        """
 
     def names(self, source: str) -> Mapping[Extent, SiteName]:
         """Names of all that may be a site in a file.
@@ -68,29 +69,3 @@ class FrontEnd(Protocol):
 
         Asked at every call of an operation; of Python once for each place.
         """
-
-
-@cache
-def front_ends() -> tuple[FrontEnd, ...]:
-    """All of them; Python is the last, since the frames of an interpreter are Python's as well."""
-    files = os.listdir(os.path.dirname(__file__))
-    names = {file[:-3] for file in files if file.endswith(".py")} - {"__init__", "front_end", "python"}
-    return tuple(import_module(f"{__package__}.{name}").FRONT_END for name in (*sorted(names), "python"))
-
-
-def front_end_of(file: str) -> FrontEnd:
-    """That of a file's language, by how the file ends; files of no known language are taken for Python."""
-    return next((one for one in front_ends() if file.endswith(one.suffixes)), front_ends()[-1])
-
-
-def program_files(root: Path, program: Iterable[str]) -> list[str]:
-    """The program's files among the configured files and folders, relative to ``root``, each once."""
-    suffixes = tuple(suffix for one in front_ends() for suffix in one.suffixes)
-    files: dict[str, None] = {}
-    for name in program:
-        path = root / name
-        found = (
-            [file for file in path.rglob("*") if file.name.endswith(suffixes)] if path.is_dir() else [path]
-        )
-        files |= dict.fromkeys(file.relative_to(root).as_posix() for file in sorted(found))
-    return list(files)

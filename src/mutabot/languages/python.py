@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping, Sequence
+from importlib.util import decode_source
 from types import CodeType, FrameType
 from typing import TYPE_CHECKING, TypeVar
 
@@ -22,6 +23,10 @@ class Python:
     """The front end for Python."""
 
     suffixes = (".py",)
+
+    def text_of(self, content: bytes) -> str:
+        """The text of a file, by its encoding declaration and with newlines as Python reads them."""
+        return decode_source(content)
 
     def names(self, source: str) -> Mapping[Extent, SiteName]:
         """Names of all expressions: a call by the text of its callee, all others by their own.

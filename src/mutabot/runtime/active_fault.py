@@ -44,6 +44,20 @@ class FaultContext(Protocol):
     def acted(self) -> None:
         """Tell the campaign that the fault has changed something in the running test."""
 
+    def change_file(self, path: str, content: bytes) -> None:
+        """Give a file of the project another content, for this process and all below it.
+
+        To be called in ``prepare_process`` of a fault that is made at once (``AT_ONCE``), if the program
+        imports the file or reads it while it is imported. Processes below the tests find it changed.
+
+        Args:
+            path: relative to the project's root, with ``/``.
+            content: all that is to be in the file.
+
+        Raises OSError if the file cannot be written, or if this process has no files of its own: the user's
+        are never changed.
+        """
+
 
 class ActiveFault(ABC):
     """One mutant in a process of the tests.

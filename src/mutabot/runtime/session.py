@@ -38,6 +38,7 @@ if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import EventWriter
     from mutabot.runtime.interception.active_mutant import ActiveMutant
+    from mutabot.runtime.isolation.files import PrivateFiles
     from mutabot.runtime.isolation.fork_parent import ForkParent
     from mutabot.runtime.program_text.returns import Returns
 
@@ -66,6 +67,7 @@ class Session:
         noted: in the baseline, calls of the running test that the robot refused, or that returned its memory.
         on_noted: told of each of them; None if nobody asks.
         fault: the fault of this process; idle in the original's.
+        files: what keeps the files of this process apart; None in processes below the tests.
         fork_parent: forks for each mutant, while this process runs the original; else None.
     """
 
@@ -81,6 +83,7 @@ class Session:
         self.inspection = Inspection(job.vocabulary, job.inspect, self._send)
         self.fault = FaultRunner(self, lambda mutant: Random(self.seed_of(mutant)))
         self.fork_parent: ForkParent | None = None
+        self.files: PrivateFiles | None = None
         self.reached = ReachedKeys(self._reach, self.fault.tick)
         self.callables = Callables(self.inspection.target_is_wrong)
         self.messages: Messages | None = None
@@ -318,6 +321,11 @@ class Session:
         self.reached.start_test()
         self.fault.start_test()
         self.recording.start(test, is_wanted=self.job.evidence)
+
+    def change_file(self, path: str, content: bytes) -> None:
+        """See ``FaultContext.change_file``."""
+        if self.files is not None:  # else this process is below one that has changed it
+            self.files.change(path, content)
 
     def _aside(self) -> Untracked:
         """What is done in this context is none of the program's doing."""

@@ -110,7 +110,7 @@ class SessionHooks:
 
     def _make_private(self, job: Job, home: str) -> None:
         root = os.path.realpath(job.root)
-        self._files = PrivateFiles(root, os.path.realpath(home))
+        self._files = self.session.files = PrivateFiles(root, os.path.realpath(home))
         if job.private_files and self._files.make() is None:
             # it removes old folders of pytest's, which are there again for the next process
             _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None

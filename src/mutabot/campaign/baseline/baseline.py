@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from importlib.util import decode_source
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +16,9 @@ from mutabot.campaign.comparison import Observation, TraceCall, as_steady
 from mutabot.families import CALLS, CONTROL, MESSAGES
 from mutabot.faults import Planned, PlannedMutant, Preparation
 from mutabot.journal.records import Untested
-from mutabot.languages.front_end import SiteName, front_end_of
+from mutabot.languages.front_end import SiteName
 from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.languages.registry import front_end_of
 from mutabot.model.activation import Activation
 from mutabot.model.events import Remark, SiteSeen, TestEnd
 from mutabot.model.job import RefusedAt
@@ -117,7 +117,7 @@ class Sources:
         """What is found in the text of a file; None for one that cannot be read."""
         if (file, find) not in self._read:
             try:
-                found = find(decode_source((self.root / file).read_bytes()))
+                found = find(front_end_of(file).text_of((self.root / file).read_bytes()))
             except (OSError, SyntaxError, ValueError):
                 found = None
             self._read[file, find] = found

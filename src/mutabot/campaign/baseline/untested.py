@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 from mutabot.campaign.baseline.named_calls import KnownCalls, NamedCall, calls_in
 from mutabot.frozen import frozen
 from mutabot.journal.records import Untested, UntestedCall
-from mutabot.languages.front_end import front_end_of, program_files
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
+from mutabot.languages.registry import front_end_of, program_files
 from mutabot.model import Operation, Role, Span
 from mutabot.model.mutant import Place
 from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, functions_of, together

@@ -13,8 +13,8 @@ from types import CodeType, FrameType
 from typing import TYPE_CHECKING, Any
 
 from mutabot.evidence.recording import RecordedCall
-from mutabot.languages.front_end import SourcePosition, front_ends
 from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.languages.registry import front_ends
 from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.answer import NotKeptError, is_plain, keep
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
@@ -24,6 +24,7 @@ from mutabot.runtime.interception.adapter import SiteCall, call_context
 from mutabot.runtime.interception.frames import borders, is_within_border
 
 if TYPE_CHECKING:
+    from mutabot.languages.front_end import SourcePosition
     from mutabot.runtime.targets.target import CallPlace
 
 #: stands for an answer that cannot be kept and that the program waits for: it never comes

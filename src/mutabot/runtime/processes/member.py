@@ -93,6 +93,9 @@ class TextOnly:
         """No calls are tracked."""
         return nullcontext()
 
+    def change_file(self, path: str, content: bytes) -> None:
+        """The test process has done so."""
+
     def acted(self) -> None:
         """The mutant changed something for the first time in a test."""
         self.pipe.send(events.Acted(self.test))

@@ -1,0 +1,45 @@
+"""The languages of robot programs that there are: Python, and those of packages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from typing import TYPE_CHECKING
+
+from mutabot.extensions import brought
+from mutabot.languages.python import FRONT_END
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from mutabot.languages.front_end import FrontEnd
+
+
+@cache
+def front_ends() -> tuple[FrontEnd, ...]:
+    """All of them; Python is the last, since the frames of an interpreter are Python's as well.
+
+    Raises ExtensionError for one of a package that cannot be loaded.
+    """
+    return (*(part.load() for part in brought("languages").values()), FRONT_END)
+
+
+def front_end_of(file: str) -> FrontEnd:
+    """That of a file's language, by how the file ends; files of no known language are taken for Python."""
+    name = file.lower()
+    return next((one for one in front_ends() if name.endswith(one.suffixes)), front_ends()[-1])
+
+
+def program_files(root: Path, program: Iterable[str]) -> list[str]:
+    """The program's files among the configured files and folders, relative to ``root``, each once."""
+    suffixes = tuple(suffix for one in front_ends() for suffix in one.suffixes)
+    files: dict[str, None] = {}
+    for name in program:
+        path = root / name
+        found = (
+            [file for file in path.rglob("*") if file.name.lower().endswith(suffixes)]
+            if path.is_dir()
+            else [path]
+        )
+        files |= dict.fromkeys(file.relative_to(root).as_posix() for file in sorted(found))
+    return list(files)
