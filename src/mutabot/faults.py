@@ -13,7 +13,7 @@ campaign without its mutants has no use for is to be imported with it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -44,6 +44,8 @@ class Project:
         families: the families that are asked for.
         moments: at which of its calls a mutant of calls acts, a mutant each; None for every call.
         demands: of which magnitudes users speak: these are planted, whatever the families.
+        tables: the tables of packages that the configuration has, by name: each an object of the class that
+            the package names under ``tables`` of its ``Extension``.
     """
 
     root: Path = Path()
@@ -52,6 +54,7 @@ class Project:
     families: tuple[str, ...] = ()
     moments: tuple[Moment | None, ...] = (None,)
     demands: tuple[Demand, ...] = ()
+    tables: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(slots=True)

@@ -17,6 +17,7 @@ PROJECT = {
         program = ["mission.py"]
         vocabulary = ["belt.toml"]
         families = ["world"]
+        slippery = { at = 1.0 }
         """,
     "belt.toml": """
         clock = { tick = "belt:Belt.advance", unit = "s" }
@@ -66,8 +67,11 @@ PACKAGE = {
         from mutabot.model.mutant import Place
         from mutabot.operators.operator import Rule
 
-        EXTENSION = Extension(interface=INTERFACE, faults={"slippery": "slippery:Slippery"})
-        AT = 1.0
+        EXTENSION = Extension(
+            interface=INTERFACE,
+            faults={"slippery": "slippery:Slippery"},
+            tables={"slippery": "slippery_table:Slip"},
+        )
 
         class Slip(Rule):
             name = "slip"
@@ -83,20 +87,28 @@ PACKAGE = {
                 return [Slip()]
 
             def plan(self, project, prepared, original):
-                planned = Planned()
-                active = Activation("slippery_inside:Slip", {"at": AT}, (at_time(AT),), %(awaits)s)
+                planned, at = Planned(), project.tables["slippery"].at
+                active = Activation("slippery_inside:Slip", {"at": at}, (at_time(at),), %(awaits)s)
                 site = Site.of_parameter("belt", "friction")
                 for size in (0.05, 0.5):
                     mutant = Mutant(
                         0, "world", "slip", site, "", None, None, f"{size:g}",
-                        f"friction is {size:g} less from {AT:g} s on", magnitude=size, has_sizes=True,
+                        f"friction is {size:g} less from {at:g} s on", magnitude=size, has_sizes=True,
                         provider="slippery",
                     )
                     planned.mutants.append(PlannedMutant(mutant, does=size, active=active))
                 for round, tests in enumerate(original.tests):
-                    reached = [test for test in tests if original.simulated(round, test) >= AT]
+                    reached = [test for test in tests if original.simulated(round, test) >= at]
                     planned.reached[round, Place.of(mutant)] = reached
                 return planned
+        """,
+    "slippery_table.py": """
+        from pydantic import Field
+
+        from mutabot.config.table import Table
+
+        class Slip(Table):
+            at: float = Field(1.0, description="Simulated seconds.", examples=["1.0"])
         """,
     "slippery_inside.py": """
         %(head)s

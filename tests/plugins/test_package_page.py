@@ -56,7 +56,9 @@ def test_its_operator_executor_and_format_are_at_work(installed: Path, project: 
 
 
 def test_its_fault_of_the_world_is_at_work(installed: Path, tmp_path: Path) -> None:
-    found = mutants(mutabot(installed, write(tmp_path, BELT), "run", "--json"))
+    configuration = BELT["pyproject.toml"].replace("slippery = { at = 1.0 }\n", "\n")
+    project = write(tmp_path, {**BELT, "pyproject.toml": configuration})
+    found = mutants(mutabot(installed, project, "run", "--json"))
     end = found["slip"]["rounds"][0]
     assert (end["verdict"], end["engine"], end["acted"]) == ("killed", "fork", 1)
     assert end["test"] == "tests/test_mission.py::test_a_long_way"

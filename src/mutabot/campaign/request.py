@@ -169,6 +169,7 @@ class Request:
             self.families,
             self.moments,
             self.configuration.demands,
+            self.configuration.tables,
         )
 
     @property
