@@ -134,6 +134,15 @@ def test_patches_of_several_files_are_judged_and_the_users_files_stay(tmp_path: 
     assert "../elsewhere.py cannot be changed: it is no file of the project" in found["outside"]["message"]
     assert {file: file.read_bytes() for file in before} == before
     assert not (tmp_path / "elsewhere.py").exists()
+    assert "4 mutants that are active before any point at which they could be forked" in done.stderr
+    # a patch stands in no one file: reports name none
+    (line,) = mutabot(site, project, "report", "--format", "github").stdout.splitlines()
+    assert line.startswith("::warning title=Survivor 2%3A patch (program)::force: survived in round 1.")
+    (told,) = json.loads(mutabot(site, project, "report", "--format", "sarif").stdout)["runs"]
+    (result,) = told["results"]
+    assert result["locations"] == [
+        {"logicalLocations": [{"fullyQualifiedName": "patches:force", "kind": "variable"}]}
+    ]
 
 
 def test_a_patch_that_only_a_process_below_the_tests_can_show_is_noticed(tmp_path: Path) -> None:

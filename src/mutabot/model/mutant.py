@@ -180,16 +180,21 @@ class Site:
         return cls(Span(owner, 0, 0, 0, 0, ""), name, 1, Role.PROGRAM)
 
     @property
+    def is_in_file(self) -> bool:
+        """Whether it stands in a file: a parameter does not."""
+        return self.span.line > 0
+
+    @property
     def id(self) -> str:
         """The part of a mutant's id that names the site; stable under edits elsewhere."""
-        if not self.span.line:
+        if not self.is_in_file:
             return f"{self.span.file}:{self.text}"
         return f"{self.span.file}:{self.span.function}:{self.text}#{self.occurrence}"
 
     @property
     def place(self) -> str:
         """``file:line:column`` with the 1-based column that editors show."""
-        if not self.span.line:
+        if not self.is_in_file:
             return f"{self.span.file}:{self.text}"
         return f"{self.span.file}:{self.span.line}:{self.span.column + 1}"
 

@@ -221,8 +221,8 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
         where = f"no forks in {in_short(names, 1)}" if names[0] else "no forks while the program is imported"
         campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
     if left.apart:
-        text = "each is in place from the start of each test, in a process of its own"
-        campaign.progress.note(f"{len(left.apart)} mutants: {text}")
+        text = "that are active before any point at which they could be forked run in processes of their own"
+        campaign.progress.note(f"{len(left.apart)} mutants {text}")
     for note in left.notes:
         campaign.progress.note(note)
 

@@ -46,7 +46,9 @@ def _annotation(level: str, result: MutantResult, material: Material) -> str:
     span = mutant.site.span
     place = material.place(span)
     where = {"file": material.path(span.file), "line": str(place.line), "endLine": str(place.end_line)}
-    if place.end_column is not None and place.line == place.end_line:  # columns are of one line only
+    if not mutant.site.is_in_file:  # the step as a whole has the annotation then
+        where = {}
+    elif place.end_column is not None and place.line == place.end_line:  # columns are of one line only
         where |= {"col": str(place.column), "endColumn": str(place.end_column)}
     where["title"] = f"Survivor {mutant.number}: {mutant.operator} ({mutant.site.role})"
     properties = ",".join(f"{name}={_property(value)}" for name, value in where.items())

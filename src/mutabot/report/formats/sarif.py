@@ -12,7 +12,7 @@ from mutabot.report.format import Material, utf16
 from mutabot.report.texts import survivor_text
 
 if TYPE_CHECKING:
-    from mutabot.model import Mutant, Span
+    from mutabot.model import Mutant, Site
     from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -91,7 +91,7 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
         "ruleIndex": rules[mutant.operator],
         "level": _level(result),
         "message": {"text": _message(survivor_text(result))},
-        "locations": [_location(mutant.site.span, material)],
+        "locations": [_location(mutant.site, material)],
         "partialFingerprints": {_FINGERPRINT: mutant.id},
         "properties": {"mutant": mutant.id, "number": mutant.number},
     }
@@ -105,7 +105,10 @@ def _level(result: MutantResult) -> str:
     return "error" if differs else "warning"
 
 
-def _location(span: Span, material: Material) -> dict[str, Any]:
+def _location(site: Site, material: Material) -> dict[str, Any]:
+    if not site.is_in_file:
+        return {"logicalLocations": [{"fullyQualifiedName": site.id, "kind": "variable"}]}
+    span = site.span
     place = material.place(span, utf16)
     region: dict[str, Any] = {"startLine": place.line, "endLine": place.end_line}
     if place.text is not None:
