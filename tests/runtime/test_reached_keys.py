@@ -75,6 +75,6 @@ def test_calls_are_only_told_if_somebody_awaits_one(keys: tuple[Key, ...], asks:
 
 def test_a_control_is_where_its_fault_is() -> None:
     fault = Activation("package:Fault", {"size": 1}, (at_time(3.0),), "mujoco")
-    assert fault.control("fatal") == Activation(FATAL_CONTROL, {"size": 1}, (at_time(3.0),), "mujoco")
+    assert fault.control(is_fatal=True) == Activation(FATAL_CONTROL, {"size": 1}, (at_time(3.0),), "mujoco")
     text = Activation.of_text(7, 2)
-    assert [text.control(name).data for name in ("identity", "fatal")] == [(7, -1), (7, -2)]
+    assert [text.control(is_fatal=one).data for one in (False, True)] == [(7, -1), (7, -2)]

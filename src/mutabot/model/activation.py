@@ -98,10 +98,9 @@ class Activation:
         )
         return replace(own, identity=identity, fatal=fatal)
 
-    def control(self, name: str) -> Activation:
-        """The control of this name, ``identity`` or ``fatal``, at the same place."""
-        own = self.identity if name == "identity" else self.fatal
-        reference = IDENTITY_CONTROL if name == "identity" else FATAL_CONTROL
+    def control(self, *, is_fatal: bool = False) -> Activation:
+        """The control at the same place that changes nothing, or the fatal one."""
+        own, reference = (self.fatal, FATAL_CONTROL) if is_fatal else (self.identity, IDENTITY_CONTROL)
         return own or Activation(reference, self.data, self.keys, self.awaits)
 
     @property

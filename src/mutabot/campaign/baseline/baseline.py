@@ -23,6 +23,7 @@ from mutabot.model.activation import Activation
 from mutabot.model.events import Remark, SiteSeen, TestEnd
 from mutabot.model.job import RefusedAt
 from mutabot.model.mutant import Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
+from mutabot.operators.command import Identity
 from mutabot.original import Original
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class PlantedFaults:
     def active(self, mutant: Mutant) -> Activation:
         """How a mutant, or a control at the place of one, becomes active."""
         if mutant.family == CONTROL:
-            return self._at_place[Place.of(mutant)].control(mutant.operator)
+            return self._at_place[Place.of(mutant)].control(is_fatal=mutant.operator != Identity.name)
         found = self.by_id[mutant.id].active
         assert found is not None  # else it was left out
         return found

@@ -211,7 +211,7 @@ class ForkParent:
         """The identity at this mutant's place, which shows what forking alone does to the test."""
         self._test_controls += 1
         name = Identity.name
-        self._of_control = self.active[mutant.id].control(name)
+        self._of_control = self.active[mutant.id].control()
         return Mutant(
             0, Identity.family, name, mutant.site, mutant.operation, mutant.pattern, None, self._test, name,
             provider=mutant.provider,
