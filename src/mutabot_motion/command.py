@@ -16,7 +16,7 @@ from typing import Annotated
 import typer
 
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import anew
+from mutabot.campaign.run import with_fresh_baseline
 from mutabot.cli import options
 from mutabot.cli.campaign import number_of
 from mutabot.cli.output import progress_shown, tell
@@ -195,7 +195,7 @@ def motion(
 def _film(request: Request, mutant: Mutant, shown: Shown, file: Path, progress: Progress) -> Iterator[str]:
     """Film the test and the round that are shown. Returns what is to be said about it."""
     with TemporaryDirectory(prefix="mutabot-film-") as folder:
-        with anew(request, mutant, shown.round, progress) as (campaign, now):
+        with with_fresh_baseline(request, mutant, shown.round, progress) as (campaign, now):
             choose_graphics()  # for what is filmed alone
             original, other = film(campaign, now, shown.round, shown.test, Path(folder))
         shown = replace(

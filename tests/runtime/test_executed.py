@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.campaign.beginning import at_it, begin
+from mutabot.campaign.beginning import begin, locked_executor
 from mutabot.campaign.campaign import Campaign
 from mutabot.execution.task import Result
 from mutabot.model.source_units import ALL_FILES, ExecutedByTests, File
@@ -85,7 +85,7 @@ def taken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Campaign, list[Resu
         more={"tests/goals.txt": "0.5\n", "lib/site-packages/asks_its_system.py": ASKS},
     )
     request = request_for(folder, engine="replay")
-    with at_it(request, Quiet()) as opened:
+    with locked_executor(request, Quiet()) as opened:
         return begin(request, opened, Quiet())
 
 

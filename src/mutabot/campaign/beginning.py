@@ -56,8 +56,8 @@ def open_executor(request: Request, progress: Progress) -> AbstractContextManage
 
 
 @contextmanager
-def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
-    """The same, while the project is locked and Ctrl-C takes effect where it is safe.
+def locked_executor(request: Request, progress: Progress) -> Iterator[Executor]:
+    """Open what runs the tasks of a campaign; meanwhile the project is locked, and Ctrl-C waits until it is safe.
 
     Raises UsageError if the system allows too few open files.
     """
@@ -93,7 +93,7 @@ def begin(
 
     def take(request: Request, executor: Executor, least: int = 0) -> tuple[Campaign, list[Result]]:
         repetitions = max(request.repetitions, least)
-        runs = original.over(executor, request) if original is not None else executor
+        runs = original.runs_by(executor, request) if original is not None else executor
         baseline, results = take_baseline(request, runs, progress, prepared=prepared, repetitions=repetitions)
         refuse_unfit(baseline, request.vocabulary)
         return Campaign(request, baseline, executor, progress, evidence), results
@@ -177,7 +177,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     Returns the mutants, what is left out, and what no test reaches.
     """
     path = request.journal_path
-    with at_it(request, progress) as opened, ExitStack() as stack:
+    with locked_executor(request, progress) as opened, ExitStack() as stack:
         with OriginalRuns(request, kept_original(path), progress) as original:
             campaign, _ = begin(request, opened, progress, original=original, stack=stack)
         _leave(original, path)
@@ -190,7 +190,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     refuse_tracked(request.journal_path)
     previews = dict(_previews(request.configuration))
-    with at_it(request, progress) as opened, ExitStack() as stack:
+    with locked_executor(request, progress) as opened, ExitStack() as stack:
         folders = {folder for one in previews.values() for folder in one.folders_left_out}
         # files that the first reads itself are not opened by tests: it begins before the second
         with OriginalRuns(request, None, progress) as original, OpenedFiles(request.root, folders) as watch:

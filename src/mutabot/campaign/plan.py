@@ -69,7 +69,7 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
         provider: provider.plan(project, baseline.prepared.get(provider.name, Preparation()), baseline)
         for provider in asked_for(project)
     }
-    baseline.take_in({provider.name: found for provider, found in planned.items()})
+    baseline.add_planned({provider.name: found for provider, found in planned.items()})
     for _, together in groupby(planned, key=lambda one: one.numbered_with or one.name):
         found = sorted(
             (one for provider in together for one in planned[provider].mutants), key=lambda one: one.order

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot import __version__, extensions
 from mutabot.campaign import beginning
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.beginning import at_it, begin, selected
+from mutabot.campaign.beginning import begin, locked_executor, selected
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
@@ -66,8 +66,8 @@ def run_campaign(request: Request, progress: Progress) -> Path:
     with interruptions_kept(), Journal.prepare(request.journal_path, meta=_meta(request)) as journal:
         try:
             with (
-                _disk_told(request),
-                at_it(request, progress) as opened,
+                _disk_errors_named(request),
+                locked_executor(request, progress) as opened,
                 recorded(request, progress) as evidence,
                 ExitStack() as stack,
             ):
@@ -218,8 +218,8 @@ def _forget_if_edited(
 
 
 @contextmanager
-def _disk_told(request: Request) -> Iterator[None]:
-    """A disk that cannot be written is the user's concern, not a fault of ours."""
+def _disk_errors_named(request: Request) -> Iterator[None]:
+    """Turn the error of a disk that cannot be written into one for users, with the file's name."""
     try:
         yield
     except OSError as error:
@@ -304,11 +304,11 @@ def replay_one(
 ) -> list[records.Replayed]:
     """Run one mutant again in these rounds, beside what the journal says of it.
 
-    Raises what ``anew`` raises.
+    Raises what ``with_fresh_baseline`` raises.
     """
     rounds = sorted(set(rounds))
     first = {(one.mutant, one.round): one for one in journal.outcomes()}
-    with anew(request, mutant, rounds[-1], progress) as (campaign, now):
+    with with_fresh_baseline(request, mutant, rounds[-1], progress) as (campaign, now):
         for _ in run_controls(campaign, [now]):
             pass
         progress.stage("replay", len(rounds))
@@ -320,10 +320,10 @@ def replay_one(
 
 
 @contextmanager
-def anew(
+def with_fresh_baseline(
     request: Request, mutant: Mutant, last: int, progress: Progress
 ) -> Iterator[tuple[Campaign, Mutant]]:
-    """The campaign with a baseline taken anew up to a round, and the mutant in the program as it is now.
+    """Take the baseline again up to a round; give the campaign, and the mutant in the program as it is now.
 
     Raises SelectionError if the program no longer has the mutant, and what a baseline raises.
     """

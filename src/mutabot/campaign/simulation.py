@@ -28,8 +28,8 @@ class SimulatedMiddleware(ABC):
     real: str
 
     @abstractmethod
-    def over(self, request: Request) -> Request | None:
-        """The request with its tests run over the simulation; None if the project has no use for it.
+    def adapt(self, request: Request) -> Request | None:
+        """Make the tests of a request run over the simulation; None if the project has no use for it.
 
         Raises MutabotError, with the reason, if the project needs the real middleware.
         """
@@ -48,10 +48,10 @@ class SimulatedMiddleware(ABC):
         return " ".join(line.strip() for line in str(error).splitlines()[:2])
 
 
-def over(request: Request, name: str) -> Request:
-    """A request whose tests run over the simulation of this name, as those of an earlier campaign did."""
+def with_simulation(request: Request, name: str) -> Request:
+    """Make the tests of a request run over the simulation of this name, as in an earlier campaign."""
     part = brought("simulations").get(name)
-    changed = part.make(SimulatedMiddleware).over(request) if part is not None else None  # type: ignore[type-abstract]
+    changed = part.make(SimulatedMiddleware).adapt(request) if part is not None else None  # type: ignore[type-abstract]
     if changed is None:
         raise UsageError(
             f"the campaign ran over the simulation {name!r}, which this project does not use now"
@@ -87,7 +87,7 @@ def try_original(request: Request, take: Callable[[Request], tuple[Campaign, lis
     for name, part in brought("simulations").items():
         simulation = part.make(SimulatedMiddleware)  # type: ignore[type-abstract]
         try:
-            changed = simulation.over(request)
+            changed = simulation.adapt(request)
             if changed is not None:
                 return Tried(simulation, *take(replace(changed, simulation=name)))
         except MutabotError as error:

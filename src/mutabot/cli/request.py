@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Unpack
 
 from mutabot.campaign.request import ExecutorChoice, Request
-from mutabot.campaign.simulation import over
+from mutabot.campaign.simulation import with_simulation
 from mutabot.config.configuration import load_configuration
 from mutabot.config.options import Sample, Shard, seconds_of
 from mutabot.config.vocabulary import load
@@ -95,7 +95,7 @@ def request_again(root: Path, results: Results, jobs: int | None) -> Request:
     )  # fmt: skip
     request = replace(request, ran_over=str(meta.get(RAN_OVER) or ""))
     name = meta.get("simulation")
-    return over(request, name) if name else request
+    return with_simulation(request, name) if name else request
 
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:

@@ -60,7 +60,7 @@ class Ros2Simulation(SimulatedMiddleware):
     real = "real ROS 2"
     draws = False
 
-    def over(self, request: Request) -> Request | None:
+    def adapt(self, request: Request) -> Request | None:
         """Put the plug-in before pytest's arguments, and the clock into the vocabulary."""
         if not self._is_of(request):
             return None

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.beginning import at_it, begin, check
+from mutabot.campaign.beginning import begin, check, locked_executor
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ConfigurationError
 from mutabot.model import Outcome, Verdict
@@ -159,7 +159,7 @@ def test_a_probe_of_a_class_reads_the_object_of_the_present_test(tmp_path: Path)
     )
     write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
     request = request_for(tmp_path, rounds=1)
-    with at_it(request, Quiet()) as executor:
+    with locked_executor(request, Quiet()) as executor:
         campaign, _ = begin(request, executor, Quiet())
     seen = {
         test.rpartition("::")[2]: dict(one.probes)

@@ -170,7 +170,7 @@ def baseline_of(reached: dict[int, list[str]], early: set[int]) -> tuple[Baselin
     baseline = Baseline(tests=[SUITE], ends=ends)
     mutants = {line: mutant_at(line) for line in reached}
     planned = [PlannedMutant(one, active=Activation.of_call(Place.of(one))) for one in mutants.values()]
-    baseline.take_in({CALLS: Planned(planned)})
+    baseline.add_planned({CALLS: Planned(planned)})
     baseline.early = {Place.of(mutants[line]) for line in early}
     for line, tests in reached.items():
         baseline.reach(0, Place.of(mutants[line]), None if line in early else tests)

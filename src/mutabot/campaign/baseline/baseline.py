@@ -219,8 +219,8 @@ class Baseline(Original):
         """Whether a mutant may act before any test begins."""
         return Place.of(mutant) in self.early
 
-    def take_in(self, planned: Mapping[str, Planned]) -> None:
-        """The mutants that each provider makes of it, and the places that it has told of."""
+    def add_planned(self, planned: Mapping[str, Planned]) -> None:
+        """Add the mutants that the providers have planned, by provider, and the places that tests reach."""
         self.faults = PlantedFaults.of(planned)
         for one in planned.values():
             self.early |= one.early

@@ -84,8 +84,8 @@ class OriginalRuns:
             self.opened = None if known is None else self.opened | {*known}
         self.after = Snapshot.take(self._request.root, self.before)
 
-    def over(self, executor: Executor, request: Request) -> Runs:
-        """What runs the original: this executor, unless a run that is asked for is kept.
+    def runs_by(self, executor: Executor, request: Request) -> Runs:
+        """Return what runs the original: kept runs where they are asked for again, else this executor.
 
         What is installed elsewhere is not known here: what other machines ran is not kept.
 
