@@ -57,7 +57,7 @@ def open_executor(request: Request, progress: Progress) -> AbstractContextManage
 
 @contextmanager
 def locked_executor(request: Request, progress: Progress) -> Iterator[Executor]:
-    """Open what runs the tasks of a campaign; meanwhile the project is locked, and Ctrl-C waits until it is safe.
+    """Open what runs the tasks of a campaign; meanwhile the project is locked, and Ctrl-C waits until safe.
 
     Raises UsageError if the system allows too few open files.
     """
