@@ -77,7 +77,7 @@ class Session:
     def __init__(self, job: Job, pipe: EventWriter, locator: Locator) -> None:
         self.job, self.pipe, self.locator = job, pipe, locator
         self.recorder = Recorder(self._site_seen)
-        self.recording = TestRecording(self._simulated, self._aside, job.vocabulary.clock is not None)
+        self.recording = TestRecording(self._simulated, self.untracked, job.vocabulary.clock is not None)
         self.instances = Instances()
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(job.vocabulary, job.inspect, self._send)
@@ -327,14 +327,10 @@ class Session:
         if self.files is not None:  # else this process is below one that has changed it
             self.files.change(path, content)
 
-    def _aside(self) -> Untracked:
+    def untracked(self) -> Untracked:
         """What is done in this context is none of the program's doing."""
         is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
         return Untracked(self.returns if is_main else None)
-
-    def untracked(self) -> Untracked:
-        """See ``FaultContext.untracked``."""
-        return self._aside()
 
     @property
     def round(self) -> int:
@@ -344,10 +340,6 @@ class Session:
     @property
     def seconds(self) -> float | None:
         """Simulated seconds since the first tick of the running test; None without a clock."""
-        return self.seconds_if_known()
-
-    def seconds_if_known(self) -> float | None:
-        """The same."""
         return self._time.now_if_known()
 
     def seed_of(self, mutant: Mutant) -> int:
@@ -364,7 +356,7 @@ class Session:
     def is_moment(self, mutant: Mutant, number: int) -> bool:
         """Whether a mutant acts at this call of its site in the running test."""
         moment = self.moment_of(mutant)
-        return moment is None or moment.holds(number, self.seconds_if_known())
+        return moment is None or moment.holds(number, self.seconds)
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""

@@ -76,13 +76,7 @@ class PlantedFaults:
     def instrumentation(self, mutants: Iterable[Mutant]) -> Instrumentation | None:
         """The program text with the places of these mutants, or None if they have none there."""
         needed = {place for mutant in mutants for place in self.active(mutant).places}
-        if not needed:
-            return None
-        texts = [
-            replace(text, places=tuple(place for place in text.places if place.number in needed))
-            for text in self.texts
-        ]
-        return Instrumentation(tuple(text for text in texts if text.places))
+        return Instrumentation(self.texts).only(needed) if needed else None
 
 
 @dataclass(slots=True)

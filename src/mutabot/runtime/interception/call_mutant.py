@@ -28,7 +28,7 @@ class CallMutant(ActiveFault):
         self._active: ActiveMutant | None = None
         if operation is not None:
             operation = operation.by_numbers() if mutant.by_number else operation
-            told = (context.acted_in_call, context.in_mutated_call, context.seconds_if_known)
+            told = (context.acted_in_call, context.in_mutated_call, lambda: context.seconds)
             self._active = ActiveMutant(mutant, operation, context.refusals_of(operation), *told)
 
     def prepare_process(self) -> None:
