@@ -259,6 +259,9 @@ def _play(
     told: dict[Any, Told], journal: Journal, dependencies: Dependencies, evidence: CampaignEvidence | None,
 ) -> dict[str, Any]:  # fmt: skip
     many = copies(mutants, given.mutants)
+    planned = campaign.baseline.faults.by_id
+    for at, one in enumerate(many):
+        planned[one.id] = replace(planned[mutants[at % len(mutants)].id], mutant=one)
     journal.set_plan(many, ())
     looks: list[tuple[int, float, float]] = []
     step = max(1, given.mutants // LOOKS)

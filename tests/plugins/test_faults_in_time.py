@@ -148,7 +148,7 @@ def rounds(folder: Path, site: Path, *options: str) -> dict[str, dict[str, Any]]
     return {one["id"].rpartition("=")[2]: one["rounds"][0] for one in json.loads(done.stdout)["graded"]}
 
 
-@pytest.mark.parametrize("engine", ["fork", "replay"])
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_a_fault_begins_at_its_simulated_time(engine: str, tmp_path: Path) -> None:
     site, project = installed(tmp_path), write(tmp_path / "project", PROJECT)
     found = rounds(project, site, "--engine", engine)

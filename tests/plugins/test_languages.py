@@ -157,7 +157,7 @@ def test_its_lines_are_sites_with_verdicts(project: Path, tmp_path: Path) -> Non
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("engine", ["fork", "replay"])
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_its_text_has_mutants_of_the_package(engine: str, project: Path, tmp_path: Path) -> None:
     site = write(tmp_path / "site", PACKAGE)
     found = mutants(site, project, "-o", "families=['steps']", "--engine", engine)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
 from tests.plugins.test_faults import write
 from tests.plugins.test_plugins import ERRORS, mutabot
 
@@ -145,6 +146,7 @@ def test_patches_of_several_files_are_judged_and_the_users_files_stay(tmp_path: 
     ]
 
 
+@pytest.mark.whole
 def test_a_patch_that_only_a_process_below_the_tests_can_show_is_noticed(tmp_path: Path) -> None:
     site, project = write(tmp_path / "site", PACKAGE), write(tmp_path / "project", PROJECT)
     (project / "tests/test_move.py").write_text(

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from mutabot.model import Span
 from mutabot.model.activation import EACH_TEST, FATAL_CONTROL, Activation, Key, at_call, at_time, nth
+from mutabot.model.codec import from_data, to_data
 from mutabot.runtime.reached_keys import ReachedKeys
 
 MOVE = at_call(Span("a.py", 1, 0, 1, 9, "run"), "robot:Arm.move", None)
@@ -78,3 +81,10 @@ def test_a_control_is_where_its_fault_is() -> None:
     assert fault.control(is_fatal=True) == Activation(FATAL_CONTROL, {"size": 1}, (at_time(3.0),), "mujoco")
     text = Activation.of_text(7, 2)
     assert [text.control(is_fatal=one).data for one in (False, True)] == [(7, -1), (7, -2)]
+
+
+def test_keys_are_the_same_on_another_machine() -> None:
+    keys = (MOVE, at_time(1.0), nth(2, MOVE), nth(1, at_time(0.5)), EACH_TEST, *Activation.of_text(7, 2).keys)
+    fault = Activation("package:Fault", {"size": 1}, keys)
+    sent = json.loads(json.dumps(to_data(fault)))
+    assert {*from_data(Activation, sent).keys} == {*keys}

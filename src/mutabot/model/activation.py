@@ -1,8 +1,9 @@
 """How a mutant becomes active in the processes of the tests, and where these first differ from the original.
 
-A fork parent runs the original and forks a process for each mutant where that first differs: at a *key*. Keys
-are plain data. Who reaches one, tells it: a call of an operation, a place of the program text, a moment of
-simulated time, the start of a test. To everybody else they are opaque.
+A fork parent runs the original and forks a process for each mutant where that first differs: at a *key*.
+Keys are tuples of plain values, since other machines are told them as well. Who reaches one, tells it: a call
+of an operation, a place of the program text, a moment of simulated time, the start of a test. To everybody
+else they are opaque.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ FATAL_CONTROL = "mutabot.runtime.active_fault:FatalControl"
 
 def at_call(span: Span, operation: str, pattern: str | None) -> Key:
     """A call of an operation, or of one of its text commands, at a site."""
-    return (CALL, span, operation, pattern)
+    place = span.line, span.column, span.end_line, span.end_column
+    return (CALL, span.file, *place, operation, pattern)
 
 
 def at_text(place: int, index: int) -> Key:
@@ -54,7 +56,7 @@ def at_test(test: str) -> Key:
 
 def nth(number: int, key: Key) -> Key:
     """The time of this number, from 1, at which a key is reached in a test."""
-    return (NTH, number, key)
+    return (NTH, number, *key)
 
 
 def of_kind(keys: Iterable[Key], kind: str) -> list[Key]:

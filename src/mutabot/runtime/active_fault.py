@@ -143,7 +143,7 @@ class _ControlFault(ActiveFault):
     @property
     def is_of_start(self) -> bool:
         """Whether it is reached as a test begins."""
-        return all((key[2] if key[0] == NTH else key)[0] == TEST for key in self.keys)
+        return all((key[2] if key[0] == NTH else key[0]) == TEST for key in self.keys)
 
     def start_test(self, test: str, random: Random) -> None:
         """At the start of each test, if that is its place."""

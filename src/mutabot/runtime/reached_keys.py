@@ -38,7 +38,7 @@ class ReachedKeys:
     def watch(self, keys: Iterable[Key]) -> None:
         """Look for these keys from here on."""
         keys = list(keys)
-        self._counted = frozenset(key[2] for key in of_kind(keys, NTH))
+        self._counted = frozenset(key[2:] for key in of_kind(keys, NTH))
         every = [*keys, *self._counted]
         self._times = tuple(sorted({key[1] for key in of_kind(every, TIME)}))
         self._due = [time for time in self._times if time > self._passed]
