@@ -17,6 +17,8 @@ from mutabot.model.process_time import MOST, TimeUsed, below
 #: seconds after which the accounts of a process are read for the first time, which takes milliseconds: most
 #: tests are over by then
 _FIRST = 0.5
+#: how many times its limit of wall clock a process may take that computes: see above
+_COMPUTING = 2.0
 #: seconds between two looks at least
 _LEAST = 0.2
 
@@ -91,7 +93,7 @@ class Deadline:
     def _left(self, wall: float, processor: float) -> float:
         """Seconds left in both budgets; in that of processor time for a process that uses it."""
         most = self.limit.processor or 0.0
-        computes = processor < most / 2 and self.used.age < 2 * self.limit.wall
+        computes = processor < most / 2 and self.used.age < min(_COMPUTING, MOST) * self.limit.wall
         return processor if computes else min(wall, processor)
 
     def overdue(self, test: str | None) -> str:
