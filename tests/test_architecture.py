@@ -32,6 +32,10 @@ ALLOWED = {
     "execution": {"errors", "model"},
     "journal": {"errors", "model", "repository"},
     "original": {"errors", "model"},
+    "api": {
+        "errors", "extensions", "faults", "model", "original", "operators", "languages", "config", "cli",
+        "execution", "campaign", "evidence", "journal", "results", "report", "runtime", "shared_memory",
+    },
     "campaign": {
         "errors", "extensions", "families", "faults", "model", "original", "languages", "config", "execution",
         "operators", "journal", "evidence", "repository",

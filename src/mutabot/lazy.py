@@ -1,4 +1,4 @@
-"""Names of a package that are loaded when they are first used (PEP 562)."""
+"""Names of a module that are loaded when they are first used (PEP 562)."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from importlib import import_module
 
 
 def lazily(
-    package: str, homes: Mapping[str, tuple[str, ...]]
+    module: str, homes: Mapping[str, tuple[str, ...]]
 ) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
-    """The ``__getattr__`` and ``__dir__`` of a package.
+    """The ``__getattr__`` and ``__dir__`` of a module.
 
-    ``homes``: its modules, relative to it, with the names that each of them has for it.
+    ``homes``: the full names of the modules that define its names, with the names that each of them defines.
     """
     home_of = {name: home for home, names in homes.items() for name in names}
-    own = vars(sys.modules[package])
+    own = vars(sys.modules[module])
 
     def load(name: str) -> object:
         if name not in home_of:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        found = own[name] = getattr(import_module(f".{home_of[name]}", package), name)
+            raise AttributeError(f"module {module!r} has no attribute {name!r}")
+        found = own[name] = getattr(import_module(home_of[name]), name)
         return found
 
     return load, lambda: sorted({*own, *home_of})

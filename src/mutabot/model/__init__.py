@@ -38,14 +38,18 @@ __all__ = [
     "Verdict", "Vocabulary", "Wait",
 ]  # fmt: skip
 _HOMES = {
-    "path": ("Path",),
-    "quantity": ("Kind", "Mode", "Quantity"),
-    "call": ("Call", "Middleware", "CallFault", "NotToldError", "Proceed", "Reply"),
-    "mutant": (
+    "mutabot.model.path": ("Path",),
+    "mutabot.model.quantity": ("Kind", "Mode", "Quantity"),
+    "mutabot.model.call": ("Call", "Middleware", "CallFault", "NotToldError", "Proceed", "Reply"),
+    "mutabot.model.mutant": (
         "FATAL", "IDENTITY", "Alternative", "Instrumentation", "Moment", "Mutant", "ProgramText",
         "Role", "Sighting", "Site", "Span", "TextPlace",
     ),
-    "operation": ("ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait"),
-    "outcome": ("By", "Check", "Compared", "Diverged", "Kill", "LeftOut", "Looked", "Outcome", "Verdict"),
+    "mutabot.model.operation": (
+        "ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait",
+    ),
+    "mutabot.model.outcome": (
+        "By", "Check", "Compared", "Diverged", "Kill", "LeftOut", "Looked", "Outcome", "Verdict",
+    ),
 }  # fmt: skip
 __getattr__, __dir__ = lazily(__name__, _HOMES)
