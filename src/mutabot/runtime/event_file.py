@@ -1,4 +1,4 @@
-"""The file in which a process tells what it does: see ``model.event_file``."""
+"""Write the events of this process into its own file: see ``model.event_file`` for the format."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class EventFile:
             self._ring(self._bell)
 
     def go_on_apart(self) -> None:
-        """In a process that was just forked: write into a file of its own from now on.
+        """In a process that was just forked, write into a separate file from now on.
 
         Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
         """
@@ -109,7 +109,7 @@ class EventFile:
 
     @staticmethod
     def _ring(bell: int) -> None:
-        """Tell that there is something to read; nothing depends on what is in the pipe."""
+        """Signal that there are new events; the bytes in the pipe carry no meaning."""
         try:
             os.write(bell, b"\n")
         except BlockingIOError:

@@ -38,7 +38,7 @@ def everything(error: BaseException) -> Iterator[BaseException]:
 
 
 def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
-    """What went wrong in the tool or the machine, as far as an exception tells; None if nothing did.
+    """Return the failure of the tool or the machine that an exception reports; None if it reports none.
 
     ``failures``: names of exceptions that the vocabulary says mean nothing else; packages name others.
     """
@@ -94,7 +94,7 @@ class Refusal:
 
 
 def is_due_to(error: BaseException, culprits: Sequence[KnownError]) -> bool:
-    """Whether an exception is one of the culprits, or caused by them and by nothing else.
+    """Return whether an exception is one of the culprits, or was caused by them alone.
 
     A group is so if all that it holds are, or if it was made of one: with ``raise … from``, or while a
     culprit was handled. What a group was raised beside says nothing otherwise: a task group ends beside

@@ -181,7 +181,7 @@ class ExecutedUnits(SourceStep):
 
 
 def _who(readers: tuple[str, ...]) -> str:
-    """The name of the module that does what is heard of; one of ``readers`` does it for another."""
+    """Return the name of the module that opened a file; ``readers`` open files on behalf of others."""
     frame: FrameType | None = sys._getframe(2 + FRAMES)
     while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in readers:
         frame = frame.f_back
@@ -208,7 +208,7 @@ def _is_foreign(event: str, arguments: tuple[Any, ...]) -> bool:
 
 
 def _mark(function: ast.FunctionDef | ast.AsyncFunctionDef, number: int) -> None:
-    """Let a function tell that it is executed."""
+    """Change a function so that it records its execution."""
     statement = ast.parse(f"{RAN}[{number}] = 1").body[0]
     for node in ast.walk(statement):
         if isinstance(node, ast.expr | ast.stmt):  # where no other node can stand

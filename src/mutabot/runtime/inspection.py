@@ -21,12 +21,12 @@ Kinds = Sequence[Callables | Messages]
 
 
 class Inspection:
-    """What is wrong with a vocabulary, told once each.
+    """Report each mistake in a vocabulary once.
 
     Args:
-        vocabulary: what is looked at.
-        is_asked: whether all of it is to be looked at; else only what comes up is told.
-        send: where it is told.
+        vocabulary: the vocabulary to check.
+        is_asked: whether to check all of it; otherwise only mistakes that come up during a run are reported.
+        send: receives the problems.
 
     Attributes:
         elsewhere: modules that processes below the tests have, and that may not be importable here.

@@ -148,7 +148,7 @@ def _normal(requirement: str) -> str:
 
 
 class _SwitchedOff:
-    """Declares the markers of plug-ins; nobody is told what their options say: all have their defaults."""
+    """Declare the markers and options of plug-ins that are switched off; all options have their defaults."""
 
     def __init__(self) -> None:
         self.plugins: list[Plugin] = []
@@ -160,7 +160,7 @@ class _SwitchedOff:
         vars(config.option).update(self.defaults)
 
     def pytest_configure(self, config: pytest.Config) -> None:
-        """Tell pytest that the markers are no mistakes."""
+        """Register the markers, so that pytest accepts them."""
         for plugin in self.plugins:
             for marker in plugin.markers:
                 config.addinivalue_line("markers", f"{marker}: of {plugin.package}, without effect here")

@@ -1,4 +1,4 @@
-"""One mutant at work at its site, and how the robot refuses calls, by exceptions and by data."""
+"""Apply one mutant at its site, and recognise calls that the robot refuses, by exceptions and by data."""
 
 from __future__ import annotations
 
@@ -60,12 +60,12 @@ class RefusedCalls:
         return self._known.get((span, operation, pattern), frozenset())
 
     def has(self, made: SiteCall) -> bool:
-        """Whether this call of the original's is known to be one."""
+        """Return whether this call is a known refusal of the original."""
         pattern = made.call.pattern.text if made.call.pattern is not None else None
         return made.number in self.at(made.site[0], made.call.operation.target, pattern)
 
     def begins(self, made: SiteCall) -> None:
-        """Note that the original makes a call: as with mutated ones, what is refused from now on is this."""
+        """Note a call of the original: refusals from now on belong to it, as they would to a mutated call."""
         if self.on_refused is None:
             return
         self._watched.pop(made.call.operation.target, None)
@@ -94,7 +94,7 @@ def refused_of(call: Call) -> tuple[Refused, ...]:
 
 
 def answered(call: Call, result: Any) -> str | None:
-    """Return how the answer to a command says that it is refused, in words; None if it does not."""
+    """Return the text with which the answer to a command refuses it; None if it does not refuse."""
     for refused in refused_of(call):
         if refused.topic is None:
             found = _found(refused, result)
@@ -106,7 +106,7 @@ def answered(call: Call, result: Any) -> str | None:
 
 
 def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
-    """Return how a message under this name refuses a command before it, in words; None if it does not.
+    """Return the text with which a message of this name refuses an earlier command; None if it does not.
 
     Of an action, messages are its results, and the words by which its goals end.
     """
@@ -138,7 +138,7 @@ def _found(refused: Refused, start: Any) -> str | None:
 
 
 def _means(wanted: Any, value: Any) -> bool:
-    """Whether a value of the vocabulary stands for one of the robot's."""
+    """Return whether a value of the vocabulary denotes one of the robot's, such as a member of an enum."""
     if not is_member(value):
         return _same(value, wanted)
     member = member_of(type(value), wanted)
@@ -191,7 +191,7 @@ class ActiveMutant:
         self._forget()
 
     def _forget(self) -> None:
-        """Forget what is of one test."""
+        """Reset what belongs to one test."""
         self.watched: tuple[Refused, ...] = ()
         self._handed: HandedCopies | None = None
         self._due: list[tuple[int, _MutatedCall, Call]] = []
@@ -311,7 +311,7 @@ class ActiveMutant:
         self._handed.note(answer, result, (call.pattern or call.operation).result)
 
     def heard(self, name: str, message: Any) -> None:
-        """Look whether a message that came by says that the robot refuses what it was told."""
+        """Check whether a message says that the robot refuses a command."""
         if not any(one.topic is not None and fnmatchcase(name, one.topic) for one in self._told_by):
             return
         self._told += 1
@@ -321,7 +321,7 @@ class ActiveMutant:
                 self.watched = ()
 
     def passed_by(self, call: Call) -> None:
-        """Note another call: if it is of the same command, what is refused from now on is that one.
+        """Note another call: if it is the same command, refusals from now on belong to that call.
 
         Unless the mutated call was several commands, and the robot has told of some: it will tell of the
         others first.
@@ -332,12 +332,12 @@ class ActiveMutant:
                 self.watched = ()
 
     def count(self, call: Call) -> None:
-        """Note that the mutated call gives the robot one command more."""
+        """Count one more command that the mutated call gives to the robot."""
         self._told_by = refused_of(call)
         self._commands += 1
 
     def refused_as(self, said: str | None) -> None:
-        """Note how the robot refused a mutated call by data, in words; None if it did not."""
+        """Note the text with which the robot refused a mutated call; None if it did not refuse."""
         if said is not None and self.evidence.said is None:
             self.evidence.said = said
 
@@ -402,7 +402,7 @@ async def _not_yet(call: Call, proceed: Proceed) -> Reply:
 
 
 async def _one_is_due(call: Call, proceed: Proceed) -> Reply:
-    """Leave alone a call that an earlier one waits for."""
+    """Pass on, unchanged, a call after which an exchanged one is due."""
     return await proceed(call.as_is("an earlier one is made after it"))
 
 
@@ -513,7 +513,7 @@ class _MutatedCall:
         return self.made.number in self.mutant.usual
 
     def _last_words(self) -> None:
-        """Tell what the mutant did: this process is about to die of it."""
+        """Report what the mutant did, as this process is about to end because of it."""
         self.mutant.note(self.passage)
         self.mutant.on_call(False)
         self.mutant.on_act()
@@ -526,5 +526,5 @@ def is_refusal(error: BaseException, names: Iterable[str]) -> bool:
 
 
 def with_refusal(refusals: tuple[Refusal, ...], error: BaseException) -> tuple[Refusal, ...]:
-    """Return the refusals of a test with a new one; a program that tries on and on leaves no endless list."""
+    """Append a refusal to those of a test, and keep only the last ones of a program that retries for ever."""
     return (*refusals, Refusal(error))[-REFUSALS:]

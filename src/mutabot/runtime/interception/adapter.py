@@ -267,7 +267,7 @@ class Adapter:
         return found
 
     def _can_be_written(self, message: Any) -> bool:
-        """Whether the text can be changed; tells a problem if not."""
+        """Return whether the text can be changed; report a problem if it cannot."""
         if isinstance(message, str | bytes | int) and not isinstance(message, bool):
             return True
         kind = type(message).__name__
@@ -315,7 +315,7 @@ class Adapter:
         self.on_problem(key, PathError(text))
 
     def perform(self, call: Call, original: Call) -> Any:
-        """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
+        """Carry out a call and return the operation's own result (an awaitable for async ones)."""
         invocation: Invocation = call.payload
         fits = invocation.values is not None or self.operation.signature is not None
         self.commands += call.is_command and fits  # what does not fit never reaches the robot
@@ -377,7 +377,7 @@ class Adapter:
         return result
 
     def _check_result(self, invocation: Invocation, result: Any) -> None:
-        """Tell of a coroutine that nobody awaits, and of a call that went well against its signature."""
+        """Report a coroutine that is never awaited, and a call that succeeded against its signature."""
         if type(result) is CoroutineType:
             text = f"{self.operation.target} returns a coroutine but is no coroutine function"
             self._tell("call", f"{text}; name the coroutine function behind it")
@@ -400,7 +400,7 @@ class Adapter:
         return getattr(owner, name)
 
     async def _where_is(self, invocation: Invocation, pattern: Pattern | None, quantity: Quantity) -> float:
-        """Tell where a quantity is: ask the robot; of a name on a middleware, what came last tells."""
+        """Return where a quantity is: ask the robot; for a topic, take the last message."""
         own = pattern.current if pattern is not None else None
         reading = self.readings.get(own or self.operation.current or "")
         if reading is None:

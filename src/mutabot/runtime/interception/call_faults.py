@@ -26,7 +26,7 @@ _SAYS = "no reading (planted by mutabot)"
 
 
 def why_not(means: MiddlewareControls | None, call_fault: CallFault) -> str:
-    """Say why something cannot befall a call here; empty if it can."""
+    """Return why a fault of the middleware cannot happen to a call here; empty if it can."""
     if means is None:
         return "it is no call of a middleware"
     if call_fault is CallFault.CANCELLED and means.cancel is None:
@@ -42,7 +42,7 @@ def why_not(means: MiddlewareControls | None, call_fault: CallFault) -> str:
 
 
 async def before(call: Call, at_end: Callable[[], None]) -> None:
-    """Let happen what befalls a call before it is made; ``at_end`` is told before this process dies of it."""
+    """Carry out the faults that come before a call; ``at_end`` is called before one ends this process."""
     means = _means(call)
     if CallFault.JUMPED in call.call_faults and means.jump is not None:
         means.jump(call.call_faults[CallFault.JUMPED])
@@ -74,7 +74,7 @@ async def after(call: Call, result: Any) -> None:
 
 
 def heard_of(call: Call, reply: Reply) -> Reply:
-    """Return what the program hears of a reply: who waits for one message hears no other after it."""
+    """Return the part of a reply that the program receives: a wait for one message gets only the first."""
     means: MiddlewareControls | None = call.payload.where.means
     if means is None or not means.once or not reply.more:
         return reply
@@ -83,10 +83,10 @@ def heard_of(call: Call, reply: Reply) -> Reply:
 
 
 def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Callable[[], Awaitable[Any]]:
-    """Return how the program gets a reply that does not come as usual; ``result`` makes its object of one.
+    """Return how the program gets a reply that is missing or changed; ``result`` makes the program's object.
 
-    Raises LookupError where nobody knows how. What is returned raises what the middleware raises for an
-    answer that never comes, and what the program gets in the stead of a reading.
+    Raises LookupError if the middleware has no way. The result raises what the middleware raises for an
+    answer that never comes, and what the program gets instead of a reading.
     """
     if reply.error:
         return partial(_raised, missing(reply.error))
@@ -156,7 +156,7 @@ def _quietly(perform: Callable[[], Any]) -> None:
 
 
 def _is_node() -> bool:
-    """Whether this process was started by the tests, and is not the one that runs them."""
+    """Return whether this process was started by the tests, rather than being the one that runs them."""
     member = sys.modules.get("mutabot.runtime.processes.member")  # it stands on this module
     return member is not None and bool(member.is_member())
 

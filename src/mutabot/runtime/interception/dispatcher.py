@@ -191,7 +191,7 @@ class Dispatcher:
     async def dispatch(
         self, adapter: Adapter, site: CallPlace, invocation: Invocation, is_async: bool, is_direct: bool
     ) -> Any:
-        """Let one call go its way.
+        """Carry out one call of an operation, and note it.
 
         Args:
             adapter: its operation's.
@@ -267,7 +267,7 @@ class Dispatcher:
         return adapter.to_reply(call, result)
 
     def _note(self, made: SiteCall, reply: Reply | None, began: float | None) -> None:
-        """Trace a call that is over; ``reply`` is the robot's last one, None if the call raised."""
+        """Record a call that has ended; ``reply`` is the robot's last reply, None if the call raised."""
         self.recorder.record(made, reply, began)
         if made.call.is_command and self.along.step:
             self.along.after(len(self.recorder.trace))
@@ -290,7 +290,7 @@ async def _awaited(on_its_way: Coroutine[Any, Any, Any], invocation: Invocation 
 
 
 def _from_here(error: BaseException) -> TracebackType | None:
-    """The traceback of an exception that is caught here, without the frames of ours below this one."""
+    """Return the traceback of an exception that is caught here, without mutabot's frames below this one."""
     here = error.__traceback__
     if here is not None:
         here.tb_next = without_ours(here.tb_next)

@@ -1,4 +1,4 @@
-"""Frames that carry operations out, and tracebacks without frames of ours.
+"""Recognise frames that carry operations out, and remove mutabot's own frames from tracebacks.
 
 An exception keeps the frames that it came through, and these what a call was given: ours would keep it longer
 than the robot's own do.
@@ -66,7 +66,7 @@ class ModuleCache(Generic[K, V]):
 
 
 def without_ours(traceback: TracebackType | None) -> TracebackType | None:
-    """Take the frames of ours out of a traceback: what is left is what the operation did itself.
+    """Remove mutabot's frames from a traceback, which leaves those of the operation itself.
 
     None of them may be running any more. The frames of the operation lead back to them: what they held is let
     go. What stands between the program and the operation is all ours, also what a package brought; in the

@@ -112,7 +112,7 @@ class HandedCopies:
                 self._handed.append((after, _content(after)))
 
     def look(self, *, at_all: bool = False) -> bool:
-        """Say whether the program has written to one by now, and forget those that it has no more.
+        """Return whether the program has written to a value that it was handed; forget those it dropped.
 
         Without ``at_all`` only the last ones are looked at: a program may keep every reading that it takes.
         """
@@ -166,7 +166,7 @@ def _is_as_before(value: Any, before: dict[Any, Any]) -> bool:
 
 
 def _is_remembered(value: Any, key: Any) -> bool:
-    """Whether an attribute that was not there yet is what an object remembers of its own: no write."""
+    """Return whether a new attribute is a value that the object caches for itself, which is no write."""
     if isinstance(value, dict) or not isinstance(key, str):
         return False
     return key.startswith("_") or isinstance(getattr(type(value), key, None), cached_property)

@@ -70,7 +70,7 @@ class Recorder:
             self.answers.start()
 
     def record(self, made: SiteCall, reply: Reply | None, began: float | None) -> None:
-        """Note a call that is over; ``reply`` is the robot's last one, None if the call raised."""
+        """Record a call that has ended; ``reply`` is the robot's last reply, None if the call raised."""
         if len(self.trace) >= TRACE_LIMIT:
             self.truncated = True
             return
@@ -228,7 +228,7 @@ class Locator:
         return None
 
     def locate_definition(self, code: CodeType) -> CallPlace | None:
-        """Span and role of a function's definition; None for one of neither the program nor the oracle."""
+        """Return the span and role of a function's definition; None outside of program and oracle."""
         role = self.role(code.co_filename)
         if role is None:
             return None

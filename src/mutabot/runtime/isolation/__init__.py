@@ -1,1 +1,1 @@
-"""Processes that begin where another one stands: forks for mutants, copies of a session."""
+"""Processes that continue from the state of another: forks for mutants, copies of a session."""

@@ -115,7 +115,7 @@ class PrivateFiles:
         return None
 
     def change(self, path: str, content: bytes) -> None:
-        """Give a file of the project, by its path there, another content, which nobody else sees.
+        """Change a file of the project, given by its path there, for this process and its children.
 
         Raises OSError if these files are not private, or the file is none of the project's.
         """
@@ -152,7 +152,7 @@ class PrivateFiles:
         call("setns", self._bare, _CLONE_NEWNS, what="there is no way back to the files on disk")
 
     def go_on_apart(self, folder: str) -> None:
-        """In a process that was just forked, while its parent waits: go on with files of its own.
+        """In a process that was just forked, continue with private files, while its parent waits.
 
         What the parent did to its files is copied. ``folder`` lies in the home, which both have. Raises
         OSError if that is not possible.
@@ -208,7 +208,7 @@ class PrivateFiles:
 
 
 def may_be_private() -> bool:
-    """Whether this system lets a process have files of its own; a child tries it."""
+    """Return whether this system lets a process have private files, by trying it in a child."""
     pid = os.fork()
     if pid == 0:
         try:
@@ -282,7 +282,7 @@ def _enter_namespace() -> bool:
 
 
 def _is_part(folder: str, folders: Collection[str], mounted: list[str]) -> bool:
-    """Whether the overlay over one of the other folders covers this one: no file system lies in between."""
+    """Return whether the overlay over another folder covers this one, without a mount in between."""
     between = [point for point in mounted if is_below(folder, point)]
     return any(
         is_below(folder, other) and not any(point != other and is_below(point, other) for point in between)
@@ -313,7 +313,7 @@ def _lay_over(folder: str, lower: int, layers: str) -> None:
 
 
 def _mounts_below(folders: Collection[str]) -> list[str]:
-    """File systems that are mounted below these folders, the outer ones first: an overlay would hide them."""
+    """Return the mount points below these folders, outermost first, since an overlay would hide them."""
     with open("/proc/self/mountinfo", "rb") as file:
         points = [mount_point(line) for line in file]
     found = dict.fromkeys(

@@ -142,7 +142,7 @@ class ForkParent:
 
     @property
     def keys(self) -> Collection[Key]:
-        """What the parent is to be told of."""
+        """The keys that the parent waits for."""
         return self._live.keys()
 
     def reach(self, *keys: Key, is_due: Callable[[Mutant], bool] = lambda mutant: True) -> None:
@@ -164,7 +164,7 @@ class ForkParent:
         return self._places
 
     def tell_undiverged(self, hits: Mapping[int, int]) -> None:
-        """The test is over: tell which mutants of the program text were no different from the original.
+        """Report, at the end of a test, which mutants of the program text did not differ from the original.
 
         ``hits``: evaluations of each place in this test, and before any. If the test has forked copies of
         this process they are not all: a mutant may have differed in one, as in processes that were started
@@ -218,15 +218,15 @@ class ForkParent:
         )  # fmt: skip
 
     def is_test_control(self, mutant: Mutant) -> bool:
-        """Whether it is the control of one test, whose process ends with that test."""
+        """Return whether a mutant is the control of one test, whose process ends with that test."""
         return mutant.id not in self._slots
 
     def activation_of(self, mutant: Mutant) -> Activation:
-        """How a mutant becomes active; or the control of one test."""
+        """Return the activation of a mutant or of the control of one test."""
         return self._of_control if self.is_test_control(mutant) else self.active[mutant.id]
 
     def end_test(self) -> None:
-        """The test is over: wait for its controls, holding no token meanwhile, and tell their number."""
+        """End a test: wait for its controls, holding no token meanwhile, and report their number."""
         if any(child.is_test_control for child in self._children.values()):
             self._give_back()
             while any(child.is_test_control for child in self._children.values()):
@@ -327,7 +327,7 @@ class ForkParent:
         self._finished[self._slots[mutant]] = 1
 
     def note_test(self, mutant: str, test: str | None = None) -> None:
-        """In a child: it begins a test, which the parent need not have; None: the last one is over."""
+        """In a child, note that it begins a test, which the parent need not have; None after the last one."""
         slot = self._slots[mutant]
         number = len(self.tests) if test is None else self._numbers.get(test, max(self._tests[slot], 0))
         self._tests[slot] = number
@@ -363,7 +363,7 @@ class ForkParent:
         return self.forking.limits.get(self._name_of(test), self.forking.limit)
 
     def _name_of(self, test: int) -> str:
-        """The node id of a test, by its number: empty before any, the last one while the session ends."""
+        """Return the node id of a test by its number: empty before any, the last one as the session ends."""
         return self.tests[min(test, len(self.tests) - 1)] if test >= 0 else ""
 
     def _take_token(self) -> None:
@@ -384,7 +384,7 @@ class ForkParent:
         return taken
 
     def _give_back(self) -> None:
-        """Put one token back into the pool."""
+        """Return a token to the pool."""
         self._hold(self._held - 1)
         with self._pool() as pool, suppress(BlockingIOError):  # it is full, of what no parent has put there
             if pool is not None:
@@ -408,7 +408,7 @@ class ForkParent:
         self.pipe.send(TokensHeld(count))
 
     def _wait(self, other: int | None = None) -> list[int]:
-        """Sleep until children end, which are returned, their time may be up, or ``other`` can be read."""
+        """Wait for children to end or run out of time, or until ``other`` can be read; return those that ended."""
         until = min((child.deadline.until for child in self._children.values()), default=float("inf"))
         timeout = min(max(0.0, until - monotonic()), _LOOKS) * 1e3 + 1.0
         poll, children = select.poll(), {os.pidfd_open(pid): pid for pid in self._children}
@@ -443,7 +443,7 @@ class ForkParent:
             child.test, child.deadline = test, Deadline(self._limit(test))
 
     def _bury(self, child: Child) -> None:
-        """Tell how a child has ended."""
+        """Report how a child has ended."""
         _, status = os.waitpid(child.pids.fork, 0)
         namespaces.end_first(child.pids.first)
         code, slot = os.waitstatus_to_exitcode(status), self._slots.get(child.mutant, -1)

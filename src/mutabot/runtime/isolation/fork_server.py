@@ -85,7 +85,7 @@ class ForkServer:
         return None
 
     def _wait(self, jobs: socket.socket) -> bool:
-        """Sleep until there is a job (True) or copies have ended, and look after these."""
+        """Wait until there is a job (True) or copies have ended, and reap those."""
         poll = select.poll()
         for descriptor in (jobs.fileno(), *self._copies):
             poll.register(descriptor, select.POLLIN)
@@ -123,7 +123,7 @@ class ForkServer:
         return True
 
     def _begin(self, home: str) -> str:
-        """In the copy: what is printed goes into its own folder, which is this one."""
+        """In the copy, redirect output into its own folder, which is ``home``."""
         old = os.stat(os.path.join(self.home, self.log))
         log = open_file(os.path.join(home, self.log), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
         isolate_files(old, log)

@@ -1,4 +1,4 @@
-"""Whether a process can be forked right now without breaking what it shares with the world.
+"""Decide whether a process can be forked now without breaking what it shares with others.
 
 Event loops of asyncio must wait by descriptors of the fork's own.
 """
@@ -57,7 +57,7 @@ def go_on_running(loop: Any) -> None:
 
 
 def own_event_loops() -> None:
-    """In a process that was just forked: every loop waits by descriptors of its own."""
+    """In a process that was just forked, give each event loop descriptors of its own."""
     for loop in open_loops():
         old, new = loop._selector, selectors.DefaultSelector()
         for key in list(old.get_map().values()):
@@ -87,7 +87,7 @@ _TRIES, _PAUSE = 10, 0.002
 
 
 def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> str | None:
-    """Why forking is not safe, in words; None if it is.
+    """Return why forking is not safe; None if it is.
 
     Args:
         own_children: processes that this one forked for mutants.
@@ -137,7 +137,7 @@ def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
 
 
 def subprocesses(own: Iterable[int]) -> str | None:
-    """How many processes this one has started, in words, bar those of its ``own``; None if there are none."""
+    """Return a text with the number of child processes other than ``own``; None if there are none."""
     try:
         with open(f"{_SELF}/task/{os.getpid()}/children", encoding="ascii") as file:
             children = {int(pid) for pid in file.read().split()}

@@ -1,4 +1,4 @@
-"""What a fork has from the kernel: its parent's process id, a clock of its own, and an end with its parent.
+"""Fork with the parent's process id and a clock of its own, and end with the parent.
 
 The process id and the clock keep from a program what it could notice of a fork. The id takes a process
 namespace, whose first process must outlive the others: here one that sleeps, and shares the parent's memory
@@ -31,7 +31,7 @@ _left_out = 0.0
 
 
 class ForkedPids(NamedTuple):
-    """A fork as its parent sees it: its process, and the first one of its namespace; None if it has none."""
+    """The process id of a fork, and that of the first process of its namespace; None without a namespace."""
 
     fork: int
     first: int | None
@@ -88,7 +88,7 @@ def _mentions_id(file: str) -> bool:
 
 
 def fork() -> ForkedPids | None:
-    """Fork a process, with the id of this one if ``keeps_ids``; None in that process.
+    """Fork this process, with its process id if ``keeps_ids``; return None in the fork.
 
     Raises OSError if that is not possible.
     """
@@ -109,7 +109,7 @@ def fork() -> ForkedPids | None:
 
 
 def end_first(first: int | None) -> None:
-    """End the first process of a namespace, if there is one, and with it whatever a fork has left there."""
+    """End the first process of a namespace, if any, and with it every process that a fork has left there."""
     if first is not None:
         os.kill(first, signal.SIGKILL)
         os.waitpid(first, _WCLONE)
@@ -172,7 +172,7 @@ def _libc() -> ctypes.PyDLL:
 
 @cache
 def _stack() -> ctypes.Array[ctypes.c_char]:
-    """What all first processes sleep on: none writes to it again once it sleeps."""
+    """Return the stack that all first processes share; none writes to it once it sleeps."""
     return ctypes.create_string_buffer(_STACK_BYTES)
 
 

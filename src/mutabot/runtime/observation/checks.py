@@ -143,7 +143,7 @@ def _numbers(value: Any) -> list[float] | None:
 
 
 def _without_numpy(value: Any) -> Any:
-    """An array of numbers as a list, a number of numpy's as a plain one; numpy is not imported for this."""
+    """Convert an array of numbers to a list and a numpy number to a plain one, without importing numpy."""
     if not is_of_numpy(value):
         return value
     return value.tolist() if value.dtype.kind in "biuf" and value.size <= _MOST_ITEMS else value

@@ -176,7 +176,7 @@ def _held(instance: Any, known: int) -> Callable[[], Any]:
 
 
 def _note_made(owner: type, note: Callable[[Any], None]) -> None:
-    """Let ``note`` be told every object of a class when it has been made."""
+    """Call ``note`` with each object of a class once it has been made."""
 
     def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any) -> Any:
         __tracebackhide__ = True
@@ -190,7 +190,7 @@ def _note_made(owner: type, note: Callable[[Any], None]) -> None:
 
 
 def _inherited(owner: Any) -> Callable[..., None]:
-    """What a class does that has no ``__init__`` of its own: what comes next for the object at hand."""
+    """Return an ``__init__`` for a class without one, which calls the next in the resolution order."""
 
     def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807
         __tracebackhide__ = True
@@ -205,7 +205,7 @@ def _inherited(owner: Any) -> Callable[..., None]:
 
 
 class ClockReader:
-    """Tells a meter about the calls of the clock's tick.
+    """Pass the calls of the clock's tick on to a meter.
 
     Args:
         clock: what the vocabulary says.

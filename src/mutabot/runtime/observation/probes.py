@@ -1,4 +1,4 @@
-"""Read probes, turn the user's values into plain data, and record the world of the running test.
+"""Read probes, turn the user's values into plain data, and record the running test.
 
 Probes are readings that mutabot itself takes to compare a mutant's world with the original's. During a test
 they are read after its commands: first after every ``stride``-th command; once there are many, after every
@@ -49,7 +49,7 @@ class UnreadableError(Exception):
 
 @dataclass(slots=True)
 class Reading:
-    """All probes at one moment.
+    """The values of all probes at one moment.
 
     Attributes:
         values: flat, ``target.part`` to number, text or truth value; a probe of the second object of its
@@ -102,7 +102,7 @@ def _read(target: str, instances: Instances) -> Iterator[tuple[str, Any]]:
 
 
 def is_bound(owner: type, name: str) -> bool:
-    """Whether what a class has under this name is read from one of its objects."""
+    """Return whether this attribute of a class is read from its objects, rather than from the class."""
     raw = next((vars(base)[name] for base in owner.__mro__ if name in vars(base)), _MISSING)
     if raw is _MISSING:
         return not hasattr(owner, name)  # an attribute that its objects may have
@@ -310,7 +310,7 @@ def plain(value: Any) -> Any:
 
 
 def text_of_error(error: BaseException) -> str:
-    """An exception in words, without what differs between equal runs."""
+    """Return an exception as text, without parts that differ between equal runs, such as addresses."""
     kind = class_name(type(error))
     return f"{kind.removeprefix('builtins:')}: {_ACCIDENTS.sub('…', text_of(error))[:_CHARACTERS]}"
 
@@ -401,7 +401,7 @@ class TestRecording:
             self._tape.is_simulated = self._is_simulated
 
     def stop(self) -> None:
-        """The test is over; its world may be taken down."""
+        """End the recording of a test, before its teardown."""
         tape = tapes.running()
         if tape is not None:
             tape.finish()
@@ -413,11 +413,11 @@ class TestRecording:
         return tape.now if tape is not None else None
 
     def since(self, moment: float) -> float | None:
-        """A moment of the clock of ``time.monotonic`` as a time of the tape; None without one."""
+        """Convert a value of ``time.monotonic`` to a time of the recording; None without one."""
         return self._tape.at_wall(moment) if self._tape is not None else None
 
     def note_fault(self, calls: int, time: float | None) -> None:
-        """The mutant has changed something, for the first time or once more, after so many calls."""
+        """Note that the mutant has changed something, first or again, after ``calls`` calls."""
         if self._tape is not None and self._tape.recording.faulty_call is None:
             self._tape.recording.faulty_call = calls
             self._tape.recording.fault = time

@@ -1,4 +1,4 @@
-"""The way to the campaign, for every process that the tests start: its environment, and the file ``wake``.
+"""Pass the campaign on to processes that the tests start, by the environment and the file ``wake``.
 
 The environment goes along also where a process is given one of its own. It leads to the start-up module, and
 that reads in ``wake`` what is of interest. All processes below a test know at no cost which test is running.
@@ -201,9 +201,9 @@ _NUMBER = struct.Struct("=q")
 
 
 class Announced:
-    """In the test process: tells all processes below it which test is running.
+    """Announce, in the test process, which test is running to all processes below it.
 
-    It shares no memory with them: whoever makes the file shorter would end this process.
+    The file is not memory-mapped: a process that truncates it would otherwise end this process.
 
     Args:
         folder: the folder of the campaign's processes.
@@ -243,7 +243,7 @@ class Now:
 
     @property
     def number(self) -> int:
-        """The running test's; the last one's between tests, 0 before any."""
+        """The number of the running test; between tests that of the last one, 0 before any."""
         number: int = _NUMBER.unpack_from(self._memory)[0]
         return number
 

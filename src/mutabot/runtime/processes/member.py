@@ -119,7 +119,7 @@ def join(folder: str) -> None:
 
 
 def is_member() -> bool:
-    """Whether this process is one below the tests, and not the one that runs them."""
+    """Return whether this process was started by the tests, rather than being the one that runs them."""
     return _member is not None
 
 
@@ -165,7 +165,7 @@ class Member:
         self._watch_text()
 
     def go_on(self) -> None:
-        """In a process that was forked: go on with the session that it has, and tell of it."""
+        """In a process that was forked, continue with the parent's session, and report it."""
         session = self.session
         for site in () if isinstance(session, TextOnly) else session.recorder.sites:
             self.file.send(site)
@@ -223,7 +223,7 @@ class Member:
             self.session.fault.end_test()
 
     def send(self, line: events.Event) -> None:
-        """What the session tells: written down, as far as it is news."""
+        """Write an event of the session, if it is new."""
         match line:
             case events.Acted(in_call=None):
                 self.poll()
@@ -233,7 +233,7 @@ class Member:
                 self.file.send(line)
 
     def poll(self) -> None:
-        """Tell what the mutant did since the last time, and what was found."""
+        """Report what the mutant did, and what was found, since the last report."""
         session = self.session
         now, before = session.evidence, self._told
         if now.hits != before.hits or now != before:
@@ -247,7 +247,7 @@ class Member:
             self._use()
 
     def _tell_found(self, session: Session) -> None:
-        """Tell of targets that were found since the last time."""
+        """Report targets that were found since the last report."""
         targets = {name for kind in session.targets for name in kind.here()} - self._targets
         if not targets:
             return
@@ -279,7 +279,7 @@ class Member:
             )
 
     def _watch_text(self) -> None:
-        """Places of the program text are told when they are reached first: the process may die any time."""
+        """Report places of the program text when first reached, since the process may end at any time."""
         text = self.session.text
         if text is None:
             return
@@ -299,7 +299,7 @@ class Member:
         return None if isinstance(self.session, TextOnly) else self.session.failure_in(error)
 
     def end(self) -> None:
-        """The process ends: tell what is left to tell."""
+        """Report what remains, as the process ends."""
         if self._is_over or _member is not self:
             return
         self._is_over = True
@@ -321,7 +321,7 @@ class Member:
         return {module for name in names if (module := name.partition(":")[0]) in sys.modules}
 
     def _watch_exits(self) -> None:
-        """Exceptions that nobody catches, ends without clearing up, and signals sent to others."""
+        """Watch for uncaught exceptions, ends by ``os._exit``, and signals to other processes."""
         main, thread, leave = sys.excepthook, threading.excepthook, os._exit
 
         def in_main(kind: type[BaseException], error: BaseException, traceback: Any) -> None:
@@ -385,7 +385,7 @@ _watched: tuple[str, Session | TextOnly] | None = None
 
 
 def watch_forks(folder: str, session: Session | TextOnly) -> None:
-    """Let each process that the program forks off this one be a member of its own."""
+    """Make each process that the program forks from this one a member of its own."""
     global _watched  # noqa: PLW0603  # hooks cannot be taken back: the last one watched counts
     if _watched is None:
         os.register_at_fork(after_in_child=_after_fork)
@@ -393,7 +393,7 @@ def watch_forks(folder: str, session: Session | TextOnly) -> None:
 
 
 def _after_fork() -> None:
-    """In a process that a program has forked: it is a member of its own from now on."""
+    """In a process that the program has forked, begin a member of its own."""
     global _member  # noqa: PLW0603  # see above
     if _watched is not None and not sys._getframe(1).f_code.co_filename.startswith(OURS):
         folder, session = _watched

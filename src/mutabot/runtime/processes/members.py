@@ -1,4 +1,4 @@
-"""The test process's side: what it gives to processes below it, and what it makes of what they tell."""
+"""The processes below a test process: what it passes to them, and how it combines their events."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _JOIN = "mutabot.runtime.processes.member"
 
 
 class Members:
-    """The processes below one test process; from now on, every Python that it starts finds its way here.
+    """The processes below one test process; every Python that it starts from now on takes part.
 
     Args:
         home: the home of the test process.

@@ -133,7 +133,7 @@ class _Leaves(ast.NodeTransformer):
         return node
 
     def _argument(self, node: ast.expr) -> Any:
-        """An argument; a tuple of values, such as a point, is one as well, but not the value of anything."""
+        """Visit an argument; a tuple of values, such as a point, may be an argument but no other value."""
         if isinstance(node, ast.Tuple):
             node.elts = [self.visit(item) for item in node.elts]
             return node
@@ -168,7 +168,7 @@ class Forms:
 
 
 def is_identical(one: Any, other: Any) -> bool:
-    """Whether no program could tell two plain values apart, but for which of them it has."""
+    """Return whether two plain values are indistinguishable to a program, but for their identity."""
     if type(one) is not type(other) or one != other:
         return False
     return type(one) is not float or math.copysign(1.0, one) == math.copysign(1.0, other)
@@ -234,5 +234,5 @@ def _named(name: str, frame: types.FrameType) -> Any:
 
 
 def _is_mangled(name: str) -> bool:
-    """Whether a class body changes this name into another one."""
+    """Return whether a class body mangles this name."""
     return name.startswith("__") and not name.endswith("__")

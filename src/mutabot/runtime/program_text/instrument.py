@@ -172,7 +172,7 @@ def _near(node: ast.AST, lines: list[int]) -> Iterator[ast.AST]:
 
 
 def _is_around(node: ast.AST, lines: list[int]) -> bool:
-    """Whether one of these lines, which are sorted, belongs to a node; expressions are taken to be."""
+    """Return whether a statement spans one of these sorted lines; always true for expressions."""
     if not isinstance(node, ast.stmt):
         return True
     first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
@@ -273,7 +273,7 @@ def declare_global(tree: ast.Module, name: str) -> None:
 
 
 def _statements(node: ast.AST) -> Iterator[ast.stmt]:
-    """All statements below one, without a look into expressions."""
+    """Yield all statements below a node, without entering expressions."""
     for name in ("body", "handlers", "cases", "orelse", "finalbody"):
         for one in getattr(node, name, ()):
             if isinstance(one, ast.stmt):
@@ -344,7 +344,7 @@ class SessionText:
         return text
 
     def install(self) -> None:
-        """Instrument the program's files from now on; files imported before are told as problems."""
+        """Instrument the program's files from now on; report files that were imported before."""
         setattr(builtins, RUNTIME, (self.sightings or self.alternatives).switches)
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
@@ -378,7 +378,7 @@ class SessionText:
         self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """A module is executed: of one that was compiled elsewhere, the text plays no part."""
+        """Note that a module is executed; the text of one that was compiled elsewhere is not instrumented."""
         code = arguments[0]
         if not isinstance(code, CodeType) or code.co_name != "<module>":
             return
@@ -420,7 +420,7 @@ class SessionText:
     def watch(
         self, on_place: Callable[[int, frozenset[int]], None], live: Mapping[int, frozenset[int]]
     ) -> None:
-        """In a fork parent: tell ``on_place`` which of the ``live`` alternatives of a place are to differ."""
+        """In a fork parent, call ``on_place`` with the ``live`` alternatives that are about to differ."""
         self.alternatives.on_place = on_place
         self.alternatives.watch(live)
 
@@ -449,7 +449,7 @@ class SessionText:
                 self._refuse(text, f"{loading.UNSEEN} ({loading.loader_name(loader)})")
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
-        """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
+        """Note an exception of an operation: a refusal by the robot may be caused by the mutant."""
         from mutabot.runtime.interception.active_mutant import is_refusal, with_refusal  # noqa: PLC0415
 
         if self.is_mutant and self.alternatives.acted and is_refusal(error, refusals):

@@ -143,7 +143,7 @@ def hook_script() -> None:
 
 
 class _Script(SourceStep):
-    """Finds one module, the script, and lets it see itself as a script: not as a module that was found."""
+    """Load one module as a script, with the attributes that a script has rather than those of an import."""
 
     def __init__(self, path: str) -> None:
         self._path = path

@@ -66,7 +66,7 @@ class Returns:
         loading.hook_pytest(self.wants, self.change)
 
     def wants(self, path: str) -> bool:
-        """Whether a file is one of the program's: these get notes."""
+        """Return whether a file belongs to the program, whose functions are recorded."""
         if path.startswith(sys.base_prefix) or any(part in path for part in _LIBRARIES):
             return False
         return self._locator.role(path) is Role.PROGRAM
@@ -121,7 +121,7 @@ class Returns:
             self.entries.append((function.f_code.co_qualname, [{"opaque": type(error).__name__}]))
 
     def _leaves(self, frame: FrameType | None) -> bool:
-        """Whether the nearest frame of the project is one of the tests'."""
+        """Return whether the nearest frame of the project belongs to the tests."""
         while frame is not None:
             name = frame.f_code.co_filename
             if name in self._own:

@@ -85,12 +85,12 @@ class StandIns:
             self._alone.setdefault(site.name, {})[place] = what
 
     def note_elsewhere(self, operation: Operation, place: CallPlace | None) -> None:
-        """This was called where a frame may tell the place, or nothing does."""
+        """Note a call whose place only a frame can give, or nothing."""
         if place is None:
             self._elsewhere.setdefault(operation.target, set()).add(self.test())
 
     def findings(self, operations: Iterable[Operation]) -> Iterator[tuple[Operation, Finding]]:
-        """Say what stood for these operations, what nobody can place, and what was left alone."""
+        """Yield findings: what replaced operations, which calls have no place, and what was left alone."""
         for operation in operations:
             target, name, said = operation.target, operation.last_name, []
             stood = self._standing.get(target, {})
@@ -132,7 +132,7 @@ def _count(number: int, what: str) -> str:
 
 @dataclass(slots=True)
 class Standing:
-    """Decides what is called at the sites of one process.
+    """Decide what is called at the sites of one process.
 
     Args:
         adapters: of the operations that can be called.
@@ -165,7 +165,7 @@ class Standing:
             self.by_name.setdefault(one.operation.last_name, []).append(one)
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        """What is called at a site: ``found``, or what makes the same call as one of an operation."""
+        """Return what is called at a site: ``found``, or a wrapper that makes the call as an operation."""
         one = self.candidate(site, found, receiver, frame)
         if self.noted is not None:
             operation = one.operation if one is not None else None
@@ -297,7 +297,7 @@ class Standing:
         return any(value is one.handler and names.get(name) is found for name, value in meant)
 
     def _is_mocked(self, one: Adapter, mock: Any) -> bool:
-        """Whether a mock tells by what it is made of that it stands for an operation."""
+        """Return whether a mock's specification shows that it replaces an operation."""
         wrapped = vars(mock).get("_mock_wraps")
         parent = vars(mock).get("_mock_parent") or vars(mock).get("_mock_new_parent")
         spec = vars(parent).get("_spec_class") if parent is not None else None
@@ -307,7 +307,7 @@ class Standing:
         return any(handler is one.handler for handler in _handlers(wrapped))
 
     def _names_of(self, names: dict[str, Any]) -> dict[str, Any]:
-        """The names of a module that meant an operation when it was seen first, or the class of one.
+        """Return the names of a module that denoted an operation, or its class, when it was first seen.
 
         With the class, or the handler of the operation.
         """
@@ -327,7 +327,7 @@ class Standing:
         return self.callables.owners.get(one.operation.target)
 
     def _signature_of(self, one: Adapter) -> Signature | None:
-        """What the arguments are, as the operation itself tells; None if it does not, or is not found yet."""
+        """Return the operation's own signature; None if it has none, or is not found yet."""
         original = self.callables.found.get(one.operation.target)
         if isinstance(original, property):
             original = original.fset if one.operation.described else original.fget
@@ -341,7 +341,7 @@ class Standing:
 
 
 def _is_of_objects(owner: type | None, one: Adapter) -> bool:
-    """Whether an operation is a method of objects, rather than one of their class."""
+    """Return whether an operation is an instance method, rather than a class method or static method."""
     if owner is None:
         return False
     raw = inspect.getattr_static(owner, one.operation.last_name, None)
@@ -378,7 +378,7 @@ def _is_told_by_type(found: Any, receiver: Any) -> bool:
 
 
 def _is_a(value: Any, kind: Any) -> bool:
-    """Whether a value is one of a class, or the class itself, or says so."""
+    """Return whether a value is an instance of a class, the class or a subclass, or claims to be."""
     if not isinstance(kind, type):
         return False
     try:
@@ -459,7 +459,7 @@ class Handing:
         return self._wrapped(one, place, receiver, found, found)
 
     def _wrapped(self, one: Adapter, place: CallPlace, receiver: Any, looks: Any, found: Any) -> Handed:
-        """What looks like one callable and calls ``found``, which may be the same, as an operation."""
+        """Return a wrapper that looks like ``looks`` and calls ``found`` as an operation."""
         calls = partial(self._call, one, place, receiver, found)
         says_it_is_one = mock_of(looks) is looks and isinstance(looks, WRAPPERS)
         # such a mock was made after a wrapped function. wrapt would ask it how it binds, which it refuses to

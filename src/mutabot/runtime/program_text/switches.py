@@ -1,4 +1,4 @@
-"""The switches of instrumented program text, what happens when one is on, and kinds of values.
+"""Switch alternatives of instrumented program text on and off, and compute their values.
 
 The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
 else E``. ``__mutabot__`` is a plain list with False at places that are off, so these cost one look-up. It is
@@ -164,9 +164,9 @@ class Alternatives:
         self._set({})
 
     def watch(self, live: Mapping[int, frozenset[int]]) -> None:
-        """Tell each of these alternatives, by place, when it is about to change something, and no other.
+        """Report each of these alternatives, by place, when it is about to change something.
 
-        What cannot be foreseen is told when it is reached; negative indexes always are.
+        Those whose effect cannot be computed ahead are reported when reached, as negative indexes always are.
         """
         self._set(live)
 
@@ -248,7 +248,7 @@ class Alternatives:
         raise error_of(name)(text)
 
     def fail_if(self, value: Any, wrong: Any, name: str, text: str) -> Any:
-        """The value itself; fails if it is the wrong one, or if one of several is."""
+        """Return the value; fail if it, or one element of it, equals ``wrong``."""
         equal = value == wrong
         if equal.any() if hasattr(equal, "any") else equal:
             self.fail(name, text)
@@ -271,7 +271,7 @@ def _plain(value: Any) -> Any:
 
 
 def _is_same(before: Any, after: Any) -> bool:
-    """Whether two values are the same to any program: equal, and of one type."""
+    """Return whether two values are equal and of the same type."""
     if before is after:
         return True
     if type(before) is not type(after):
@@ -372,7 +372,7 @@ class Sightings:
 
 
 class _Witness:
-    """Looks at one place.
+    """Watch one place of the program text.
 
     What it keeps, it has from the start: a test may count the objects that the collector of garbage knows.
 

@@ -25,7 +25,7 @@ _NEWEST_TOO_OLD = (3, 10)
 
 
 class _Finder:
-    """Wakes the process when a module of interest is asked for; finds none itself."""
+    """Begin the session of a process when a module of interest is imported; finds no module itself."""
 
     def __init__(self, folder: str, told: "dict[str, list[str]]") -> None:
         self.folder, self.join, self.key = folder, told["join"][-1], told["key"][-1]
@@ -50,7 +50,7 @@ class _Finder:
 
 
 class _Ours:
-    """Finds our packages where the interpreter has none of its own."""
+    """Find mutabot's packages for an interpreter that does not have them installed."""
 
     def __init__(self, folders: "list[str]", names: "list[str]") -> None:
         self.folders, self.names = folders, names
