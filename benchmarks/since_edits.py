@@ -23,10 +23,12 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from mutabot.campaign.reuse import keys
 from mutabot.cli import campaign as _loaded_before_the_forks  # noqa: F401
 from mutabot.cli.app import main as mutabot
+from mutabot.execution.versions import versions
 from mutabot.journal.journal import JournalReader
 from mutabot.model.codec import to_data
 from random_edits import EDITS, SUBJECTS, NotPossibleError, Subject
@@ -185,8 +187,8 @@ def main() -> int:
     tally = Tally()
     if "paper" not in names:  # whose tests need a plug-in
         os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
-    versions = keys.versions()
-    keys.versions = lambda: versions  # no package changes meanwhile
+    found = versions()
+    mock.patch.object(keys, "versions", return_value=found).start()  # no package changes meanwhile
     with tempfile.TemporaryDirectory(prefix="mutabot-edits-") as place:
         work = Path(place)
         known: dict[str, tuple[Path, Subject, dict[Any, Any]]] = {}

@@ -10,18 +10,16 @@ from __future__ import annotations
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
 
-from mutabot.campaign.campaign import on_this_machine
 from mutabot.campaign.request import Request
-from mutabot.campaign.reuse.keys import versions
 from mutabot.errors import ClusterError
 from mutabot.execution.interruption import interruptible
-from mutabot.execution.task import Result, Task
+from mutabot.execution.task import Executor, Result, Task
 from mutabot.execution.workers import Workers
 from mutabot.model.events import Event
 
@@ -57,11 +55,11 @@ class Cluster:
     """
 
     def __init__(
-        self, request: Request, settings: ClusterSettings, home: Workers, tell: Callable[[str], None]
+        self, request: Request, settings: ClusterSettings, home: Executor, tell: Callable[[str], None]
     ) -> None:
         self.home, self.tell = home, tell
         self._request, self._settings = request, settings
-        self._versions = versions()
+        self._versions = Workers.versions()
         self._ground: Ground | None = None
         self._shipment: Shipment | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
@@ -88,14 +86,13 @@ class Cluster:
             raise
 
     @classmethod
-    def opened(cls, request: Request, settings: ClusterSettings, tell: Callable[[str], None]) -> Cluster:
-        """One for a campaign, with worker processes on this machine beside it. Raises ClusterError."""
-        home = on_this_machine(request, tell)
-        try:
-            return cls(request, settings, home, tell)
-        except BaseException:
-            home.__exit__(None, None, None)
-            raise
+    @contextmanager
+    def opened(
+        cls, request: Request, settings: ClusterSettings, tell: Callable[[str], None]
+    ) -> Iterator[Cluster]:
+        """Open one for a campaign, with worker processes on this machine beside it. Raises ClusterError."""
+        with request.on_this_machine(tell) as home, cls(request, settings, home, tell) as found:
+            yield found
 
     def __enter__(self) -> Cluster:
         return self
@@ -104,7 +101,6 @@ class Cluster:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self._let_go()
-        self.home.__exit__(kind, error, traceback)
 
     @property
     def spread(self) -> int:
@@ -116,7 +112,7 @@ class Cluster:
         """What was told of workers that differ, or are of no use; see ``Executor``."""
         return list(self.roster.told)
 
-    def apart(self) -> Workers:
+    def apart(self) -> AbstractContextManager[Executor]:
         """One more process at home."""
         return self.home.apart()
 

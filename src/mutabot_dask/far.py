@@ -26,10 +26,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.reuse.keys import versions
 from mutabot.errors import JournalError
 from mutabot.execution.remains import OWNER, end_abandoned
-from mutabot.execution.task import Result, Task, death
+from mutabot.execution.task import Result, Task
 from mutabot.execution.workers import Workers
 from mutabot.model.events import Event
 
@@ -160,7 +159,7 @@ class WorkerSession:
             if shutil.disk_usage(folder).free < _ROOM:
                 return f"no room is left on the disk of {folder}"
         if result.end is None and result.overdue is None and result.exit_code in _BY_OTHERS:
-            return death(result)
+            return result.death()
         return None
 
     def _why_unfit(self, task: Task, test: str, look: Callable[[], None]) -> str | None:
@@ -177,7 +176,7 @@ class WorkerSession:
         if ended is not None and ended.outcome != "failed":
             self.proven.update(end.test for end in result.ends if end.outcome != "failed")
             return None
-        why = ended.message if ended is not None else death(result)
+        why = ended.message if ended is not None else result.death()
         return f"{test} fails there without any mutant: {(why or 'no reason given').splitlines()[0]}"
 
 
@@ -298,7 +297,7 @@ def introduce(digest: str, inner: str) -> bytes:
     has = bool(digest) and _store().has(digest)
     if has:
         _clear_up(_store().place(digest) / inner / ".mutabot")
-    return Introduction(versions(), has).data()
+    return Introduction(Workers.versions(), has).data()
 
 
 def receive(digest: str, index: int, count: int, part: bytes) -> bytes:

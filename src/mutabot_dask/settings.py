@@ -76,9 +76,9 @@ class ClusterSettings(ExecutorChoice):
     key: str | None = None
 
     @classmethod
-    def parse(cls, value: str, configuration: Configuration) -> Self:
+    def parse(cls, value: str, root: Path, table: Table | None) -> Self:
         """See ``ExecutorChoice``: with the certificate files of the configuration, if it may need them."""
-        table, root = ClusterTable.of(configuration), configuration.root
+        table = table if isinstance(table, ClusterTable) else ClusterTable()
         names = () if value.startswith(("tcp://", "local:")) else (table.ca, table.cert, table.key)
         found = cls(value, *(None if name is None else str(root / name) for name in names))
         found.check()
@@ -91,11 +91,11 @@ class ClusterSettings(ExecutorChoice):
         return Cluster.opened(request, self, tell)
 
     @classmethod
-    def preview(cls, configuration: Configuration) -> Forecast:
+    def preview(cls, request: Request) -> Forecast:
         """See ``ExecutorChoice``: what workers are sent."""
         from .bundle import Forecast  # noqa: PLC0415  # it looks at the whole project
 
-        return Forecast.of(configuration)
+        return Forecast.of(request.configuration)
 
     def check(self) -> None:
         """Raise UsageError for what cannot be a cluster."""

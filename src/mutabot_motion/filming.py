@@ -14,7 +14,7 @@ from pathlib import Path
 from mutabot.campaign.campaign import Campaign
 from mutabot.errors import SelectionError
 from mutabot.evidence.recording import Recording, bytes_of, from_bytes
-from mutabot.execution.task import Result, Task, death
+from mutabot.execution.task import Result, Task
 from mutabot.model import Mutant
 from mutabot.model.events import TestEnd
 from mutabot.model.job import Job, Pictures
@@ -114,7 +114,7 @@ def _take(result: Result, test: str) -> Take:
     shot = Film(Path(pictures.file))
     end = next((one for one in result.ends if one.test == test), None)
     if end is None:
-        return Take(shot, None, death(result), (death(result),))
+        return Take(shot, None, result.death(), (result.death(),))
     recording = from_bytes(bytes_of(end.recording)) if end.recording is not None else None
     problems = tuple(recording.problems) if recording is not None else ()
     return Take(shot, recording, _ended(end), problems)

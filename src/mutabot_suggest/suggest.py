@@ -12,7 +12,7 @@ from mutabot.campaign.beginning import open_executor
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import MutabotError, NothingToDoError
-from mutabot.execution.task import Task, death
+from mutabot.execution.task import Task
 from mutabot.frozen import frozen
 from mutabot.journal.journal import JournalReader
 from mutabot.model import By, Mutant, Verdict
@@ -269,7 +269,7 @@ class Proof:
                     self.progress.advance(f"round {result.task.key + 1}")
                     where = f"round {result.task.key + 1} of the original"
                     if result.end is None or result.end.errors or not result.ends:
-                        why = death(result) if result.end is None else "; ".join(result.end.errors)
+                        why = result.death() if result.end is None else "; ".join(result.end.errors)
                         return dict.fromkeys(checks, f"the tests cannot be run with it: {why or 'none ran'}")
                     for end in result.ends:
                         if end.outcome == "failed":

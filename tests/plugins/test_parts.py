@@ -45,12 +45,10 @@ PARTS = '''
 
     import typer
 
-    from mutabot.campaign.campaign import on_this_machine
-    from mutabot.campaign.request import ExecutorChoice
+    from mutabot.api.processes import ExecutorChoice, ProjectFiles, Table
+    from mutabot.api.reports import UsageError
     from mutabot.cli import options
     from mutabot.cli.request import request_of
-    from mutabot.errors import UsageError
-    from mutabot.config.table import ProjectFiles, Table
 
     class ToyTable(Table):
         files: ProjectFiles = ()
@@ -74,18 +72,18 @@ PARTS = '''
         speed: int
 
         @classmethod
-        def parse(cls, value, configuration):
+        def parse(cls, value, root, table):
             if value != "gently":
                 raise UsageError(f"--toy {value}: only gently")
-            return cls(value, configuration.tables["toy"].speed)
+            return cls(value, table.speed)
 
         def open(self, request, tell):
             tell(f"toys run {self.how} at speed {self.speed}")
-            return on_this_machine(request, tell)
+            return request.on_this_machine(tell)
 
         @classmethod
-        def preview(cls, configuration):
-            return Preview(configuration.tables["toy"])
+        def preview(cls, request):
+            return Preview(request.configuration.tables["toy"])
 
     def play(context: typer.Context, executor=None, **given: Unpack[options.Running]):
         """Play with the campaign, and tell how."""

@@ -7,21 +7,41 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
+    from mutabot.campaign.request import ExecutorChoice, Request
+    from mutabot.config.table import ProjectFiles, Table
+    from mutabot.execution.interruption import interruptible
     from mutabot.execution.task import Executor, Result, Task
+    from mutabot.execution.workers import Workers
     from mutabot.model.job import Job
 
 __all__ = [
     "Executor",
+    "ExecutorChoice",
     "Job",
+    "ProjectFiles",
+    "Request",
     "Result",
+    "Table",
     "Task",
+    "Workers",
+    "interruptible",
 ]
 _HOMES = {
+    "mutabot.campaign.request": (
+        "ExecutorChoice",
+        "Request",
+    ),
+    "mutabot.config.table": (
+        "ProjectFiles",
+        "Table",
+    ),
+    "mutabot.execution.interruption": ("interruptible",),
     "mutabot.execution.task": (
         "Executor",
         "Result",
         "Task",
     ),
+    "mutabot.execution.workers": ("Workers",),
     "mutabot.model.job": ("Job",),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -11,7 +11,7 @@ from mutabot.campaign import simulation
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.baseline.wrappers import shared_sites
-from mutabot.campaign.campaign import Campaign, on_this_machine
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import Unhandled, try_controls
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import prepare
@@ -37,7 +37,6 @@ from mutabot.model.outcome import by_heading
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
     from mutabot.campaign.evidence import CampaignEvidence
-    from mutabot.config.configuration import Configuration
     from mutabot.execution.task import Executor, Result
     from mutabot.journal.records import Untested
     from mutabot.model import LeftOut, Mutant, Vocabulary
@@ -51,7 +50,7 @@ _REMARKS = 8
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
     """What runs the tasks of a campaign."""
     if request.executor is None:
-        return on_this_machine(request, progress.note)
+        return request.on_this_machine(progress.note)
     return request.executor.open(request, progress.note)
 
 
@@ -189,7 +188,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
 def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     refuse_tracked(request.journal_path)
-    previews = dict(_previews(request.configuration))
+    previews = dict(_previews(request))
     with locked_executor(request, progress) as opened, ExitStack() as stack:
         folders = {folder for one in previews.values() for folder in one.folders_left_out}
         # files that the first reads itself are not opened by tests: it begins before the second
@@ -212,13 +211,13 @@ def _leave(original: OriginalRuns, journal: Path) -> None:
         original.keep(lambda kept: Journal.keep_original(journal, kept))
 
 
-def _previews(configuration: Configuration) -> Iterator[tuple[str, Preview]]:
+def _previews(request: Request) -> Iterator[tuple[str, Preview]]:
     """What executors that the configuration has a table for would take elsewhere, by their names."""
-    if not configuration.tables:
+    if not request.configuration.tables:
         return
     for name, part in brought("executors").items():
-        if name in configuration.tables:
-            preview = part.load_class(ExecutorChoice).preview(configuration)  # type: ignore[type-abstract]
+        if name in request.configuration.tables:
+            preview = part.load_class(ExecutorChoice).preview(request)  # type: ignore[type-abstract]
             if preview is not None:
                 yield name, preview
 

@@ -5,7 +5,7 @@ It is made once the baseline is taken, and all that give mutants their outcomes 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,6 @@ from mutabot.campaign.baseline.baseline import Baseline, Sources
 from mutabot.campaign.evidence import CampaignEvidence
 from mutabot.campaign.request import Progress, Request
 from mutabot.execution.task import Executor, Task
-from mutabot.execution.workers import Workers
 from mutabot.families import CONTROL
 from mutabot.model import Mutant, Outcome
 from mutabot.model.deadline import Limit
@@ -156,8 +155,3 @@ class Campaign:
         if least is not None:
             return least
         return SPARE + (SPARE_FOR_CALLS if self.request.vocabulary.operations else 0.0)
-
-
-def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:
-    """As many processes as the request has ``jobs``. Raises JournalError where it cannot write."""
-    return Workers(request.root, request.arguments, request.jobs, tell)

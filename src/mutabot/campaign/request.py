@@ -22,6 +22,7 @@ from mutabot.model import Moment, Vocabulary
 from mutabot.model.job import Job
 
 if TYPE_CHECKING:
+    from mutabot.config.table import Table
     from mutabot.execution.task import Executor
 
 AUTO, FORK, REPLAY = "auto", "fork", "replay"
@@ -53,10 +54,13 @@ class ExecutorChoice(ABC):
 
     @classmethod
     @abstractmethod
-    def parse(cls, value: str, configuration: Configuration) -> Self:
-        """The choice that the value of its option stands for.
+    def parse(cls, value: str, root: Path, table: Table | None) -> Self:
+        """Return the choice that the value of its option stands for.
 
-        ``configuration``: of the project, with the package's own table in ``tables``.
+        Args:
+            value: what stands after the option, such as ``tcp://scheduler:8786``.
+            root: the project's folder.
+            table: the table of the executor's name in the configuration; None if there is none.
 
         Raises UsageError for a value that cannot be meant.
         """
@@ -69,8 +73,8 @@ class ExecutorChoice(ABC):
         """
 
     @classmethod
-    def preview(cls, configuration: Configuration) -> Preview | None:
-        """What it would take elsewhere; None if all stays on this machine.
+    def preview(cls, request: Request) -> Preview | None:
+        """Return what it would take elsewhere; None if all stays on this machine.
 
         ``mutabot check`` asks this where the configuration has a table of the executor's name.
         """
@@ -181,6 +185,17 @@ class Request:
     def journal_path(self) -> Path:
         """Where the journal of this project lies."""
         return self.root / HOME / self.journal
+
+    def on_this_machine(self, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
+        """Open an executor on this machine that runs ``jobs`` tasks at a time; leaving it ends all.
+
+        ``tell``: told what the user should know about how tasks run.
+
+        Raises JournalError where mutabot's folder in the project cannot be written to.
+        """
+        from mutabot.execution.workers import Workers  # noqa: PLC0415  # a request alone needs none
+
+        return Workers(self.root, self.arguments, self.jobs, tell)
 
     def clock(self) -> float:
         """Seconds since some moment: what the campaign may spend is counted by these."""

@@ -172,7 +172,7 @@ def _refutable(campaign: Campaign, journal: Journal) -> Iterator[None]:
 
 def _note_lacking(request: Request, original: OriginalRuns, progress: Progress) -> None:
     """Name what tests need and will not have where they run, before anything goes there."""
-    preview = request.executor.preview(request.configuration) if request.executor is not None else None
+    preview = request.executor.preview(request) if request.executor is not None else None
     lacking = preview.lacking(original.opened) if preview is not None else None
     if lacking is not None:
         progress.note(lacking)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from mutabot.campaign.baseline.baseline import Baseline, Sources, observation
 from mutabot.campaign.comparison import Observation, compare, farthest
 from mutabot.errors import MutabotError, in_short
-from mutabot.execution.task import Result, death
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.codec import shallow
 from mutabot.model.event_file import OWN_FAULT
@@ -21,6 +20,7 @@ from mutabot.model.source_units import Executed, together
 
 if TYPE_CHECKING:
     from mutabot.campaign.campaign import Campaign
+    from mutabot.execution.task import Result
 
 #: tests of a survivor whose checks are kept
 _MOST_LOOKED = 20
@@ -127,7 +127,7 @@ def run_of(result: Result, sources: Sources) -> Run:
 def _death_in(result: Result, tests: Collection[str]) -> Death | None:
     """Set if the process did not run all its tests to their end; None if it did, or stopped at a verdict."""
     if result.end is None:
-        text: str | None = death(result)
+        text: str | None = result.death()
     elif result.end.errors:
         text = "; ".join(result.end.errors)
     else:

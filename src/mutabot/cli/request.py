@@ -58,7 +58,7 @@ def request_of(
     chosen = None
     if executor is not None:
         kind = brought("executors")[executor[0]].load_class(ExecutorChoice)  # type: ignore[type-abstract]
-        chosen = kind.parse(executor[1], configuration)
+        chosen = kind.parse(executor[1], root, configuration.tables.get(executor[0]))
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root, families),

@@ -179,24 +179,22 @@ class Result:
                 during = f" (during {self.running})" if self.running else ""
                 self.untrusted = f"{line.reason}{during}"
 
+    def death(self, *, said: bool = True) -> str:
+        """Return how the process ended without an orderly end, and the last line it printed if ``said``."""
+        if self.lost is not None:
+            return self.lost
+        during = f" during {self.running}" if self.running else ""
+        if self.overdue:
+            return f"{self.overdue}{during}"
+        line = last_line(self.log) if said else ""
+        return f"{how_ended(self.exit_code)}{during}{f'; it said last: {line}' if line else ''}"
+
     def find_overdue(self, now: float) -> bool:
         """Whether a limit of the suite's own ended it by ``now`` (``time.monotonic``); it is noted."""
         if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
             self.overdue = next((one.text for one in self.watched if now >= one.until), None)
             return self.overdue is not None
         return False
-
-
-def death(result: Result, *, said: bool = True) -> str:
-    """How a worker ended that did not end in an orderly way, and the last that it ``said``."""
-    if result.lost is not None:
-        return result.lost
-    during = f" during {result.running}" if result.running else ""
-    if result.overdue:
-        return f"{result.overdue}{during}"
-    how = how_ended(result.exit_code)
-    line = last_line(result.log) if said else ""
-    return f"{how}{during}{f'; it said last: {line}' if line else ''}"
 
 
 def how_ended(code: int) -> str:

@@ -33,6 +33,7 @@ from mutabot.execution.processes import (
 )
 from mutabot.execution.remains import claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.task import Result, Task
+from mutabot.execution.versions import versions
 from mutabot.model.deadline import Deadline
 from mutabot.model.events import Acted, Event, TestEnd, TestStart, Untrusted
 from mutabot.model.fold import Children, acted_in
@@ -168,6 +169,15 @@ class Workers:
         remove_folder(self._folder)
         if self._folder.exists():
             self._tell(f"{self._folder} cannot be removed, whatever a test made there; no outcome is touched")
+
+    @staticmethod
+    def versions() -> dict[str, str]:
+        """Return what tasks run with here, by name.
+
+        Python, the type of machine, mutabot and its code, and all packages that are installed beside it.
+        Machines on which these are equal give the same outcomes.
+        """
+        return versions()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which they end. Tasks are taken from the iterable as places free up."""

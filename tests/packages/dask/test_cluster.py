@@ -14,6 +14,7 @@ import pytest
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ClusterError
+from mutabot.execution.workers import Workers
 from mutabot.model import Verdict
 from mutabot_dask import cluster as of_cluster
 from mutabot_dask.link import Link
@@ -203,8 +204,8 @@ def test_what_takes_too_long_on_a_worker_is_decided_at_home(
 def test_a_worker_that_runs_with_something_else_is_refused(
     there: ClusterSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    here = {**of_cluster.versions(), "numpy": "0.0.1"}
-    monkeypatch.setattr(of_cluster, "versions", lambda: here)
+    here = {**Workers.versions(), "numpy": "0.0.1"}
+    monkeypatch.setattr(Workers, "versions", lambda: here)
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests="""
     from mission import run
     from robot import Arm

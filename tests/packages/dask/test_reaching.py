@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from distributed import Security
 
-from mutabot.campaign.reuse.keys import versions
 from mutabot.cli.request import request_of
 from mutabot.errors import ClusterError, ConfigurationError, UsageError
+from mutabot.execution.versions import versions
 from mutabot_dask import link
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.local import LocalCluster, address_in

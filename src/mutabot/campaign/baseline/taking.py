@@ -17,7 +17,7 @@ from mutabot.campaign.comparison import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.mistakes import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.execution.task import ABNORMAL, Result, Task, death, said_in
+from mutabot.execution.task import ABNORMAL, Result, Task, said_in
 from mutabot.families import OF_CALLS
 from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
@@ -314,7 +314,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
             "they have not opened, or delete .mutabot?"
         )
     if result.end is None:
-        text = f"the tests cannot be run on the original: {death(result, said=False)}"
+        text = f"the tests cannot be run on the original: {result.death(said=False)}"
         raise BaselineError(f"{text}{said_in(result.log)}")
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))

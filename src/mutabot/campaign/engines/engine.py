@@ -31,7 +31,7 @@ from mutabot.campaign.request import FORK, REPLAY
 from mutabot.campaign.verdict import Death, Run, judged, not_judged, not_run, run_of, without_tests
 from mutabot.errors import MutabotError, in_short
 from mutabot.execution.interruption import Interruption
-from mutabot.execution.task import Result, Task, death, how_ended
+from mutabot.execution.task import Result, Task, how_ended
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict, events
@@ -567,7 +567,7 @@ class _ForkRound:
     def finish(self, result: Result) -> Iterator[Outcome]:
         """The process is gone: settle what can be settled, and leave the rest to replay."""
         if result.end is None:
-            self._left.notes.append(f"the fork parent of round {self._round + 1} died: {death(result)}")
+            self._left.notes.append(f"the fork parent of round {self._round + 1} died: {result.death()}")
         is_whole = len(self._own_ends) == len(self._tests) and not self._is_off
         simulated = [end.simulated for end in self._own_ends if end.simulated is not None]
         for fork in list(self._open.values()):

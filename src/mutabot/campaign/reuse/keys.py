@@ -12,26 +12,23 @@ them has noticed it: then all tests do.
 from __future__ import annotations
 
 import json
-import platform
 import re
-import sys
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
-from importlib.metadata import distributions
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import mutabot
+from mutabot.execution.versions import versions
 from mutabot.frozen import frozen
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
 from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, digest, is_test_file, together
 
 from .packages import code_of_packages
-from .snapshot import _HASH, State, _digest_of, counts_by_name, digest_of, read
+from .snapshot import _HASH, State, counts_by_name, digest_of, read
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
@@ -42,8 +39,6 @@ if TYPE_CHECKING:
 #: what something is made of: names, and a digest or a plain value for each
 Parts = Mapping[str, str]
 
-#: installed packages that have no say in how a test ends
-_TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
 _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
 #: parts of a place: the tests that reach it, or all of them if one that does not has noticed it; the one that
 #: decided; and those that are set aside
@@ -585,24 +580,3 @@ def installed(root: Path) -> dict[str, str]:
     """Versions of all that is installed, and what packages hold of which the version does not tell it."""
     code = code_of_packages(root).items()
     return {**versions(), **{f"code of {name}": _HASH + _digest(files) for name, files in code}}
-
-
-def versions() -> dict[str, str]:
-    """Python, and all that is installed beside it, for any of it may take part in a simulation."""
-    found = {
-        "python": f"{platform.python_implementation()} {platform.python_version()}",
-        "machine": f"{sys.platform} {platform.machine()}",
-    }
-    for distribution in distributions():
-        name = (distribution.metadata["Name"] or "").lower()
-        if name and name not in _TOOLS and name != "mutabot":
-            found.setdefault(name, distribution.version)
-    return {**found, "mutabot": mutabot.__version__, "mutabot's own code": _HASH + _own_code()}
-
-
-def _own_code() -> str:
-    """Of a mutabot that is being worked on, the version alone does not tell what it does."""
-    home = Path(mutabot.__file__).parent
-    core = (home / part for part in ("model", "operators", "runtime", "campaign", "execution"))
-    files = sorted(file for one in (*core, *home.parent.glob("mutabot_*")) for file in one.rglob("*.py"))
-    return _digest([(file.relative_to(home.parent).as_posix(), _digest_of(file)) for file in files])

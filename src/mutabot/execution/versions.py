@@ -1,0 +1,39 @@
+"""What tasks run with on this machine: versions of all that may take part in a simulation."""
+
+from __future__ import annotations
+
+import json
+import platform
+import sys
+from importlib.metadata import distributions
+from pathlib import Path
+
+import mutabot
+from mutabot.model.source_units import digest
+
+#: installed packages that have no say in how a test ends
+_TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
+#: parts of mutabot on which outcomes depend
+_PARTS = ("model", "operators", "runtime", "campaign", "execution")
+
+
+def versions() -> dict[str, str]:
+    """Python, the type of machine, mutabot, and all that is installed beside it, by name."""
+    found = {
+        "python": f"{platform.python_implementation()} {platform.python_version()}",
+        "machine": f"{sys.platform} {platform.machine()}",
+    }
+    for distribution in distributions():
+        name = (distribution.metadata["Name"] or "").lower()
+        if name and name not in _TOOLS and name != "mutabot":
+            found.setdefault(name, distribution.version)
+    return {**found, "mutabot": mutabot.__version__, "mutabot's own code": f"#{_own_code()}"}
+
+
+def _own_code() -> str:
+    """Of a mutabot that is being worked on, the version alone does not tell what it does."""
+    home = Path(mutabot.__file__).parent
+    places = (*(home / part for part in _PARTS), *home.parent.glob("mutabot_*"))
+    files = sorted(file for one in places for file in one.rglob("*.py"))
+    found = [(file.relative_to(home.parent).as_posix(), digest(file.read_bytes())) for file in files]
+    return digest(json.dumps(found).encode())
