@@ -50,7 +50,8 @@ ALLOWED = {
 }  # fmt: skip
 FILES = files()
 #: those of packages beside the core that are held to the same
-BESIDE = [file for name in ("init", "suggest") for file in SOURCE.parent.glob(f"mutabot_{name}/**/*.py")]
+_BESIDE = ("catalogue", "init", "source", "suggest")
+BESIDE = [file for name in _BESIDE for file in SOURCE.parent.glob(f"mutabot_{name}/**/*.py")]
 
 
 def part(module: str) -> str | None:

@@ -49,7 +49,7 @@ def asked(*folders: Path) -> list[str]:
 
 @pytest.mark.needs("cell")
 def test_what_a_package_brings_comes_after_what_mutabots_own_bring_and_is_not_loaded(tmp_path: Path) -> None:
-    installed(tmp_path, 'EXTENSION = Extension(interface=1, vocabularies={"arm": "lab:arm.toml"})')
+    installed(tmp_path, 'EXTENSION = Extension(interface=2, vocabularies={"arm": "lab:arm.toml"})')
     own, other, loaded = asked(tmp_path)
     assert own.startswith("mutabot cell ")
     assert other == "lab-robots arm lab:arm.toml"
@@ -62,8 +62,8 @@ def test_what_a_package_brings_comes_after_what_mutabots_own_bring_and_is_not_lo
     ("code", "told"),
     [
         (
-            "EXTENSION = Extension(interface=2)",
-            "was written for version 2 of the extension interface; this mutabot has version 1",
+            "EXTENSION = Extension(interface=3)",
+            "was written for version 3 of the extension interface; this mutabot has version 2",
         ),
         ("EXTENSION = 7", "is int, not a mutabot.extensions.Extension"),
         ("raise RuntimeError('no licence')", "cannot be loaded: RuntimeError('no licence')"),
@@ -81,13 +81,13 @@ def test_a_declaration_that_cannot_be_used_is_an_error_that_names_the_package(
 
 @pytest.mark.needs("cell")
 def test_two_parts_of_one_name_are_an_error_that_names_both_packages(tmp_path: Path) -> None:
-    code = 'EXTENSION = Extension(interface=1, vocabularies={"cell": "lab:cell.toml"})'
+    code = 'EXTENSION = Extension(interface=2, vocabularies={"cell": "lab:cell.toml"})'
     line = asked(installed(tmp_path, code))[-1]
     assert line == "error: 'cell' of package 'lab-robots' has the name of one of 'mutabot' (vocabularies)"
 
 
 def test_a_file_that_a_package_does_not_have_is_told_where_it_is_used(tmp_path: Path) -> None:
-    code = 'EXTENSION = Extension(interface=1, vocabularies={"arm": "mutabot_cell:arm.toml"})'
+    code = 'EXTENSION = Extension(interface=2, vocabularies={"arm": "mutabot_cell:arm.toml"})'
     installed(tmp_path, code)
     ask = ASK.replace("part.reference", "part.file")
     done = subprocess.run(

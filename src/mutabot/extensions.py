@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 #: version of this interface: raised when a package written for an older one would break
-INTERFACE = 1
+INTERFACE = 2
 GROUP = "mutabot"
 #: what comes with mutabot's own packages: who asks for it is told which one is not installed
 _OF_OWN_PACKAGES = {
@@ -75,7 +75,8 @@ class Extension:
 
     Attributes:
         interface: the version of this interface that the package was written for.
-        operators: subclasses of ``mutabot.Operator``, by the operators' names.
+        operators: subclasses of ``ValueOperator``, ``ValuesOperator`` or ``CommandOperator`` of
+            ``mutabot.api.faults``, by the operators' names.
         middlewares: modules that keep ``runtime.targets.target.MiddlewareModule``, by the name of the client
             library's module whose import puts their hooks in place.
         environments: modules that keep ``runtime.targets.target.Environment``, by any name.

@@ -1,40 +1,39 @@
-"""Operations for the worked examples of this family."""
+"""Operations on which the worked examples show several operators."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.operation import Form, Named, settings_of
+from mutabot.api.values import Form, Kind, Mode, Operation, Path, Quantity
 
 X = Quantity("x", Path.parse("message.x", rooted=True), Kind.TRANSLATION, "x", "m", mode=Mode.TO)
 #: the same, as it is read
 GAP = Quantity("gap", Path.parse(".gap", rooted=False), Kind.DISTANCE, unit="m")
-
-
-def operation(
-    form: Form, name: str, arguments: tuple[Quantity, ...] = (), result: tuple[Quantity, ...] = ()
-) -> Operation:
-    """An operation of a form, with what it writes and reads."""
-    named = Named(form, name)
-    command = form in (Form.PUBLISH, Form.CALL, Form.GOAL)
-    return Operation(named.target, arguments, result, command=command, named=named, kind="messages")
+GRIP = Operation.writing("robot:Gripper.command", "position", Kind.OPENING, unit="fraction", values=(0, 1))
+CLOSE = Operation("robot:Gripper.close", opposite="robot:Gripper.open")
+MOVE_BY = Operation.writing("robot:Arm.move_by", "dx", Kind.TRANSLATION, axis="x", unit="m", mode=Mode.BY)
+MOVE_TO = Operation(
+    "robot:Arm.move_to",
+    tuple(Quantity(axis, Path(axis), Kind.TRANSLATION, axis, "m", "base", Mode.TO) for axis in "xy"),
+)
 
 
 def setting_up(form: Form, name: str) -> Operation:
     """An operation that sets something up."""
-    return operation(form, name, settings_of(form))
+    return Operation.under_name(form, name, form.settings)
 
 
-PUBLISH = operation(Form.PUBLISH, "/arm/target", (X,))
-RECEIVE = operation(Form.RECEIVE, "/gap", result=(GAP,))
-CALL = operation(Form.CALL, "/gripper/close")
-CALL_TO = operation(Form.CALL, "/arm/move_to", (replace(X, path=Path.parse("request.x", rooted=True)),))
-GOAL = operation(Form.GOAL, "/arm/follow")
-TICK = operation(Form.TICK, "/mission/check")
-RESULT = operation(Form.RESULT, "/arm/follow")
-SPEED = operation(
-    Form.PARAMETER, "speed", settings_of(Form.PARAMETER), (Quantity("value", Path(), Kind.SETTING),)
+PUBLISH = Operation.under_name(Form.PUBLISH, "/arm/target", (X,))
+RECEIVE = Operation.under_name(Form.RECEIVE, "/gap", result=(GAP,))
+CALL = Operation.under_name(Form.CALL, "/gripper/close")
+CALL_TO = Operation.under_name(
+    Form.CALL, "/arm/move_to", (replace(X, path=Path.parse("request.x", rooted=True)),)
+)
+GOAL = Operation.under_name(Form.GOAL, "/arm/follow")
+TICK = Operation.under_name(Form.TICK, "/mission/check")
+RESULT = Operation.under_name(Form.RESULT, "/arm/follow")
+SPEED = Operation.under_name(
+    Form.PARAMETER, "speed", Form.PARAMETER.settings, (Quantity("value", Path(), Kind.SETTING),)
 )
 ADVERTISE = setting_up(Form.ADVERTISE, "/arm/target")
 SUBSCRIBE = setting_up(Form.SUBSCRIBE, "/gap")
@@ -52,5 +51,5 @@ OPEN_FRAME = Quantity("header.frame_id", FRAME.path, Kind.FRAME_ID)
 HEARD_FRAME = Quantity("header.frame_id", Path.parse(".header.frame_id", rooted=False), Kind.FRAME_ID)
 STAMP = Quantity("header.stamp", Path.parse("message.header.stamp", rooted=True), Kind.STAMP, unit="s")
 HEARD_STAMP = Quantity("header.stamp", Path.parse(".header.stamp", rooted=False), Kind.STAMP, unit="s")
-SEND_STAMP = operation(Form.PUBLISH, "/arm/target", (STAMP,))
-HEAR_STAMP = operation(Form.RECEIVE, "/scan", result=(HEARD_STAMP,))
+SEND_STAMP = Operation.under_name(Form.PUBLISH, "/arm/target", (STAMP,))
+HEAR_STAMP = Operation.under_name(Form.RECEIVE, "/scan", result=(HEARD_STAMP,))

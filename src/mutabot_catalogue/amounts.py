@@ -5,15 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
-from mutabot.families import CATALOGUE
-from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.quantity import Value
-from mutabot.model.units import convert
-from mutabot.operators.examples import changed, reading, unchanged, writing
-from mutabot.operators.operator import Context, Subject, quantity_of
-from mutabot.operators.value import ValueOperator, map_numbers, within
+from mutabot.api.faults import Context, Example, Subject, ValueOperator
+from mutabot.api.values import Kind, Mode, Operation, Path, Quantity, Value
 
-from .values import like, middle_of
+from .values import CATALOGUE, like, middle_of, within
 
 #: the robot, or the program, takes the number as if it were in the other unit
 _TAKEN = "taken"
@@ -21,16 +16,18 @@ _TAKEN = "taken"
 _GIVEN = "given"
 
 _BASE = {"frame": "base", "mode": Mode.TO}
-_MOVE_TO = writing("robot:Arm.move_to", "z", Kind.TRANSLATION, axis="z", unit="m", range=(0.0, 2.0), **_BASE)
-_MOVE_BY = writing("robot:Arm.move_by", "x", Kind.TRANSLATION, axis="x", unit="m", mode=Mode.BY)
-_MOVE_IN_MM = writing(
+_MOVE_TO = Operation.writing(
+    "robot:Arm.move_to", "z", Kind.TRANSLATION, axis="z", unit="m", range=(0.0, 2.0), **_BASE
+)
+_MOVE_BY = Operation.writing("robot:Arm.move_by", "x", Kind.TRANSLATION, axis="x", unit="m", mode=Mode.BY)
+_MOVE_IN_MM = Operation.writing(
     "robot:Arm.move_to", "x", Kind.TRANSLATION, axis="x", unit="mm", range=(0.0, 800.0), **_BASE
 )
-_TURN = writing("robot:Arm.turn_by", "yaw", Kind.ROTATION, axis="z", unit="deg", mode=Mode.BY)
+_TURN = Operation.writing("robot:Arm.turn_by", "yaw", Kind.ROTATION, axis="z", unit="deg", mode=Mode.BY)
 _J1 = Quantity("[0]", Path.parse("[0]", rooted=False), Kind.ANGLE, "j1", "rad")
 _JOINTS = Operation("robot:Arm.joints", result=(_J1,), command=False)
-_IN_CM, _IN_MM = (reading("laser:distance", Kind.DISTANCE, unit=unit) for unit in ("cm", "mm"))
-_WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s")
+_IN_CM, _IN_MM = (Operation.reading("laser:distance", Kind.DISTANCE, unit=unit) for unit in ("cm", "mm"))
+_WAIT = Operation.writing("cell:wait", "seconds", Kind.DURATION, unit="s")
 
 
 class _OtherUnit(ValueOperator):
@@ -55,14 +52,13 @@ class _OtherUnit(ValueOperator):
 
     def change(self, value: Value, context: Context) -> Value | None:
         way, _, other = context.subject.variant.partition("-")
-        own = context.quantity.unit or ""
-        units = (other, own) if way == _TAKEN else (own, other)
-        return map_numbers(value, lambda number: like(number, convert(number, *units)))
+        convert = context.quantity.from_unit if way == _TAKEN else context.quantity.to_unit
+        return context.quantity.map_numbers(value, lambda number: like(number, convert(number, other)))
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         told = super().describe(subject, before, after)
         how = "taken for" if subject.variant.startswith(_TAKEN) else "given in"
-        return f"{told} ({how} {self.units[quantity_of(subject).unit or '']})"
+        return f"{told} ({how} {self.units[subject.required_quantity.unit or '']})"
 
 
 def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
@@ -79,10 +75,10 @@ class CentimetreForMetre(_OtherUnit):
     name = "cm-for-m"
     units = _both_ways({"m": "cm", "m/s": "cm/s"})
     examples = (
-        changed(_MOVE_TO, 0.5, 0.005, "taken-cm"),
-        changed(_MOVE_TO, 0.01, 1.0, "given-cm"),
-        changed(_IN_CM, 12.0, 0.12, "given-m"),
-        unchanged(_MOVE_TO, 0.5, "50 m is outside the range [0, 2]", "given-cm"),
+        Example.changed(_MOVE_TO, 0.5, 0.005, "taken-cm"),
+        Example.changed(_MOVE_TO, 0.01, 1.0, "given-cm"),
+        Example.changed(_IN_CM, 12.0, 0.12, "given-m"),
+        Example.unchanged(_MOVE_TO, 0.5, "50 m is outside the range [0, 2]", "given-cm"),
     )
 
 
@@ -95,10 +91,10 @@ class MillimetreForMetre(_OtherUnit):
     name = "mm-for-m"
     units = _both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
     examples = (
-        changed(_MOVE_BY, 0.5, 0.0005, "taken-mm"),
-        changed(_MOVE_BY, 0.5, 500.0, "given-mm"),
-        changed(_IN_MM, 12, 12000, "taken-m"),
-        unchanged(_MOVE_BY, 0.0, "zero is zero in any unit", "taken-mm"),
+        Example.changed(_MOVE_BY, 0.5, 0.0005, "taken-mm"),
+        Example.changed(_MOVE_BY, 0.5, 500.0, "given-mm"),
+        Example.changed(_IN_MM, 12, 12000, "taken-m"),
+        Example.unchanged(_MOVE_BY, 0.0, "zero is zero in any unit", "taken-mm"),
     )
 
 
@@ -111,10 +107,10 @@ class InchForMillimetre(_OtherUnit):
     name = "inch-for-mm"
     units = _both_ways({"mm": "inch"})
     examples = (
-        changed(_MOVE_IN_MM, 10, 254, "taken-inch"),
-        changed(_MOVE_IN_MM, 254, 10, "given-inch"),
-        changed(_IN_MM, 508.0, 20.0, "given-inch"),
-        unchanged(_MOVE_IN_MM, 40, "1016 mm is out of range", "taken-inch"),
+        Example.changed(_MOVE_IN_MM, 10, 254, "taken-inch"),
+        Example.changed(_MOVE_IN_MM, 254, 10, "given-inch"),
+        Example.changed(_IN_MM, 508.0, 20.0, "given-inch"),
+        Example.unchanged(_MOVE_IN_MM, 40, "1016 mm is out of range", "taken-inch"),
     )
 
 
@@ -128,10 +124,10 @@ class DegreeForRadian(_OtherUnit):
     name = "deg-for-rad"
     units = _both_ways({"rad": "deg", "rad/s": "deg/s", "rad/s^2": "deg/s^2"})
     examples = (
-        changed(_TURN, 3.0, 171.88733853924697, "taken-rad"),
-        changed(_TURN, 180.0, 3.141592653589793, "given-rad"),
-        changed(_JOINTS, 1.0, 57.29577951308232, "given-deg"),
-        unchanged(_TURN, 0.0, "zero is zero in any unit", "given-rad"),
+        Example.changed(_TURN, 3.0, 171.88733853924697, "taken-rad"),
+        Example.changed(_TURN, 180.0, 3.141592653589793, "given-rad"),
+        Example.changed(_JOINTS, 1.0, 57.29577951308232, "given-deg"),
+        Example.unchanged(_TURN, 0.0, "zero is zero in any unit", "given-rad"),
     )
 
 
@@ -146,17 +142,17 @@ class MillisecondForSecond(_OtherUnit):
     ways = (_TAKEN,)
     of_read = False
     examples = (
-        changed(_WAIT, 0.8, 0.0008, "taken-ms"),
-        unchanged(_WAIT, 0.0, "no time is no time", "taken-ms"),
+        Example.changed(_WAIT, 0.8, 0.0008, "taken-ms"),
+        Example.unchanged(_WAIT, 0.0, "no time is no time", "taken-ms"),
     )
 
 
-_SPEED = writing("robot:Arm.set_speed", "speed", Kind.SPEED, unit="m/s", range=(0.0, 1.0))
-_PRESS = writing("robot:Arm.press", "force", Kind.FORCE, unit="N")
-_GRIP = writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(20.0, 235.0))
-_LIMITED = writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(0.0, 100.0))
-_PAYLOAD = writing("robot:Arm.set_payload", "mass", Kind.MASS, unit="kg", range=(0.0, 5.0))
-_OPEN = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
+_SPEED = Operation.writing("robot:Arm.set_speed", "speed", Kind.SPEED, unit="m/s", range=(0.0, 1.0))
+_PRESS = Operation.writing("robot:Arm.press", "force", Kind.FORCE, unit="N")
+_GRIP = Operation.writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(20.0, 235.0))
+_LIMITED = Operation.writing("robot:Gripper.set_force", "newtons", Kind.FORCE, unit="N", range=(0.0, 100.0))
+_PAYLOAD = Operation.writing("robot:Arm.set_payload", "mass", Kind.MASS, unit="kg", range=(0.0, 5.0))
+_OPEN = Operation.writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
 
 
 class _Factor(ValueOperator):
@@ -175,7 +171,9 @@ class _Factor(ValueOperator):
 
     def change(self, value: Value, context: Context) -> Value | None:
         limits = context.quantity.range if self.is_limited else None
-        return map_numbers(value, lambda number: like(number, within(context.option * number, limits)))
+        return context.quantity.map_numbers(
+            value, lambda number: like(number, within(context.option * number, limits))
+        )
 
 
 class SpeedOverride(_Factor):
@@ -187,9 +185,9 @@ class SpeedOverride(_Factor):
     name = "speed-override"
     kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
     examples = (
-        changed(_SPEED, 0.5, 0.25, "x0.5"),
-        changed(_SPEED, 0.8, 1.0, "x2"),
-        unchanged(_SPEED, 1.0, "it is at the end of its range", "x2"),
+        Example.changed(_SPEED, 0.5, 0.25, "x0.5"),
+        Example.changed(_SPEED, 0.8, 1.0, "x2"),
+        Example.unchanged(_SPEED, 1.0, "it is at the end of its range", "x2"),
     )
 
 
@@ -202,9 +200,9 @@ class ForceOverride(_Factor):
     name = "force-override"
     kinds = frozenset({Kind.FORCE, Kind.TORQUE})
     examples = (
-        changed(_PRESS, 40.0, 20.0, "x0.5"),
-        changed(_PRESS, 40.0, 80.0, "x2"),
-        unchanged(_PRESS, 0.0, "twice nothing is nothing", "x2"),
+        Example.changed(_PRESS, 40.0, 20.0, "x0.5"),
+        Example.changed(_PRESS, 40.0, 80.0, "x2"),
+        Example.unchanged(_PRESS, 0.0, "twice nothing is nothing", "x2"),
     )
 
 
@@ -217,9 +215,9 @@ class WeakGrip(_Factor):
     name = "weak-grip"
     variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
     examples = (
-        changed(_GRIP, 160, 48, "x0.3"),
-        changed(_GRIP, 40, 20, "x0.3"),
-        unchanged(_GRIP, 20, "it is the least already", "x0.3"),
+        Example.changed(_GRIP, 160, 48, "x0.3"),
+        Example.changed(_GRIP, 40, 20, "x0.3"),
+        Example.unchanged(_GRIP, 20, "it is the least already", "x0.3"),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
@@ -240,10 +238,10 @@ class WrongPayload(_Factor):
     variants: ClassVar[Mapping[str, float]] = {"none": 0.0, "double": 2.0}
     is_limited = False
     examples = (
-        changed(_PAYLOAD, 1.2, 0.0, "none"),
-        changed(_PAYLOAD, 1.2, 2.4, "double"),
-        unchanged(_PAYLOAD, 4.0, "the robot takes 5 kg at most", "double"),
-        unchanged(_PAYLOAD, 0.0, "there is none to forget", "none"),
+        Example.changed(_PAYLOAD, 1.2, 0.0, "none"),
+        Example.changed(_PAYLOAD, 1.2, 2.4, "double"),
+        Example.unchanged(_PAYLOAD, 4.0, "the robot takes 5 kg at most", "double"),
+        Example.unchanged(_PAYLOAD, 0.0, "there is none to forget", "none"),
     )
 
 
@@ -259,9 +257,9 @@ class PartialOpening(ValueOperator):
     family = CATALOGUE
     of_read = False
     examples = (
-        changed(_OPEN, 80.0, 40.0),
-        changed(_OPEN, 0.0, 42.5),
-        unchanged(_OPEN, {}, "the call says nothing of it"),
+        Example.changed(_OPEN, 80.0, 40.0),
+        Example.changed(_OPEN, 0.0, 42.5),
+        Example.unchanged(_OPEN, {}, "the call says nothing of it"),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
@@ -274,7 +272,7 @@ class PartialOpening(ValueOperator):
             far = low if number - low >= high - number else high
             return like(number, (number + far) / 2.0)
 
-        return map_numbers(value, half)
+        return context.quantity.map_numbers(value, half)
 
 
 class SilentLimit(ValueOperator):
@@ -288,7 +286,7 @@ class SilentLimit(ValueOperator):
     name = "silent-limit"
     family = CATALOGUE
     of_read = False
-    examples = (changed(_LIMITED, 100, 90), unchanged(_LIMITED, 50, "it is within"))
+    examples = (Example.changed(_LIMITED, 100, 90), Example.unchanged(_LIMITED, 50, "it is within"))
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         is_number = quantity.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)
@@ -296,7 +294,7 @@ class SilentLimit(ValueOperator):
 
     def change(self, value: Value, context: Context) -> Value | None:
         limits = middle_of(context.quantity, 0.8)
-        return map_numbers(value, lambda number: like(number, within(number, limits)))
+        return context.quantity.map_numbers(value, lambda number: like(number, within(number, limits)))
 
 
 def _has_limits(quantity: Quantity) -> bool:

@@ -6,25 +6,23 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import ClassVar
 
-from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Proceed, Reply
-from mutabot.model.quantity import WHOLE, Value, are_same
-from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, whole, writing
-from mutabot.operators.kinds.commands import other_end
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
-from mutabot.operators.value import ValueOperator, given, map_numbers
+from mutabot.api.faults import CommandOperator, Context, Example, Need, Subject, Unchanged, ValueOperator
+from mutabot.api.values import Call, Kind, Operation, Proceed, Quantity, Reply, Value
 
-from .values import like
+from ._examples import CLOSE, GRIP, MOVE_BY, MOVE_TO
+from .values import CATALOGUE, like
 
 #: seconds: as long as a pneumatic gripper takes to open or close
 _LATE = 0.5
-_MOTIONS = WHOLE | {Kind.TRANSLATION, Kind.ROTATION}
 _GRIPPING = (
     "commands with an opening, and commands without quantities that have an opposite, such as close and open"
 )
 _REFUSED = replace(MOVE_BY, refusals=("robot:Refused",))
-_WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 60.0))
+_WAIT = Operation.writing("cell:wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 60.0))
+
+
+def _is_motion(quantity: Quantity) -> bool:
+    return quantity.is_whole or quantity.kind in (Kind.TRANSLATION, Kind.ROTATION)
 
 
 class _Timing(CommandOperator):
@@ -49,7 +47,7 @@ class SwapNext(_Timing):
     examples = (Example(Subject(MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        reply = idle_of(call)
+        reply = call.idle_reply
         call.defer(call)
         return reply
 
@@ -63,23 +61,24 @@ class PreviousTarget(_Timing):
     name = "previous-target"
     fault = "the motion of the call before it again"
     examples = (
-        whole(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.2, "y": 0.0}, previous={"x": 0.2, "y": 0.0}),
-        whole(MOVE_TO, 0.4, away="there is none before it"),
-        whole(MOVE_TO, 0.4, previous={"x": 0.4}, away="it went there before"),
+        Example.whole(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.2, "y": 0.0}, previous={"x": 0.2, "y": 0.0}),
+        Example.whole(MOVE_TO, 0.4, away="there is none before it"),
+        Example.whole(MOVE_TO, 0.4, previous={"x": 0.4}, away="it went there before"),
     )
 
     def fits(self, whole: Subject) -> bool:
-        return whole.is_command and any(one.kind in _MOTIONS for one in whole.written)
+        return whole.is_command and any(map(_is_motion, whole.written))
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        before, written = call.previous(), context.subject.written
+        before = call.previous()
         if before is None:
             raise Unchanged("there is none before it")
-        names = {one.name for one in written if one.kind in _MOTIONS} & before.keys()
-        values = {name: before[name] if name in names else value for name, value in call.values.items()}
-        if are_same(written, values, call.values):
+        names = before.keys() & call.values.keys()
+        moved = [one for one in context.subject.written if _is_motion(one) and one.name in names]
+        if all(one.is_same(before[one.name], call.values[one.name]) for one in moved):
             raise Unchanged("the one before it was the same")
-        return await proceed(replace(call, values=values))
+        values = {one.name: before[one.name] for one in moved}
+        return await proceed(replace(call, values={**call.values, **values}))
 
 
 class HalfWait(ValueOperator):
@@ -94,20 +93,26 @@ class HalfWait(ValueOperator):
     family = CATALOGUE
     kinds = frozenset({Kind.DURATION})
     of_read = False
-    examples = (changed(_WAIT, 0.8, 0.4), unchanged(_WAIT, 0.0, "there is nothing to shorten"))
+    examples = (
+        Example.changed(_WAIT, 0.8, 0.4),
+        Example.unchanged(_WAIT, 0.0, "there is nothing to shorten"),
+    )
 
     def change(self, value: Value, context: Context) -> Value | None:
-        return map_numbers(value, lambda number: like(number, number / 2.0))
+        return context.quantity.map_numbers(value, lambda number: like(number, number / 2.0))
 
 
 class NoWait(HalfWait):
     """A wait is left out."""
 
     name = "no-wait"
-    examples = (changed(_WAIT, 0.8, 0.0), unchanged(_WAIT, 0.0, "there is nothing to shorten"))
+    examples = (
+        Example.changed(_WAIT, 0.8, 0.0),
+        Example.unchanged(_WAIT, 0.0, "there is nothing to shorten"),
+    )
 
     def change(self, value: Value, context: Context) -> Value | None:
-        return map_numbers(value, lambda number: like(number, 0.0))
+        return context.quantity.map_numbers(value, lambda number: like(number, 0.0))
 
 
 class _Grip(_Timing):
@@ -156,8 +161,11 @@ def _undone(subject: Subject, call: Call) -> Call:
     """The call that takes a gripper command back. Raises Unchanged if its opening has no other end."""
     for quantity in subject.written:
         if quantity.kind is Kind.OPENING:
-            value = given(call.values, quantity.name, replace(subject, quantity=quantity))
-            return call.with_value(quantity, other_end(quantity, value))
+            value = replace(subject, quantity=quantity).given(call.values, quantity.name)
+            end = quantity.other_end(value)
+            if end is None:
+                raise Unchanged("the value is neither of the two ends")
+            return call.with_value(quantity, end)
     return call.opposite()
 
 
@@ -183,13 +191,13 @@ class LostCommand(_Chance):
     needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
     fault = "do nothing, with a probability of {variant}"
     examples = (
-        whole(GRIP, 1, variant="30%"),
-        whole(GRIP, 1, variant="30%", earlier=(0, 0, 0), away="most commands are carried out"),
+        Example.whole(GRIP, 1, variant="30%"),
+        Example.whole(GRIP, 1, variant="30%", earlier=(0, 0, 0), away="most commands are carried out"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         context.by_chance()
-        return idle_of(call)
+        return call.idle_reply
 
 
 class DoubleCommand(_Chance):
@@ -201,8 +209,8 @@ class DoubleCommand(_Chance):
     name = "double-command"
     fault = "do it twice, with a probability of {variant}"
     examples = (
-        whole(MOVE_BY, 0.1, 0.1, 0.1, variant="30%"),
-        whole(MOVE_BY, 0.1, variant="30%", earlier=(0.2,) * 3, away="most commands are carried out once"),
+        Example.whole(MOVE_BY, 0.1, 0.1, 0.1, variant="30%"),
+        Example.whole(MOVE_BY, 0.1, variant="30%", earlier=(0.2,) * 3, away="most are carried out once"),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -236,5 +244,5 @@ class UnreportedRefusal(CommandOperator):
         except Exception as error:
             if not call.is_refusal(error):
                 raise
-            return idle_of(call)
+            return call.idle_reply
         return reply.as_is("the robot does not refuse it")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot.extensions import INTERFACE, Extension
+from mutabot.api.faults import Extension
 
 #: module, name and class of each, in the order of the documentation and of the numbers of their mutants
 _OPERATORS = """
@@ -69,7 +69,7 @@ _OPERATORS = """
 """
 
 EXTENSION = Extension(
-    interface=INTERFACE,
+    interface=2,
     operators={
         name: f"{__package__}.{module}:{kind}"
         for module, name, kind in map(str.split, _OPERATORS.strip().splitlines())

@@ -9,29 +9,19 @@ from dataclasses import replace
 from itertools import combinations
 from typing import ClassVar
 
-from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
-from mutabot.model.quantity import Value, is_same
-from mutabot.model.units import Quaternion, convert, from_euler, inverse, product
-from mutabot.operators.examples import MOVE_TO, changed, reading, unchanged, writing
-from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
-from mutabot.operators.value import (
-    NOT_PASSED,
-    ValueOperator,
-    ValuesOperator,
-    given,
-    is_number,
-    label,
-    map_numbers,
-    turned,
-)
+from mutabot.api.faults import Context, Example, Need, Subject, Unchanged, ValueOperator, ValuesOperator
+from mutabot.api.values import Kind, Mode, Operation, Path, Quantity, Value
 
-from .values import Exchange, is_alike, like
+from ._examples import MOVE_TO
+from .values import CATALOGUE, Exchange, is_alike, like
 
 _BASE, _TOOL = "base", "tool"
 _AXES = "xyz"
-#: how three angles about x, y and z are read: one after the other about axes that stay
-_ORDER = "xyz"
+#: how the tool is turned in the base's frame: by three angles, one after the other about axes that stay
+_TURNS = tuple(
+    Quantity(f"theta_{axis}", Path(), Kind.ROTATION, axis, "deg", _BASE, Mode.TO) for axis in _AXES
+)
+_TOOL_TURNED = Quantity("", Path(), Kind.EULER, unit="deg", order="xyz")
 _MOVES = tuple(Quantity(axis, Path(axis), Kind.TRANSLATION, axis, "m", _BASE, Mode.BY) for axis in _AXES)
 _MOVE_BY = Operation("robot:Arm.move_by", _MOVES, current="robot:Arm.tool_pose")
 _DOWN = {"theta_x": 180.0, "theta_y": 0.0, "theta_z": 90.0}
@@ -67,9 +57,9 @@ class AxisSwap(Exchange):
 
     name = "axis-swap"
     examples = (
-        changed(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
-        unchanged(MOVE_TO, {"x": 0.2, "y": 0.2}, "both are the same", "y"),
-        unchanged(MOVE_TO, {"x": 0.2}, "the call gives no y", "y"),
+        Example.changed(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
+        Example.unchanged(MOVE_TO, {"x": 0.2, "y": 0.2}, "both are the same", "y"),
+        Example.unchanged(MOVE_TO, {"x": 0.2}, "the call gives no y", "y"),
     )
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
@@ -89,9 +79,11 @@ class JointOrder(Exchange):
 
     name = "joint-order"
     examples = (
-        changed(_SET_JOINTS, _joints(_SET, 10, 20, 30), _joints(_SET, 30, 20, 10), "joints[2]"),
-        changed(_READ_JOINTS, _joints(_READ, 10.0, 20.0, 30.0), _joints(_READ, 30.0, 20.0, 10.0), "[2]"),
-        unchanged(_SET_JOINTS, _joints(_SET, 0, 20, 0), "both are the same", "joints[2]"),
+        Example.changed(_SET_JOINTS, _joints(_SET, 10, 20, 30), _joints(_SET, 30, 20, 10), "joints[2]"),
+        Example.changed(
+            _READ_JOINTS, _joints(_READ, 10.0, 20.0, 30.0), _joints(_READ, 30.0, 20.0, 10.0), "[2]"
+        ),
+        Example.unchanged(_SET_JOINTS, _joints(_SET, 0, 20, 0), "both are the same", "joints[2]"),
     )
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
@@ -114,15 +106,14 @@ class LeftHanded(ValuesOperator):
     name = "left-handed"
     family = CATALOGUE
     examples = (
-        changed(_POSE, {"y": 0.2, "yaw": 30.0}, {"y": -0.2, "yaw": -30.0}),
-        changed(
+        Example.changed(_POSE, {"y": 0.2, "yaw": 30.0}, {"y": -0.2, "yaw": -30.0}),
+        Example.changed(
             _PUT, {"y": 0.2, "turned": [0.8, 0.0, 0.0, 0.6]}, {"y": -0.2, "turned": [0.8, 0.0, 0.0, -0.6]}
         ),
-        unchanged(_POSE, {"y": 0.0, "yaw": 0.0}, "a mirror changes nothing here"),
+        Example.unchanged(_POSE, {"y": 0.0, "yaw": 0.0}, "a mirror changes nothing here"),
     )
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
+    def subjects(self, whole: Subject) -> Iterator[Subject]:
         for side in (whole.written, whole.read):
             for quantity in side:
                 is_place = quantity.kind in (Kind.TRANSLATION, Kind.POSITION)
@@ -130,8 +121,9 @@ class LeftHanded(ValuesOperator):
                     yield replace(whole, quantity=quantity)
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        name = context.quantity.name
-        found = {name: map_numbers(given(values, name, context.subject), _negative)}
+        quantity = context.quantity
+        value = context.subject.given(values, quantity.name)
+        found = {quantity.name: quantity.map_numbers(value, _negative)}
         for one in context.subject.side:
             if _turns(one) and one.name in values:
                 found[one.name] = _mirrored(one, values[one.name])
@@ -139,7 +131,7 @@ class LeftHanded(ValuesOperator):
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         verb = "" if subject.is_written else "reads "
-        name = label(quantity_of(subject))
+        name = subject.required_quantity.label
         return f"{verb}the pose mirrored: {name} and the turns about x and z negated"
 
 
@@ -155,8 +147,8 @@ def _negative(number: float) -> float:
 
 def _mirrored(quantity: Quantity, value: Value) -> Value | None:
     if not quantity.is_whole:
-        return map_numbers(value, _negative)
-    return turned(quantity, value, lambda one: (one[0], -one[1], one[2], -one[3]))
+        return quantity.map_numbers(value, _negative)
+    return quantity.rotated(value, lambda one: one._replace(x=-one.x, z=-one.z))
 
 
 class BaseForTool(ValuesOperator):
@@ -172,35 +164,42 @@ class BaseForTool(ValuesOperator):
     family = CATALOGUE
     needs = frozenset({Need.PLACE})
     examples = (
-        changed(_MOVE_BY, {"x": 0.1, "y": 0.0, "z": 0.2}, {"x": 0.0, "y": 0.1, "z": -0.2}, current=_DOWN),
-        unchanged(
+        Example.changed(
+            _MOVE_BY, {"x": 0.1, "y": 0.0, "z": 0.2}, {"x": 0.0, "y": 0.1, "z": -0.2}, current=_DOWN
+        ),
+        Example.unchanged(
             _MOVE_BY,
             {"x": 0.1, "y": 0.0, "z": 0.2},
             "both frames have the same axes",
             current=dict.fromkeys(_DOWN, 0.0),
         ),
-        unchanged(_MOVE_BY, 0.1, "the call gives no y", current=_DOWN),
+        Example.unchanged(_MOVE_BY, 0.1, "the call gives no y", current=_DOWN),
     )
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
+    def subjects(self, whole: Subject) -> Iterator[Subject]:
         moved = _moved(whole)
         if whole.current is not None and moved:
             yield replace(whole, quantity=moved[0])
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        before = {one.name: values.get(one.name) for one in _moved(context.subject)}
-        if not all(is_number(value) for value in before.values()):
-            raise Unchanged(NOT_PASSED)
-        try:
-            tool = await _orientation(context.call)
-        except NotToldError:
-            raise Unchanged("the orientation of the tool is not known") from None
-        return _turned(before, tool if context.quantity.frame == _BASE else inverse(tool))
+        before: dict[str, Value] = {one.name: values.get(one.name) for one in _moved(context.subject)}
+        if not all(map(context.quantity.is_scalar, before.values())):
+            raise Unchanged(context.subject.why_missing)
+        asked = (
+            Quantity(f"theta_{axis}", Path(), Kind.ROTATION, axis, "deg", _BASE, Mode.TO) for axis in _AXES
+        )
+        tool = _TOOL_TURNED.orientation([await context.call.current(one) for one in asked])
+        if tool is None:
+            raise Unchanged("the orientation of the tool is not known")
+        turn = tool if context.quantity.frame == _BASE else tool.inverse
+        vector: list[float] = [*before.values()]
+        least = 1e-12 * max(abs(part) for part in vector)  # less is rounding
+        parts = (0.0 if abs(part) < least else part for part in turn.rotated(vector))
+        return dict(zip(before, parts, strict=True))
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        frame = quantity_of(subject).frame
-        names = ", ".join(label(one) for one in _moved(subject))
+        frame = subject.required_quantity.frame
+        names = ", ".join(one.label for one in _moved(subject))
         return f"{names} along the axes of the {_TOOL if frame == _BASE else _BASE}"
 
 
@@ -216,20 +215,6 @@ def _moved(subject: Subject) -> list[Quantity]:
         if len(moved) == len(_AXES):
             return moved
     return []
-
-
-async def _orientation(call: Call) -> Quaternion:
-    """How the tool is turned in the base's frame, by its three angles."""
-    asked = (Quantity(f"theta_{axis}", Path(), Kind.ROTATION, axis, "deg", _BASE, Mode.TO) for axis in _AXES)
-    return from_euler([convert(await call.current(one), "deg", "rad") for one in asked], _ORDER)
-
-
-def _turned(values: Mapping[str, Value], by: Quaternion) -> dict[str, float]:
-    """Three components, turned; numbers that are but rounding become zero."""
-    x, y, z = values.values()
-    _, *parts = product(product(by, (0.0, x, y, z)), inverse(by))
-    size = max(abs(x), abs(y), abs(z))
-    return {name: 0.0 if abs(part) < 1e-12 * size else part for name, part in zip(values, parts, strict=True)}
 
 
 class _WrongTcp(ValueOperator):
@@ -252,7 +237,7 @@ class _WrongTcp(ValueOperator):
 
     def change(self, value: Value, context: Context) -> Value | None:
         offset = self.sign * (context.quantity.tcp or 0.0)
-        return map_numbers(value, lambda number: number + offset)
+        return context.quantity.map_numbers(value, lambda number: number + offset)
 
 
 class TcpMissing(_WrongTcp):
@@ -261,8 +246,8 @@ class TcpMissing(_WrongTcp):
     name = "tcp-missing"
     sign = 1.0
     examples = (
-        changed(_MOVE_TIP, 0.3, 0.18),
-        unchanged(_MOVE_TIP, 0.05, "it would be below the range [0, 0.6]"),
+        Example.changed(_MOVE_TIP, 0.3, 0.18),
+        Example.unchanged(_MOVE_TIP, 0.05, "it would be below the range [0, 0.6]"),
     )
 
 
@@ -272,8 +257,8 @@ class TcpDoubled(_WrongTcp):
     name = "tcp-doubled"
     sign = -1.0
     examples = (
-        changed(_MOVE_TIP, 0.3, 0.42),
-        unchanged(_MOVE_TIP, 0.5, "it would be above the range [0, 0.6]"),
+        Example.changed(_MOVE_TIP, 0.3, 0.42),
+        Example.unchanged(_MOVE_TIP, 0.5, "it would be above the range [0, 0.6]"),
     )
 
 
@@ -290,8 +275,8 @@ class JointTurn(ValueOperator):
     of_read = False
     variants: ClassVar[Mapping[str, float]] = {"+": 1.0, "-": -1.0}
     examples = (
-        changed(_SET_J6, 170, -190, "-"),
-        unchanged(_SET_J6, 170, "530° is out of the joint's range", "+"),
+        Example.changed(_SET_J6, 170, -190, "-"),
+        Example.unchanged(_SET_J6, 170, "530° is out of the joint's range", "+"),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
@@ -301,12 +286,12 @@ class JointTurn(ValueOperator):
     def change(self, value: Value, context: Context) -> Value | None:
         quantity = context.quantity
         turn = 360.0 if quantity.unit == "deg" else quantity.from_unit(2.0 * math.pi, "rad")
-        return map_numbers(value, lambda number: like(number, number + context.option * turn))
+        return quantity.map_numbers(value, lambda number: like(number, number + context.option * turn))
 
 
-_RPY = writing("robot:Arm.orient", "rpy", Kind.EULER, unit="deg", order="xyz")
-_ORIENT = writing("robot:Arm.orient", "turned", Kind.QUATERNION, order="wxyz")
-_LOOK = reading("camera:orientation", Kind.QUATERNION, order="xyzw")
+_RPY = Operation.writing("robot:Arm.orient", "rpy", Kind.EULER, unit="deg", order="xyz")
+_ORIENT = Operation.writing("robot:Arm.orient", "turned", Kind.QUATERNION, order="wxyz")
+_LOOK = Operation.reading("camera:orientation", Kind.QUATERNION, order="xyzw")
 
 
 class _OtherNumbers(ValueOperator):
@@ -323,10 +308,10 @@ class _OtherNumbers(ValueOperator):
         if quantity.orientation(value) is None:
             raise Unchanged("its value is no orientation")
         numbers = self.numbers([float(part) for part in value], context)
-        if quantity.orientation(numbers) is None or is_same(quantity, value, numbers):
+        if quantity.orientation(numbers) is None or quantity.is_same(value, numbers):
             raise Unchanged("it would be the same orientation")
         parts = iter(numbers)
-        return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
+        return quantity.map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
 
 
 class EulerOrder(_OtherNumbers):
@@ -340,14 +325,14 @@ class EulerOrder(_OtherNumbers):
     name = "euler-order"
     kinds = frozenset({Kind.EULER})
     examples = (
-        changed(_RPY, [45.0, 0.0, 90.0], [0.0, -45.0, 90.0]),
-        unchanged(_RPY, [0.0, 0.0, 90.0], "a turn about one axis alone has no order"),
+        Example.changed(_RPY, [45.0, 0.0, 90.0], [0.0, -45.0, 90.0]),
+        Example.unchanged(_RPY, [0.0, 0.0, 90.0], "a turn about one axis alone has no order"),
     )
 
     def numbers(self, numbers: list[float], context: Context) -> list[float]:
         quantity = context.quantity
-        radians = [convert(angle, quantity.unit or "rad", "rad") for angle in numbers]
-        return quantity.numbers(from_euler(radians, (quantity.order or "").swapcase()))
+        other = replace(quantity, order=(quantity.order or "").swapcase()).orientation(numbers)
+        return numbers if other is None else quantity.numbers(other)
 
 
 class QuaternionOrder(_OtherNumbers):
@@ -361,9 +346,9 @@ class QuaternionOrder(_OtherNumbers):
     name = "quaternion-order"
     kinds = frozenset({Kind.QUATERNION})
     examples = (
-        changed(_ORIENT, [0.8, 0.6, 0.0, 0.0], [0.0, 0.8, 0.6, 0.0]),
-        changed(_LOOK, [0.0, 0.0, 0.6, 0.8], [0.0, 0.6, 0.8, 0.0]),
-        unchanged(_ORIENT, [0.5, 0.5, 0.5, 0.5], "all parts are the same, so their order is none"),
+        Example.changed(_ORIENT, [0.8, 0.6, 0.0, 0.0], [0.0, 0.8, 0.6, 0.0]),
+        Example.changed(_LOOK, [0.0, 0.0, 0.6, 0.8], [0.0, 0.6, 0.8, 0.0]),
+        Example.unchanged(_ORIENT, [0.5, 0.5, 0.5, 0.5], "all parts are the same, so their order is none"),
     )
 
     def numbers(self, numbers: list[float], context: Context) -> list[float]:
@@ -383,9 +368,9 @@ class QuaternionSign(_OtherNumbers):
     kinds = frozenset({Kind.QUATERNION})
     variants: ClassVar[dict[str, str]] = {part: part for part in "xyz"}
     examples = (
-        changed(_ORIENT, [0.8, 0.48, 0.36, 0.0], [0.8, 0.48, -0.36, 0.0], "y"),
-        unchanged(_ORIENT, [0.0, 1.0, 0.0, 0.0], "half a turn the other way is the same orientation", "x"),
-        unchanged(_ORIENT, [0.8, 0.48, 0.36, 0.0], "a zero has no sign", "z"),
+        Example.changed(_ORIENT, [0.8, 0.48, 0.36, 0.0], [0.8, 0.48, -0.36, 0.0], "y"),
+        Example.unchanged(_ORIENT, [0.0, 1.0, 0.0, 0.0], "half a turn the other way is the same", "x"),
+        Example.unchanged(_ORIENT, [0.8, 0.48, 0.36, 0.0], "a zero has no sign", "z"),
     )
 
     def numbers(self, numbers: list[float], context: Context) -> list[float]:

@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
-from mutabot.families import MIDDLEWARE
-from mutabot.model import Call, CallFault, Proceed, Reply
-from mutabot.model.operation import COMING, WRITTEN, Form
-from mutabot.model.quantity import Value
-from mutabot.operators.command import CommandOperator, form_of
-from mutabot.operators.examples import whole
-from mutabot.operators.magnitudes import Magnitudes
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
-from mutabot.operators.value import CallOrReply
+from mutabot.api.faults import CommandOperator, Context, Example, Magnitudes, Need, Subject, Unchanged
+from mutabot.api.values import Call, CallFault, Form, Proceed, Reply, Value
 
 from ._examples import CALL, CALL_TO, GOAL, PUBLISH, RECEIVE, TICK
-from .values import comes_by_itself
+from .values import MIDDLEWARE, comes_by_itself
 
+CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _THIRD, _CHANCE = "every-3rd", "30%"
 _PROBABILITY = 0.3
 _FIRST, _PREVIOUS = "first", "previous"
@@ -25,6 +19,8 @@ _NONE_BEFORE = "there is none before it"
 _EARLIER = frozenset({Need.MEMORY, Need.COPIES})
 #: forms that write a message
 _SENT = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL})
+#: forms of what comes by itself
+_COMING = frozenset(form for form in Form if form.comes_by_itself)
 
 
 class MessageOperator(CommandOperator):
@@ -38,7 +34,7 @@ class MessageOperator(CommandOperator):
     forms: ClassVar[frozenset[Form]]
 
     def fits(self, whole: Subject) -> bool:
-        return form_of(whole.operation) in self.forms
+        return whole.operation.form in self.forms
 
 
 class Drop(MessageOperator):
@@ -48,7 +44,7 @@ class Drop(MessageOperator):
 
     name = "drop"
     needs = _EARLIER
-    forms = _SENT | COMING | {Form.RESULT}
+    forms = _SENT | _COMING | {Form.RESULT}
     variants: ClassVar[Mapping[str, str]] = {
         "": "each",
         _THIRD: "every third",
@@ -56,11 +52,11 @@ class Drop(MessageOperator):
     }
     fault = "{which} {what} is lost"
     examples = (
-        whole(PUBLISH, 0.4),
-        whole(RECEIVE, 0.02, lost=True),
-        whole(CALL, {}, lost=True),
-        whole(PUBLISH, 0.4, variant=_THIRD, earlier=(0.2, 0.3)),
-        whole(PUBLISH, 0.3, variant=_THIRD, earlier=(0.2,), away="only the second"),
+        Example.whole(PUBLISH, 0.4),
+        Example.whole(RECEIVE, 0.02, lost=True),
+        Example.whole(CALL, {}, lost=True),
+        Example.whole(PUBLISH, 0.4, variant=_THIRD, earlier=(0.2, 0.3)),
+        Example.whole(PUBLISH, 0.3, variant=_THIRD, earlier=(0.2,), away="only the second"),
     )
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
@@ -75,7 +71,7 @@ class Drop(MessageOperator):
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         if not self._is_meant(context):
             return await proceed(call)
-        form = form_of(call.operation)
+        form = call.operation.form
         if form not in _SENT:  # the middleware has the message already when it is lost
             return (await proceed(call)).never()
         return Reply() if form is Form.PUBLISH else Reply().never()
@@ -90,12 +86,12 @@ class Duplicate(MessageOperator):
     """A message, request or goal arrives twice, a callback is called twice."""
 
     name = "duplicate"
-    forms = _SENT | COMING
+    forms = _SENT | _COMING
     fault = "each {what} arrives twice"
     examples = (
-        whole(PUBLISH, 0.4, 0.4, 0.4),
-        whole(RECEIVE, 0.02, 0.02, then=(0.02,)),
-        whole(CALL, {}, {}, {}),
+        Example.whole(PUBLISH, 0.4, 0.4, 0.4),
+        Example.whole(RECEIVE, 0.02, 0.02, then=(0.02,)),
+        Example.whole(CALL, {}, {}, {}),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -113,15 +109,15 @@ class Stale(MessageOperator):
     variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
     fault = "the {variant} {what} again instead of the new one"
     examples = (
-        whole(RECEIVE, 0.02, 0.5, variant=_FIRST, earlier=(0.5, 0.3)),
-        whole(PUBLISH, 0.4, 0.3, variant=_PREVIOUS, earlier=(0.2, 0.3)),
-        whole(CALL_TO, 0.4, 0.2, variant=_FIRST, earlier=(0.2, 0.3)),
-        whole(PUBLISH, 0.4, variant=_FIRST, away=_NONE_BEFORE),
-        whole(RECEIVE, 0.02, variant=_PREVIOUS, away=_NONE_BEFORE),
+        Example.whole(RECEIVE, 0.02, 0.5, variant=_FIRST, earlier=(0.5, 0.3)),
+        Example.whole(PUBLISH, 0.4, 0.3, variant=_PREVIOUS, earlier=(0.2, 0.3)),
+        Example.whole(CALL_TO, 0.4, 0.2, variant=_FIRST, earlier=(0.2, 0.3)),
+        Example.whole(PUBLISH, 0.4, variant=_FIRST, away=_NONE_BEFORE),
+        Example.whole(RECEIVE, 0.02, variant=_PREVIOUS, away=_NONE_BEFORE),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        if form_of(call.operation) in _SENT:
+        if call.operation.form in _SENT:
             return await proceed(self._old(call, context))
         return self._old(await proceed(call), context)
 
@@ -139,12 +135,12 @@ class Delay(MessageOperator):
     """
 
     name = "delay"
-    forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
+    forms = _SENT | _COMING | {Form.RESULT, Form.TRANSFORM, Form.SLEEP}
     fault = "each {what} comes {variant} s late"
     examples = (
-        whole(PUBLISH, 0.4, {"x": 0.4, "late": 0.1}, size=(0.1, None)),
-        whole(CALL, {}, {"late": 1.0}, size=(1.0, None)),
-        whole(RECEIVE, 0.02, 0.02, size=(1.0, None), late=1.0),
+        Example.whole(PUBLISH, 0.4, {"x": 0.4, "late": 0.1}, size=(0.1, None)),
+        Example.whole(CALL, {}, {"late": 1.0}, size=(1.0, None)),
+        Example.whole(RECEIVE, 0.02, 0.02, size=(1.0, None), late=1.0),
     )
 
     def magnitudes(self, whole: Subject) -> Magnitudes | None:
@@ -155,7 +151,7 @@ class Delay(MessageOperator):
         why = call.cannot(CallFault.LATE)
         if why:
             raise Unchanged(why)
-        if form_of(call.operation) in WRITTEN:
+        if call.operation.form in _SENT:
             return await proceed(call.with_call_fault(CallFault.LATE, seconds))
         return (await proceed(call)).later(seconds)
 
@@ -169,15 +165,15 @@ class Reorder(MessageOperator):
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
     fault = "every other {what} comes after the next one"
     examples = (
-        whole(PUBLISH, 0.4, 0.4, 0.2, earlier=(0.2,)),
-        whole(PUBLISH, 0.2),
-        whole(RECEIVE, 0.02, 0.02, earlier=(0.5,), then=(0.5,)),
-        whole(RECEIVE, 0.5, lost=True),
+        Example.whole(PUBLISH, 0.4, 0.4, 0.2, earlier=(0.2,)),
+        Example.whole(PUBLISH, 0.2),
+        Example.whole(RECEIVE, 0.02, 0.02, earlier=(0.5,), then=(0.5,)),
+        Example.whole(RECEIVE, 0.5, lost=True),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         held = context.memory
-        if form_of(call.operation) is not Form.PUBLISH:
+        if call.operation.form is not Form.PUBLISH:
             reply = await proceed(call)
             if held:
                 return reply.followed_by(held.pop())
@@ -218,7 +214,7 @@ class _Mishap(MessageOperator):
 
 class _Death(_Mishap):
     is_raced = True
-    forms = frozenset({*WRITTEN, *COMING})
+    forms = _SENT | _COMING
 
 
 def _dead(how: str) -> tuple[Example, ...]:

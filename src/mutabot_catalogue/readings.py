@@ -9,30 +9,17 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import ClassVar
 
-from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
-from mutabot.model.quantity import MEASURED, WHOLE, Value
-from mutabot.operators.command import CommandOperator
-from mutabot.operators.examples import changed, reading, unchanged, whole
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
-from mutabot.operators.value import (
-    NOT_RETURNED,
-    ValueOperator,
-    is_number,
-    label,
-    map_numbers,
-    next_of,
-    within,
-)
+from mutabot.api.faults import CommandOperator, Context, Example, Need, Subject, Unchanged, ValueOperator
+from mutabot.api.values import Call, Kind, Operation, Path, Proceed, Quantity, Reply, Value
 
-from .values import Exchange, comes_by_itself, is_alike, like, middle_of
+from .values import CATALOGUE, Exchange, comes_by_itself, is_alike, like, middle_of, within
 
 _NONE, _NAN = "none", "nan"
-_MEASURE = reading("laser:distance", Kind.DISTANCE, unit="m")
-_NEAR = reading("laser:near", Kind.DISTANCE, unit="m", range=(0.0, 2.0))
-_SEE = reading("camera:colour", Kind.LABEL, values=("red", "blue"))
-_OR_NAN = reading("laser:distance", Kind.DISTANCE, unit="m", missing=_NAN)
-_OR_NONE = reading("camera:colour", Kind.LABEL, values=("red", "blue"), missing=_NONE)
+_MEASURE = Operation.reading("laser:distance", Kind.DISTANCE, unit="m")
+_NEAR = Operation.reading("laser:near", Kind.DISTANCE, unit="m", range=(0.0, 2.0))
+_SEE = Operation.reading("camera:colour", Kind.LABEL, values=("red", "blue"))
+_OR_NAN = Operation.reading("laser:distance", Kind.DISTANCE, unit="m", missing=_NAN)
+_OR_NONE = Operation.reading("camera:colour", Kind.LABEL, values=("red", "blue"), missing=_NONE)
 _X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", missing="camera:NoImageError")
 _OR_ERROR = Operation("camera:locate", result=(_X,), command=False)
 _WHICH = Quantity("which", Path("which"), Kind.OUTPUT, values=("nut", "bolt", "washer"))
@@ -42,6 +29,8 @@ _CHANNELS = tuple(
     for name in "xy"
 )
 _LOCATE = Operation("camera:locate", result=_CHANNELS, command=False)
+#: kinds of numbers on a scale, but for orientations as a whole
+_SCALARS = frozenset(kind for kind in Kind if kind.is_measured and not kind.is_whole)
 #: seconds: a camera whose picture has to be worked out
 _LATE = 0.5
 
@@ -57,45 +46,44 @@ class Dropout(CommandOperator):
     name = "dropout"
     family = CATALOGUE
     examples = (
-        changed(_OR_NAN, 0.2, math.nan),
-        changed(_OR_NONE, "red", None),
+        Example.changed(_OR_NAN, 0.2, math.nan),
+        Example.changed(_OR_NONE, "red", None),
         Example(
             Subject(_OR_ERROR, quantity=_X), replied={".x": 0.2}, performed=({},), fails="camera:NoImageError"
         ),
-        unchanged(_OR_NAN, {}, "there is no reading anyway"),
+        Example.unchanged(_OR_NAN, {}, "there is no reading anyway"),
     )
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
+    def subjects(self, whole: Subject) -> Iterator[Subject]:
         raised: set[str] = set()
         for quantity in whole.read:
             if quantity.missing in (_NONE, _NAN):
                 yield replace(whole, quantity=quantity)
-            elif quantity.missing and quantity.missing not in raised and not comes_by_itself(operation):
+            elif quantity.missing and quantity.missing not in raised and not comes_by_itself(whole.operation):
                 raised.add(quantity.missing)  # the whole call raises; what comes by itself raises nothing
                 yield replace(whole, quantity=quantity)
 
     def only_reads(self, subject: Subject) -> bool:
-        return quantity_of(subject).missing in (_NONE, _NAN)
+        return subject.required_quantity.missing in (_NONE, _NAN)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         quantity, reply = context.quantity, await proceed(call)
         if quantity.name not in reply.values:
-            return reply.as_is(NOT_RETURNED)
+            return reply.as_is(context.subject.why_missing)
         if quantity.missing == _NONE:
             return reply.with_value(quantity, None)
         if quantity.missing != _NAN:
             return reply.failing(quantity.missing or "")
-        nothing = map_numbers(reply.values[quantity.name], lambda _: math.nan)
+        nothing = quantity.map_numbers(reply.values[quantity.name], lambda _: math.nan)
         if nothing is None:
             return reply.as_is("its value is no number")
         return reply.with_value(quantity, nothing)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
+        quantity = subject.required_quantity
         gets = {_NONE: "reads None", _NAN: "reads not a number"}
         what = gets.get(quantity.missing or "", f"raises {quantity.missing}")
-        return f"{what} instead of {label(quantity)} {quantity.text(before)}"
+        return f"{what} instead of {quantity.label} {quantity.text(before)}"
 
 
 class _Reading(ValueOperator):
@@ -119,8 +107,8 @@ class OldReading(_Reading):
     kinds = frozenset(Kind)
     variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
     examples = (
-        changed(_MEASURE, 0.2, 0.3, "1", earlier=(0.5, 0.3)),
-        unchanged(_MEASURE, 0.2, "there is none so old yet", "5", earlier=(0.5,)),
+        Example.changed(_MEASURE, 0.2, 0.3, "1", earlier=(0.5, 0.3)),
+        Example.unchanged(_MEASURE, 0.2, "there is none so old yet", "5", earlier=(0.5,)),
     )
 
     def least_calls(self, subject: Subject) -> int:
@@ -135,7 +123,7 @@ class OldReading(_Reading):
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         calls = "1 call" if subject.variant == "1" else f"{subject.variant} calls"
-        return f"reads the {label(quantity_of(subject))} of {calls} ago"
+        return f"reads the {subject.required_quantity.label} of {calls} ago"
 
 
 class StuckReading(_Reading):
@@ -148,8 +136,8 @@ class StuckReading(_Reading):
     calls = 2
     kinds = frozenset(Kind)
     examples = (
-        changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
-        unchanged(_MEASURE, 0.2, "it is the first reading"),
+        Example.changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
+        Example.unchanged(_MEASURE, 0.2, "it is the first reading"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -159,7 +147,7 @@ class StuckReading(_Reading):
         return _kept(context.memory[0])
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return f"reads the first {label(quantity_of(subject))} again and again"
+        return f"reads the first {subject.required_quantity.label} again and again"
 
 
 def _kept(value: Value) -> Value:
@@ -176,25 +164,27 @@ class Spike(_Reading):
 
     name = "spike"
     by_chance = True
-    kinds = MEASURED - WHOLE
+    kinds = _SCALARS
     variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
     examples = (
-        changed(_MEASURE, 0.2, 2.0, "10%", earlier=(0.2,)),
-        changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,)),
-        unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
+        Example.changed(_MEASURE, 0.2, 2.0, "10%", earlier=(0.2,)),
+        Example.changed(_NEAR, 0.2, 2.0, "10%", earlier=(0.2,)),
+        Example.unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
         context.by_chance()
         limits = context.quantity.range
         if limits is None:
-            return map_numbers(value, lambda number: like(number, 10.0 * number))
-        return map_numbers(value, lambda number: like(number, max(limits, key=lambda end: abs(end - number))))
+            return context.quantity.map_numbers(value, lambda number: like(number, 10.0 * number))
+        return context.quantity.map_numbers(
+            value, lambda number: like(number, max(limits, key=lambda end: abs(end - number)))
+        )
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
+        quantity = subject.required_quantity
         jump = "the far end of its range" if quantity.range is not None else "10 times as much"
-        return f"reads {label(quantity)} {quantity.text(before)}, now and then {jump}"
+        return f"reads {quantity.label} {quantity.text(before)}, now and then {jump}"
 
 
 class SaturatedReading(_Reading):
@@ -205,25 +195,25 @@ class SaturatedReading(_Reading):
     """
 
     name = "saturated-reading"
-    kinds = MEASURED - WHOLE
+    kinds = _SCALARS
     examples = (
-        changed(_NEAR, 1.9, 1.8),
-        changed(_MEASURE, -0.5, -0.4, earlier=(0.5,)),
-        unchanged(_NEAR, 1.0, "it is in the middle"),
-        unchanged(_MEASURE, 0.1, "it is less than 80 % of the first", earlier=(0.5,)),
+        Example.changed(_NEAR, 1.9, 1.8),
+        Example.changed(_MEASURE, -0.5, -0.4, earlier=(0.5,)),
+        Example.unchanged(_NEAR, 1.0, "it is in the middle"),
+        Example.unchanged(_MEASURE, 0.1, "it is less than 80 % of the first", earlier=(0.5,)),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
         quantity, memory = context.quantity, context.memory
         if quantity.range is not None:
             limits = middle_of(quantity, 0.8)
-        elif is_number(value):
+        elif quantity.is_scalar(value):
             if not memory:
                 memory.append(0.8 * abs(value))
             limits = (-memory[0], memory[0])
         else:
             return None
-        return map_numbers(value, lambda number: within(number, limits))
+        return context.quantity.map_numbers(value, lambda number: within(number, limits))
 
 
 class SwappedChannels(Exchange):
@@ -236,8 +226,8 @@ class SwappedChannels(Exchange):
 
     name = "swapped-channels"
     examples = (
-        changed(_LOCATE, {".x": 0.4, ".y": 0.1}, {".x": 0.1, ".y": 0.4}, "y"),
-        unchanged(_LOCATE, 0.4, "it reads no y this time", "y"),
+        Example.changed(_LOCATE, {".x": 0.4, ".y": 0.1}, {".x": 0.1, ".y": 0.4}, "y"),
+        Example.unchanged(_LOCATE, 0.4, "it reads no y this time", "y"),
     )
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
@@ -261,15 +251,15 @@ class WrongObject(ValueOperator):
     family = CATALOGUE
     of_read = False
     examples = (
-        changed(_FIND, "washer", "nut", replied={"result": 0.3}),
-        unchanged(_FIND, "screw", "it is not one of the known values"),
+        Example.changed(_FIND, "washer", "nut", replied={"result": 0.3}),
+        Example.unchanged(_FIND, "screw", "it is not one of the known values"),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return bool(whole.read) and quantity.kind is Kind.OUTPUT and len(quantity.values or ()) > 1
 
     def change(self, value: Value, context: Context) -> Value | None:
-        return next_of(value, context.quantity)
+        return context.next_value(value)
 
 
 class ConfusedLabel(_Reading):
@@ -282,8 +272,8 @@ class ConfusedLabel(_Reading):
     by_chance = True
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
     examples = (
-        changed(_SEE, "red", "blue", "30%"),
-        unchanged(_SEE, "red", "most are read rightly", "30%", earlier=("red",) * 3),
+        Example.changed(_SEE, "red", "blue", "30%"),
+        Example.unchanged(_SEE, "red", "most are read rightly", "30%", earlier=("red",) * 3),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
@@ -291,10 +281,10 @@ class ConfusedLabel(_Reading):
 
     def change(self, value: Value, context: Context) -> Value | None:
         context.by_chance()
-        return next_of(value, context.quantity)
+        return context.next_value(value)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return f"reads another {label(quantity_of(subject))}, with a probability of {subject.variant}"
+        return f"reads another {subject.required_quantity.label}, with a probability of {subject.variant}"
 
 
 class LateReading(CommandOperator):
@@ -309,7 +299,7 @@ class LateReading(CommandOperator):
     family = CATALOGUE
     needs = frozenset({Need.WAIT})
     fault = f"read {_LATE:g} s before the program gets it"
-    examples = (whole(_MEASURE, 0.2, 0.2, waited=_LATE),)
+    examples = (Example.whole(_MEASURE, 0.2, 0.2, waited=_LATE),)
 
     def fits(self, whole: Subject) -> bool:
         return bool(whole.read) and not whole.is_command and not comes_by_itself(whole.operation)

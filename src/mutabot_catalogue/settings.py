@@ -5,33 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
-from mutabot.families import MIDDLEWARE
-from mutabot.model import Kind, Operation, Quantity
-from mutabot.model.operation import DEFAULT, Form
-from mutabot.model.quantity import Value, is_same
-from mutabot.operators.command import form_of
-from mutabot.operators.examples import changed, unchanged
-from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of
-from mutabot.operators.value import SAME, ValueOperator, is_number, next_of
+from mutabot.api.faults import Context, Example, Subject, Unchanged, ValueOperator
+from mutabot.api.values import Form, Kind, Operation, Quantity, Value
 
 from . import _examples as calls
+from .values import MIDDLEWARE
 
 _EMPTY, _UNKNOWN = "empty", "unknown"
-_SEND = calls.operation(Form.PUBLISH, "/arm/target", (calls.FRAME,))
-_SEND_ANY = calls.operation(Form.PUBLISH, "/arm/target", (calls.OPEN_FRAME,))
-_HEAR = calls.operation(Form.RECEIVE, "/scan", result=(calls.HEARD_FRAME,))
+_SEND = Operation.under_name(Form.PUBLISH, "/arm/target", (calls.FRAME,))
+_SEND_ANY = Operation.under_name(Form.PUBLISH, "/arm/target", (calls.OPEN_FRAME,))
+_HEAR = Operation.under_name(Form.RECEIVE, "/scan", result=(calls.HEARD_FRAME,))
 
 
 class FreeValueOperator(ValueOperator):
     """Changes a value that a middleware takes whatever it is."""
 
     family = MIDDLEWARE
-
-    def why_unchanged(self, quantity: Quantity, before: Value, after: Value | None) -> str:
-        return SAME if is_same(quantity, after, before) else ""
+    takes_any = True
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
+        quantity = subject.required_quantity
         one, other = quantity.texts(before, after)
         return f"{quantity.name} {one or '“”'} → {other or '“”'}"
 
@@ -44,10 +37,10 @@ class WrongFrame(FreeValueOperator):
     name = "wrong-frame"
     kinds = frozenset({Kind.FRAME_ID})
     examples = (
-        changed(_SEND, "base", "tool"),
-        changed(_SEND_ANY, "base", "base_unknown", _UNKNOWN),
-        changed(_HEAR, "base", "", _EMPTY),
-        unchanged(_SEND, "", "the value would stay the same", _EMPTY),
+        Example.changed(_SEND, "base", "tool"),
+        Example.changed(_SEND_ANY, "base", "base_unknown", _UNKNOWN),
+        Example.changed(_HEAR, "base", "", _EMPTY),
+        Example.unchanged(_SEND, "", "the value would stay the same", _EMPTY),
     )
 
     def variants_of(self, quantity: Quantity) -> Iterable[str]:
@@ -60,7 +53,7 @@ class WrongFrame(FreeValueOperator):
             return f"{value}_unknown"
         if value not in (context.quantity.values or ()):
             raise Unchanged(f"{value!r} is none of the frames that the vocabulary gives")
-        return next_of(value, context.quantity)
+        return context.next_value(value)
 
 
 class ShiftStamp(FreeValueOperator):
@@ -72,10 +65,10 @@ class ShiftStamp(FreeValueOperator):
     #: between two numbers of seconds since 1970, as values are compared
     variants: ClassVar[Mapping[str, float]] = {"-5": -5.0, "5": 5.0}
     examples = (
-        changed(calls.SEND_STAMP, 20.0, 15.0, "-5"),
-        changed(calls.HEAR_STAMP, 20.0, 25.0, "5"),
-        unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty", "5"),
-        unchanged(calls.SEND_STAMP, 2.0, "no stamp is before zero", "-5"),
+        Example.changed(calls.SEND_STAMP, 20.0, 15.0, "-5"),
+        Example.changed(calls.HEAR_STAMP, 20.0, 25.0, "5"),
+        Example.unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty", "5"),
+        Example.unchanged(calls.SEND_STAMP, 2.0, "no stamp is before zero", "-5"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -88,7 +81,7 @@ class ShiftStamp(FreeValueOperator):
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         when = "past" if subject.variant.startswith("-") else "future"
-        return f"{quantity_of(subject).name} lies 5 s in the {when}"
+        return f"{subject.required_quantity.name} lies 5 s in the {when}"
 
 
 class EmptyStamp(FreeValueOperator):
@@ -97,9 +90,9 @@ class EmptyStamp(FreeValueOperator):
     name = "empty-stamp"
     kinds = frozenset({Kind.STAMP})
     examples = (
-        changed(calls.SEND_STAMP, 20.0, 0.0),
-        changed(calls.HEAR_STAMP, 20.0, 0.0),
-        unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty already"),
+        Example.changed(calls.SEND_STAMP, 20.0, 0.0),
+        Example.changed(calls.HEAR_STAMP, 20.0, 0.0),
+        Example.unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty already"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -108,7 +101,7 @@ class EmptyStamp(FreeValueOperator):
         return 0.0
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return f"{quantity_of(subject).name} is empty"
+        return f"{subject.required_quantity.name} is empty"
 
 
 _MISSPELT, _GLOBAL = "misspelt", "global"
@@ -144,10 +137,10 @@ class WrongName(_Setting):
     setting = "name"
     variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
     examples = (
-        changed(calls.SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
-        changed(calls.ADVERTISE, "target", "/target", _GLOBAL, quantity="name"),
-        unchanged(calls.CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
-        unchanged(calls.SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
+        Example.changed(calls.SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
+        Example.changed(calls.ADVERTISE, "target", "/target", _GLOBAL, quantity="name"),
+        Example.unchanged(calls.CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
+        Example.unchanged(calls.SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -168,8 +161,10 @@ class ShortQueue(_Setting):
     name = "short-queue"
     setting = "depth"
     examples = (
-        changed(calls.SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"),
-        unchanged(
+        Example.changed(
+            calls.SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"
+        ),
+        Example.unchanged(
             calls.ADVERTISE, {"name": "target", "depth": 1}, "the value would stay the same", quantity="depth"
         ),
     )
@@ -194,18 +189,20 @@ class FlipLatch(_OtherOfTwo):
     name = "flip-latch"
     setting = "latch"
     examples = (
-        changed(calls.ADVERTISE, True, False, quantity="latch"),
-        changed(calls.ADVERTISE, False, True, quantity="latch"),
-        unchanged(calls.ADVERTISE, {"name": "target"}, "its middleware latches nothing", quantity="latch"),
+        Example.changed(calls.ADVERTISE, True, False, quantity="latch"),
+        Example.changed(calls.ADVERTISE, False, True, quantity="latch"),
+        Example.unchanged(
+            calls.ADVERTISE, {"name": "target"}, "its middleware has no latch", quantity="latch"
+        ),
     )
 
 
 def _of_two(quantity: str, one: str, other: str, first: Operation, second: Operation) -> tuple[Example, ...]:
     """Examples of a policy that has two values beside the system's default."""
     return (
-        changed(first, one, other, quantity=quantity),
-        changed(second, other, one, quantity=quantity),
-        unchanged(
+        Example.changed(first, one, other, quantity=quantity),
+        Example.changed(second, other, one, quantity=quantity),
+        Example.unchanged(
             calls.SUBSCRIBE,
             "system_default",
             f"system_default is neither {one} nor {other}",
@@ -238,9 +235,9 @@ class WrongDeadline(_Setting):
     #: seconds: more often than any of the programs this is for publishes
     variants: ClassVar[Mapping[str, float]] = {_TIGHT: 0.001, _NONE: 0.0}
     examples = (
-        changed(calls.SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
-        changed(calls.ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
-        unchanged(calls.ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
+        Example.changed(calls.SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
+        Example.changed(calls.ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
+        Example.unchanged(calls.ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -256,17 +253,19 @@ class WrongPeriod(_Setting):
     setting = "period"
     variants: ClassVar[Mapping[str, float]] = {"x2": 2.0, "x0.5": 0.5}
     examples = (
-        changed(calls.TIMER, 0.1, 0.2, "x2", quantity="period"),
-        changed(calls.RATE, 0.1, 0.05, "x0.5", quantity="period"),
-        unchanged(calls.TIMER, 0.0, "it has no period", "x2", quantity="period"),
+        Example.changed(calls.TIMER, 0.1, 0.2, "x2", quantity="period"),
+        Example.changed(calls.RATE, 0.1, 0.05, "x0.5", quantity="period"),
+        Example.unchanged(calls.TIMER, 0.0, "it has no period", "x2", quantity="period"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
-        if not is_number(value) or not value:
+        if not context.quantity.is_scalar(value) or not value:
             raise Unchanged("it has no period")
         return value * context.option
 
 
+#: the name of the default of a parameter, as the program or its declaration gives it
+_DEFAULT = Form.PARAMETER.settings[0].name
 _SET, _READ = Subject(calls.SPEED, quantity=calls.SPEED.result[0]), {"value": 0.25}
 
 
@@ -282,19 +281,19 @@ class UseDefault(FreeValueOperator):
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return form_of(whole.operation) is Form.PARAMETER and not quantity.path.steps
+        return whole.operation.form is Form.PARAMETER and not quantity.path.steps
 
     def change(self, value: Value, context: Context) -> Value | None:
-        default = context.call.values[DEFAULT.name]
-        if is_same(context.quantity, default, value):
+        default = context.call.values[_DEFAULT]
+        if context.quantity.is_same(default, value):
             raise Unchanged(_IS_DEFAULT)
         return default
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        if DEFAULT.name not in context.call.values:
+        if _DEFAULT not in context.call.values:
             raise Unchanged(_NO_DEFAULT)
         return await super().changes(values, context)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        one, other = quantity_of(subject).texts(before, after)
+        one, other = subject.required_quantity.texts(before, after)
         return f"the default {other} instead of {one}"

@@ -6,13 +6,11 @@ from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from mutabot.families import CATALOGUE
-from mutabot.model import Operation, Pattern, Quantity
-from mutabot.model.operation import COMING
-from mutabot.model.quantity import Value
-from mutabot.operators.command import form_of
-from mutabot.operators.operator import Context, Subject, Unchanged, quantity_of
-from mutabot.operators.value import ValuesOperator, given, label
+from mutabot.api.faults import Context, Subject, Unchanged, ValuesOperator
+from mutabot.api.values import Operation, Quantity, Value
+
+#: the families of this package's operators
+CATALOGUE, MIDDLEWARE = "catalogue", "middleware"
 
 
 class Exchange(ValuesOperator):
@@ -24,19 +22,18 @@ class Exchange(ValuesOperator):
     def pairs(self, whole: Subject) -> Iterable[tuple[Quantity, Quantity]]:
         """The pairs of a call whose values could be exchanged."""
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
+    def subjects(self, whole: Subject) -> Iterator[Subject]:
         for one, other in self.pairs(whole):
             yield replace(whole, quantity=one, variant=other.name.lstrip("."))
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         one, other = context.quantity.name, _other_of(context.subject).name
-        first, second = (given(values, name, context.subject) for name in (one, other))
+        first, second = (context.subject.given(values, name) for name in (one, other))
         return {one: second, other: first}
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        one, other = quantity_of(subject), _other_of(subject)
-        told = f"{label(one)} {one.text(before)} and {label(other)} {other.text(after)} exchanged"
+        one, other = subject.required_quantity, _other_of(subject)
+        told = f"{one.label} {one.text(before)} and {other.label} {other.text(after)} exchanged"
         return told if subject.is_written else f"reads {told}"
 
 
@@ -52,7 +49,7 @@ def is_alike(one: Quantity, other: Quantity) -> bool:
 
 
 def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
-    """The ends of the middle share of what a quantity may be. Raises Unchanged if nobody knows its range."""
+    """The ends of the middle share of what a quantity may be. Raises Unchanged if its range is not known."""
     limits = quantity.range or quantity.clip
     if limits is None:
         raise Unchanged("the vocabulary gives no range")
@@ -68,5 +65,10 @@ def like(before: float, after: float) -> float:
 
 
 def comes_by_itself(operation: Operation) -> bool:
-    """Whether nobody asks for it: a message to a callback, a tick."""
-    return form_of(operation) in COMING
+    """Whether the program does not ask for it: a message to a callback, a tick."""
+    return operation.form is not None and operation.form.comes_by_itself
+
+
+def within(value: float, limits: tuple[float, float] | None) -> float:
+    """A number, or the end of the limits that is nearest to it."""
+    return value if limits is None else min(max(value, limits[0]), limits[1])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mutabot.extensions import Described, Extension
 
 EXTENSION = Extension(
-    interface=1,
+    interface=2,
     executors={
         "cluster": Described(
             "mutabot_dask.settings:ClusterSettings",

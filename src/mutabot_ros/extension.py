@@ -3,7 +3,7 @@
 from mutabot.extensions import Extension
 
 EXTENSION = Extension(
-    interface=1,
+    interface=2,
     middlewares={
         "rclpy": "mutabot_ros.ros2",
         "rospy": "mutabot_ros.ros1",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot.extensions import INTERFACE, Extension
+from mutabot.api.faults import Extension
 
 PROVIDER = "source"
 
@@ -12,4 +12,4 @@ TEXT = "text"
 OF_TEXT = (CONVENTIONAL, TEXT)
 
 
-EXTENSION = Extension(interface=INTERFACE, faults={PROVIDER: "mutabot_source.provider:SourceFaults"})
+EXTENSION = Extension(interface=2, faults={PROVIDER: "mutabot_source.provider:SourceFaults"})

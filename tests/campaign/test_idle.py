@@ -308,15 +308,15 @@ TEST_OF_HANDLE = """
 
 #: a plug-in with the body of skip, under another name
 LOST = """
-    from mutabot.operators import Need, Operator, Subject
+    from mutabot.operators import Need, Operator
 
     class Rule(Operator):
         name = "lost"
         needs = frozenset({Need.IDLE})
         summary = "A command is lost on its way."
 
-        def subjects(self, operation, pattern):
-            return [Subject(operation, pattern)]
+        def subjects(self, whole):
+            return [whole]
 
         def middleware(self, subject, random):
             async def mutated(call, proceed):

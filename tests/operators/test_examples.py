@@ -12,7 +12,7 @@ import pytest
 from mutabot.families import CATALOGUE
 from mutabot.model import Call, Reply
 from mutabot.model.quantity import changes
-from mutabot.operators import Example, names, operator
+from mutabot.operators import Example, Subject, names, operator
 from mutabot.operators.command import CONTROLS
 from mutabot.operators.passage import CallRecord, rehearse
 
@@ -129,7 +129,8 @@ def test_who_never_makes_the_call_promises_it() -> None:
 def test_the_example_is_a_place_where_the_operator_acts() -> None:
     def is_one(name: str, index: int) -> bool:
         example = example_of(name, index)
-        subjects = operator(name).subjects(example.subject.operation, example.subject.pattern)
+        whole = Subject(example.subject.operation, example.subject.pattern)
+        subjects = operator(name).subjects(whole)
         return example.subject in list(subjects) or bool(example.away)
 
     assert [case for case in CASES if case[0] not in CONTROLS and not is_one(*case)] == []

@@ -20,14 +20,10 @@ TOO_MUCH = """
 
     from typing import ClassVar
 
-    from mutabot.model import Kind, Operation
-    from mutabot.operators.command import CommandOperator
-    from mutabot.operators.examples import changed, writing
-    from mutabot.operators.magnitudes import Magnitudes
-    from mutabot.operators.operator import Example, Subject
-    from mutabot.operators.value import ValueOperator
+    from mutabot.api.faults import CommandOperator, Example, Magnitudes, Subject, ValueOperator
+    from mutabot.api.values import Kind, Operation
 
-    _MOVE = writing("robot:Arm.move_by", "dx", Kind.TRANSLATION, axis="x", unit="m")
+    _MOVE = Operation.writing("robot:Arm.move_by", "dx", Kind.TRANSLATION, axis="x", unit="m")
 
 
     class BitOff(ValueOperator):
@@ -35,7 +31,7 @@ TOO_MUCH = """
         summary = "A translation goes a bit too far."
         kinds = frozenset({Kind.TRANSLATION})
         of_read = False
-        examples: ClassVar = (changed(_MOVE, 1.0, 1.5, size=("", 0.5, None)),)
+        examples: ClassVar = (Example.changed(_MOVE, 1.0, 1.5, size=("", 0.5, None)),)
 
         def magnitudes(self, quantity):
             return Magnitudes(None, (quantity.from_unit(0.001, "m"), quantity.from_unit(0.5, "m")))

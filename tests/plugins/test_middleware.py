@@ -42,7 +42,7 @@ SITE = {
         from mutabot.extensions import Extension
 
         EXTENSION = Extension(
-            interface=1,
+            interface=2,
             middlewares={"toybus": "toybus_mutabot.hooks"},
             environments={"toybus": "toybus_mutabot.environment"},
             libraries={"toybus": ()},

@@ -31,7 +31,7 @@ EXTENSION = """
     from mutabot.extensions import Described, Extension
 
     EXTENSION = Extension(
-        interface=1,
+        interface=2,
         executors={"toy": Described("toy.parts:Choice", "Run it on toys.", "HOW")},
         tables={"toy": "toy.parts:ToyTable"},
         commands={"play": Described("toy.parts:play", "Play with the campaign.", before="list")},
@@ -239,7 +239,7 @@ def test_help_tells_of_packages_and_imports_none_of_them(site: Path) -> None:
         ('"play"', '"show"', "'show' of package 'toy-package' has the name of one of 'mutabot' (commands)"),
         ("parts:play", "parts:NOTHING", "'play' of package 'toy-package' (toy.parts:NOTHING) is no function"),
         ("parts:play", "parts:ply", "'play' of package 'toy-package' (toy.parts:ply) cannot be loaded"),
-        ("interface=1", "interface=2", "was written for version 2 of the extension interface"),
+        ("interface=2", "interface=3", "was written for version 3 of the extension interface"),
     ],
 )
 def test_a_package_that_does_not_fit_is_named(old: str, new: str, told: str, tmp_path: Path) -> None:

@@ -58,7 +58,7 @@ PROJECT = {
 
 #: those that are only found when they are used: by what of an operator the plan asks
 ON_USE = {
-    "fails on an operation": "subjects(self, operation, pattern)",
+    "fails on an operation": "subjects(self, whole)",
     "cannot say what it does": "describe(self, subject, before, after)",
     "has no middleware": "middleware(self, subject, random)",
     "does not know its needs": "needs_of(self, subject)",
@@ -96,13 +96,12 @@ import sys
 
 import pytest
 from mutabot.operators.kinds.commands import Repeat
-from mutabot.operators import Subject
 
 class Rule(Repeat):
     name = "late"
 
-    def subjects(self, operation, pattern):
-        return [Subject(operation, pattern)]
+    def subjects(self, whole):
+        return [whole]
 
     def middleware(self, subject, random):
         async def mutated(call, proceed):
@@ -177,8 +176,8 @@ def broken_plug_in(folder: Path, name: str, code: str) -> Path:
     (details / "METADATA").write_text("Metadata-Version: 2.1\nName: broken-plug-in\nVersion: 1.0\n")
     (details / "entry_points.txt").write_text("[mutabot]\nbroken = broken_plug_in_extension:EXTENSION\n")
     (folder / "broken_plug_in_extension.py").write_text(
-        "from mutabot.extensions import Extension\n"
-        f"EXTENSION = Extension(interface=1, operators={{{name!r}: 'broken_plug_in:Rule'}})\n"
+        "from mutabot.api.faults import Extension\n"
+        f"EXTENSION = Extension(interface=2, operators={{{name!r}: 'broken_plug_in:Rule'}})\n"
     )
     (folder / "broken_plug_in.py").write_text(code)
     return folder

@@ -10,21 +10,27 @@ if TYPE_CHECKING:
     from mutabot.extensions import Described, Extension
     from mutabot.faults import FaultProvider, Planned, PlannedMutant, Preparation, Project
     from mutabot.model.activation import Activation
+    from mutabot.model.call import Unchanged
     from mutabot.model.mutant import Mutant, Site
-    from mutabot.operators.operator import Example, Need, Operator, Rule, Subject
+    from mutabot.operators.command import CommandOperator
+    from mutabot.operators.magnitudes import Magnitudes
+    from mutabot.operators.operator import Context, Example, Need, Rule, Subject
+    from mutabot.operators.value import ValueOperator, ValuesOperator
     from mutabot.original import Original
     from mutabot.runtime.active_fault import ActiveFault
 
 __all__ = [
     "Activation",
     "ActiveFault",
+    "CommandOperator",
+    "Context",
     "Described",
     "Example",
     "Extension",
     "FaultProvider",
+    "Magnitudes",
     "Mutant",
     "Need",
-    "Operator",
     "Original",
     "Planned",
     "PlannedMutant",
@@ -33,6 +39,9 @@ __all__ = [
     "Rule",
     "Site",
     "Subject",
+    "Unchanged",
+    "ValueOperator",
+    "ValuesOperator",
 ]
 _HOMES = {
     "mutabot.extensions": (
@@ -47,16 +56,23 @@ _HOMES = {
         "Project",
     ),
     "mutabot.model.activation": ("Activation",),
+    "mutabot.model.call": ("Unchanged",),
     "mutabot.model.mutant": (
         "Mutant",
         "Site",
     ),
+    "mutabot.operators.command": ("CommandOperator",),
+    "mutabot.operators.magnitudes": ("Magnitudes",),
     "mutabot.operators.operator": (
+        "Context",
         "Example",
         "Need",
-        "Operator",
         "Rule",
         "Subject",
+    ),
+    "mutabot.operators.value": (
+        "ValueOperator",
+        "ValuesOperator",
     ),
     "mutabot.original": ("Original",),
     "mutabot.runtime.active_fault": ("ActiveFault",),

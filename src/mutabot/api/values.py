@@ -7,34 +7,41 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.model.call import Call, Proceed, Reply
-    from mutabot.model.operation import Operation, Pattern
-    from mutabot.model.quantity import Kind, Mode, Quantity
+    from mutabot.model.call import Call, CallFault, Proceed, Reply
+    from mutabot.model.operation import Form, Operation
+    from mutabot.model.path import Path
+    from mutabot.model.quantity import Kind, Mode, Quantity, Value
 
 __all__ = [
     "Call",
+    "CallFault",
+    "Form",
     "Kind",
     "Mode",
     "Operation",
-    "Pattern",
+    "Path",
     "Proceed",
     "Quantity",
     "Reply",
+    "Value",
 ]
 _HOMES = {
     "mutabot.model.call": (
         "Call",
+        "CallFault",
         "Proceed",
         "Reply",
     ),
     "mutabot.model.operation": (
+        "Form",
         "Operation",
-        "Pattern",
     ),
+    "mutabot.model.path": ("Path",),
     "mutabot.model.quantity": (
         "Kind",
         "Mode",
         "Quantity",
+        "Value",
     ),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

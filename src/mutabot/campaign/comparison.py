@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Operation, Pattern, Probe, Quantity
 from mutabot.model.quantity import distinct_texts, is_number, value_text
-from mutabot.model.units import apart, distance
+from mutabot.model.units import apart
 
 if TYPE_CHECKING:
     from mutabot.model.events import TestEnd
@@ -43,7 +43,7 @@ def _angle_between(quantity: Quantity | None, before: Any, after: Any) -> float 
     """How far two values of a quantity are apart as orientations or angles; None if they are none."""
     if quantity is not None and quantity.is_whole:
         first, second = quantity.orientation(before), quantity.orientation(after)
-        return quantity.from_unit(distance(first, second), "rad") if first and second else None
+        return quantity.from_unit(first.distance(second), "rad") if first and second else None
     turn = quantity.full_turn if quantity is not None else None
     if turn is None or not (is_number(before) and is_number(after)):
         return None

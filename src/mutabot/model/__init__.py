@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.model.call import Call, CallFault, Middleware, NotToldError, Proceed, Reply
+    from mutabot.model.call import Call, CallFault, Middleware, Proceed, Reply, Unchanged
     from mutabot.model.mutant import (
         FATAL,
         IDENTITY,
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 __all__ = [
     "ANY", "FATAL", "IDENTITY", "Alternative", "By", "Call", "CallFault", "Case", "Check",
     "Clock", "Compared", "Diverged", "Instrumentation", "Kill", "Kind", "LeftOut", "Looked", "Middleware",
-    "Mode", "Moment", "Mutant", "NotToldError", "Operation", "Outcome", "Path", "Pattern", "Probe",
+    "Mode", "Moment", "Mutant", "Operation", "Outcome", "Path", "Pattern", "Probe",
     "Proceed", "ProgramText", "Quantity", "Reply", "Role", "Sighting", "Site", "Span", "TextPlace",
-    "Verdict", "Vocabulary", "Wait",
+    "Unchanged", "Verdict", "Vocabulary", "Wait",
 ]  # fmt: skip
 _HOMES = {
     "mutabot.model.path": ("Path",),
     "mutabot.model.quantity": ("Kind", "Mode", "Quantity"),
-    "mutabot.model.call": ("Call", "Middleware", "CallFault", "NotToldError", "Proceed", "Reply"),
+    "mutabot.model.call": ("Call", "Middleware", "CallFault", "Proceed", "Reply", "Unchanged"),
     "mutabot.model.mutant": (
         "FATAL", "IDENTITY", "Alternative", "Instrumentation", "Moment", "Mutant", "ProgramText",
         "Role", "Sighting", "Site", "Span", "TextPlace",

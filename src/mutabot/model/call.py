@@ -31,8 +31,8 @@ class CallFault(StrEnum):
     JUMPED = "jumped"
 
 
-class NotToldError(LookupError):
-    """What tells where the robot is has told nothing yet, or does not tell this quantity."""
+class Unchanged(Exception):  # noqa: N818  # no error: a reason
+    """Why an operator leaves a call, or what it reads, as it is."""
 
 
 def _nobody(why: str) -> Callable[..., Any]:
@@ -55,7 +55,7 @@ NO_DEFER = _nobody("nobody makes calls later")
 class Reply:
     """What an operation answered, with the values it reads.
 
-    A message to a callback (see ``model.operation.COMING``) may also come later, several times or not at all.
+    A message to a callback (see ``Form.comes_by_itself``) may also come later, several times or not at all.
     An answer that the program waits for may come later or not at all.
 
     Attributes:
@@ -123,7 +123,7 @@ class Call:
             in this call (an omitted part, None) is missing here.
         reversed: whether the opposite of the operation or pattern is to be done.
         current: tells where a written quantity is now, in that quantity's unit; raises LookupError when
-            the vocabulary names no such reading, and NotToldError if that has told nothing yet.
+            the vocabulary names no such reading, and Unchanged if that has told nothing yet.
         idle: what the operation answers while the robot does nothing; None unless the operator has declared
             that it asks (``Need.IDLE``).
         payload: what the door needs to perform the call; operators never look inside.
@@ -161,6 +161,13 @@ class Call:
         if self.pattern is not None and self.pattern.command is not None:
             return self.pattern.command
         return self.operation.command
+
+    @property
+    def idle_reply(self) -> Reply:
+        """What the command answers while the robot does nothing. Raises LookupError if that is not known."""
+        if self.idle is None:
+            raise LookupError(f"nobody knows what {self.operation.name} answers to doing nothing")
+        return self.idle
 
     def with_value(self, quantity: Quantity, value: Value) -> Call:
         """The same call with another value for one quantity."""

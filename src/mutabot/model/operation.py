@@ -50,13 +50,23 @@ class Form(StrEnum):
     TIMER = "timer"
     RATE = "rate"
 
+    @property
+    def comes_by_itself(self) -> bool:
+        """Whether it is given to a callback, or waited for: it may come late, twice or never."""
+        return self in (Form.RECEIVE, Form.FEEDBACK, Form.TICK)
+
+    @property
+    def settings(self) -> tuple[Quantity, ...]:
+        """What is written where something is set up, or a parameter read: no vocabulary describes it."""
+        if self is Form.PARAMETER:
+            return (_DEFAULT,)
+        return tuple(one for one in _SETTINGS if one.name in SETTING_UP.get(self, ()))
+
 
 #: forms whose argument holds all that is written, and its name
 WRITTEN = {Form.PUBLISH: "message", Form.CALL: "request", Form.GOAL: "goal"}
 #: forms that entries of a vocabulary speak of; all others go with them
 MAIN = frozenset({*WRITTEN, Form.RECEIVE, Form.PARAMETER, Form.TICK, Form.SLEEP, Form.TRANSFORM})
-#: forms of what comes by itself and is given to a callback, or waited for: it may come late, twice or never
-COMING = frozenset({Form.RECEIVE, Form.FEEDBACK, Form.TICK})
 #: forms for whose answer the program waits, or which it is told later
 ANSWERED = frozenset({Form.CALL, Form.GOAL, Form.RESULT, Form.TRANSFORM})
 #: forms that set something up, and the arguments that all middlewares give them: ``name`` is the name as the
@@ -78,14 +88,7 @@ _SETTINGS = (
     Quantity("period", Path("period"), Kind.SETTING, unit="s"),
 )
 #: the default of a parameter, as the program or its declaration gives it
-DEFAULT = Quantity("default", Path("default"), Kind.SETTING)
-
-
-def settings_of(form: Form) -> tuple[Quantity, ...]:
-    """What is written where something is set up, or a parameter read: no vocabulary needs to describe it."""
-    if form is Form.PARAMETER:
-        return (DEFAULT,)
-    return tuple(one for one in _SETTINGS if one.name in SETTING_UP.get(form, ()))
+_DEFAULT = Quantity("default", Path("default"), Kind.SETTING)
 
 
 @frozen
@@ -259,6 +262,29 @@ class Operation:
     named: Named | None = None
     refused: tuple[Refused, ...] = ()
     is_partial: bool = False
+
+    @classmethod
+    def reading(cls, target: str, kind: Kind, **more: Any) -> Operation:
+        """An operation that returns one value and commands nothing; ``more``: attributes of its quantity."""
+        return cls(target, result=(Quantity("result", Path(), kind, **more),), command=False)
+
+    @classmethod
+    def writing(cls, target: str, name: str, kind: Kind, **more: Any) -> Operation:
+        """An operation with one argument; ``more``: attributes of its quantity."""
+        return cls(target, (Quantity(name, Path(name), kind, **more),))
+
+    @classmethod
+    def under_name(
+        cls, form: Form, name: str, arguments: tuple[Quantity, ...] = (), result: tuple[Quantity, ...] = ()
+    ) -> Operation:
+        """What is done under a name on a middleware; a message, request or goal that is sent is a command."""
+        named = Named(form, name)
+        return cls(named.target, arguments, result, command=form in WRITTEN, kind="messages", named=named)
+
+    @property
+    def form(self) -> Form | None:
+        """What is done under its name; None for what has none."""
+        return self.named.form if self.named is not None else None
 
     def by_numbers(self) -> Operation:
         """The same operation, with values compared as numbers: a mock gets the call, and no robot."""

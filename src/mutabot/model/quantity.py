@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import copy
 import math
+import re
+from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import StrEnum
 from math import isclose
@@ -21,10 +23,14 @@ from mutabot.frozen import frozen
 from mutabot.model.data import UNKNOWN, data_of, in_place_of
 from mutabot.model.enumeration import is_member, member_of, written_of
 from mutabot.model.path import Path, Step
-from mutabot.model.units import UNITS, Dimension, Quaternion, convert, distance, to_quaternion, to_values
+from mutabot.model.units import UNITS, Dimension, Quaternion, convert, to_quaternion, to_values
 
 _PARTS = (("sec", "nanosec"), ("secs", "nsecs"))
 _NANO = 1_000_000_000
+#: radians within which two orientations are the same
+_SAME_ORIENTATION = 1e-9
+#: the same where they are a full turn apart, as half a turn and its opposite are: people write it as 3.1416
+_TURNED_ROUND = 1e-3
 
 
 def seconds_of(stamp: Any) -> float | None:
@@ -49,6 +55,7 @@ def with_seconds(stamp: Any, seconds: float) -> Any:
     return float(seconds)
 
 
+_NAMES = re.compile(r"[._]")
 #: digits that tell any two numbers apart
 _MOST_DIGITS = 17
 #: A value a quantity can have, in the quantity's own unit.
@@ -92,6 +99,16 @@ class Kind(StrEnum):
     COUNT = "count"
     NUMBER = "number"
     SETTING = "setting"
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether its values are numbers on a scale, with a unit."""
+        return self in MEASURED
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its values are orientations as a whole."""
+        return self in WHOLE
 
 
 class Mode(StrEnum):
@@ -294,6 +311,102 @@ class Quantity:
         """``value`` in ``unit``, expressed in this quantity's own unit."""
         return convert(value, unit, self.unit) if self.unit is not None else value
 
+    def to_unit(self, value: float, unit: str) -> float:
+        """``value`` in this quantity's own unit, expressed in ``unit``."""
+        return convert(value, self.unit, unit) if self.unit is not None else value
+
+    @property
+    def ends(self) -> tuple[Value, Value] | None:
+        """Its two values, or the ends of its range; None for any other."""
+        if self.values is not None:
+            return (self.values[0], self.values[1]) if len(self.values) == 2 else None
+        return self.range or self.clip
+
+    def other_end(self, value: Value) -> Value | None:
+        """The other of its two ends, as open for close; None if the value is neither of them."""
+        ends, value = self.ends, self.clipped(value)
+        if ends is None or value is None or value not in ends:
+            return None
+        return ends[1] if value == ends[0] else ends[0]
+
+    def is_same(self, one: Value, other: Value) -> bool:
+        """Whether the robot, or the program that reads it, cannot tell two values apart.
+
+        Orientations as a whole are the same if the angle between them is none, in whichever writing; targets
+        of rotations modulo a full turn; numbers, and the parts of vectors, up to the rounding of
+        computations.
+        """
+        if one is other:
+            return True
+        if self.is_whole and not self.by_number:
+            before, after = self.orientation(one), self.orientation(other)
+            if before is not None and after is not None:
+                return before.distance(after) < _SAME_ORIENTATION
+        if not self.is_measured and self.kind is not Kind.STAMP:
+            return same(one, other)
+        return _are_same(self, _plain(one), _plain(other))
+
+    def rotated(
+        self, value: Value, change: Callable[[Quaternion], Quaternion], least: float = _SAME_ORIENTATION
+    ) -> Value | None:
+        """Another orientation, written like ``value``; None if that means none.
+
+        Args:
+            value: the orientation, in this quantity's writing.
+            change: makes the other orientation of it.
+            least: radians; where both are less than that apart, it is ``value`` itself.
+        """
+        before = self.orientation(value)
+        if before is None:
+            return None
+        after = change(before)
+        if before.distance(after) < least and not self.by_number:
+            return value
+        parts = iter(self.numbers(after))
+        return self.map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
+
+    def inverted(self, value: Value) -> Value | None:
+        """The inverse rotation, written like ``value``; ``value`` itself where both are the same."""
+        return self.rotated(value, lambda orientation: orientation.inverse, _TURNED_ROUND)
+
+    @staticmethod
+    def is_scalar(value: Value) -> bool:
+        """Whether a value is a single number: numpy's scalars are, truth values are not."""
+        if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+            return False
+        return isinstance(value, int | float) or (
+            hasattr(value, "__float__") and not hasattr(value, "__len__")
+        )
+
+    @classmethod
+    def map_numbers(cls, value: Value, change: Callable[[Any], float]) -> Value | None:
+        """``change`` applied to a number, or to each number of a vector; None where there is none.
+
+        The container's type is kept: lists stay lists, tuples tuples, arrays arrays. An array of whole
+        numbers becomes one of floating-point numbers.
+        """
+        if cls.is_scalar(value):
+            is_unsigned = getattr(getattr(value, "dtype", None), "kind", "") == "u"  # which has no other sign
+            return change(int(value) if is_unsigned else value)
+        if isinstance(value, list | tuple) and value and all(cls.is_scalar(item) for item in value):
+            return type(value)(change(item) for item in value)
+        if isinstance(value, array) and len(value):
+            return array(value.typecode if value.typecode in "fd" else "d", [change(item) for item in value])
+        if hasattr(value, "dtype") and getattr(value, "ndim", 0) == 1:
+            changed = value.copy() if value.dtype.kind == "f" else value.astype(float)
+            for index in range(len(changed)):
+                changed[index] = change(changed[index])
+            return changed
+        return None
+
+    @property
+    def label(self) -> str:
+        """How descriptions call it: its axis where it has one, and its name."""
+        name = self.name.lstrip(".")
+        if self.axis is None or self.axis in _NAMES.split(name):
+            return name
+        return f"{name} ({self.axis})"
+
     def text(self, value: Value, digits: int = 6) -> str:
         """A value as reports print it, with its unit."""
         if self.is_whole and isinstance(value, list | tuple):
@@ -417,31 +530,10 @@ _ABSOLUTE = 1e-12
 _OF_STAMP = 1e-15
 #: seconds below which stamps are the same: messages count nanoseconds
 _NANOSECOND = 1e-9
-#: radians within which two orientations are the same
-SAME_ORIENTATION = 1e-9
-#: the same where they are a full turn apart, as half a turn and its opposite are: people write it as 3.1416
-TURNED_ROUND = 1e-3
-
-
-def is_same(quantity: Quantity, one: Value, other: Value) -> bool:
-    """Whether the robot, or the program that reads it, cannot tell two values of a quantity apart.
-
-    Orientations as a whole are the same if the angle between them is none, in whichever writing; targets of
-    rotations modulo a full turn; numbers, and the parts of vectors, up to the rounding of computations.
-    """
-    if one is other:
-        return True
-    if quantity.is_whole and not quantity.by_number:
-        before, after = quantity.orientation(one), quantity.orientation(other)
-        if before is not None and after is not None:
-            return distance(before, after) < SAME_ORIENTATION
-    if not quantity.is_measured and quantity.kind is not Kind.STAMP:
-        return same(one, other)
-    return _are_same(quantity, _plain(one), _plain(other))
 
 
 def are_same(quantities: Iterable[Quantity], one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
-    """The same of the values of a call, by the names of its quantities."""
+    """Whether the robot, or the program, cannot tell the values of two calls apart, by quantities' names."""
     return one.keys() == other.keys() and not changes(quantities, other, one)
 
 
@@ -454,7 +546,7 @@ def changes(
     def is_kept(name: str, value: Value) -> bool:
         if name not in before:
             return False
-        return is_same(known[name], before[name], value) if name in known else same(before[name], value)
+        return known[name].is_same(before[name], value) if name in known else same(before[name], value)
 
     return {name: value for name, value in after.items() if not is_kept(name, value)}
 
@@ -491,7 +583,7 @@ def _is_full_turn(quantity: Quantity, one: float, other: float) -> bool:
     turn = _turn_of_target(quantity)
     if turn is None or abs(one - other) < 0.5 * turn:
         return False
-    return abs(math.remainder(one - other, turn)) <= TURNED_ROUND * turn / (2.0 * math.pi)
+    return abs(math.remainder(one - other, turn)) <= _TURNED_ROUND * turn / (2.0 * math.pi)
 
 
 def _turn_of_target(quantity: Quantity) -> float | None:

@@ -128,7 +128,41 @@ def _both(unit: str, to: str) -> tuple[Unit, Unit]:
     return one, other
 
 
-Quaternion = tuple[float, float, float, float]
+class Quaternion(NamedTuple):
+    """A rotation or an orientation, as a unit quaternion."""
+
+    w: float
+    x: float
+    y: float
+    z: float
+
+    @property
+    def inverse(self) -> Quaternion:
+        """The rotation back."""
+        return Quaternion(self.w, -self.x, -self.y, -self.z)
+
+    def after(self, first: Quaternion) -> Quaternion:
+        """The rotation that does ``first``, and then this one: the product of both."""
+        a, b, c, d = self
+        w, x, y, z = first
+        return Quaternion(
+            a * w - b * x - c * y - d * z,
+            a * x + b * w + c * z - d * y,
+            a * y - b * z + c * w + d * x,
+            a * z + b * y - c * x + d * w,
+        )
+
+    def distance(self, other: Quaternion) -> float:
+        """Angle between two orientations, in radians: 0 to π."""
+        w, x, y, z = self.inverse.after(other)
+        return 2.0 * math.atan2(math.hypot(x, y, z), abs(w))
+
+    def rotated(self, vector: Sequence[float]) -> tuple[float, float, float]:
+        """A vector of three numbers, rotated."""
+        x, y, z = vector
+        _, *parts = self.after(Quaternion(0.0, x, y, z)).after(self.inverse)
+        return parts[0], parts[1], parts[2]
+
 
 #: the two ways to write a quaternion
 QUATERNION_ORDERS = ("wxyz", "xyzw")
@@ -143,37 +177,13 @@ def is_euler_order(text: str) -> bool:
     return len(axes) == 3 and set(axes) <= set("xyz") and same_case and all(a != b for a, b in pairwise(axes))
 
 
-def product(first: Quaternion, second: Quaternion) -> Quaternion:
-    """The rotation that does the second, then the first."""
-    a, b, c, d = first
-    w, x, y, z = second
-    return (
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    )
-
-
-def inverse(rotation: Quaternion) -> Quaternion:
-    """The rotation back."""
-    w, x, y, z = rotation
-    return (w, -x, -y, -z)
-
-
-def distance(first: Quaternion, second: Quaternion) -> float:
-    """Angle between two orientations, in radians: 0 to π."""
-    w, x, y, z = product(inverse(first), second)
-    return 2.0 * math.atan2(math.hypot(x, y, z), abs(w))
-
-
 def from_rotation_vector(vector: Sequence[float]) -> Quaternion:
     """The rotation about a vector by its length, in radians."""
     angle = math.hypot(*vector)
     if angle == 0.0:
-        return (1.0, 0.0, 0.0, 0.0)
+        return Quaternion(1.0, 0.0, 0.0, 0.0)
     x, y, z = (math.sin(angle / 2) / angle * part for part in vector)
-    return (math.cos(angle / 2), x, y, z)
+    return Quaternion(math.cos(angle / 2), x, y, z)
 
 
 def to_rotation_vector(rotation: Quaternion) -> list[float]:
@@ -185,10 +195,10 @@ def to_rotation_vector(rotation: Quaternion) -> list[float]:
 
 def from_euler(angles: Sequence[float], order: str) -> Quaternion:
     """The rotation about three axes, in radians, in the order in which they are written."""
-    found: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    found = Quaternion(1.0, 0.0, 0.0, 0.0)
     for axis, angle in zip(order, angles, strict=True):
         turn = from_rotation_vector([angle * (name == axis.lower()) for name in "xyz"])
-        found = product(found, turn) if axis.isupper() else product(turn, found)
+        found = found.after(turn) if axis.isupper() else turn.after(found)
     return found
 
 
@@ -242,7 +252,7 @@ def to_quaternion(
     if size == 0.0:
         return None
     a, b, c, d = (number / size for number in numbers)
-    return (d, a, b, c) if order == "xyzw" else (a, b, c, d)
+    return Quaternion(d, a, b, c) if order == "xyzw" else Quaternion(a, b, c, d)
 
 
 def to_values(

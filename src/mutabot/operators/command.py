@@ -9,14 +9,15 @@ from random import Random
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.families import CONTROL
-from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
+from mutabot.model import Call, Middleware, Operation, Proceed, Reply, Unchanged
 from mutabot.model.operation import Form
 
-from .magnitudes import Magnitudes, sized
-from .operator import Context, Example, Operator, Subject, Unchanged
+from .operator import Context, Example, Operator, Subject
 
 if TYPE_CHECKING:
     from mutabot.model.quantity import Value
+
+    from .magnitudes import Magnitudes
 
 #: how descriptions call what goes its way under a form
 _CALLED = {
@@ -57,12 +58,11 @@ class CommandOperator(Operator):
         """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
         return None
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
+    def subjects(self, whole: Subject) -> Iterator[Subject]:
         if self.fits(whole):
             ladder = self.magnitudes(whole)
             variants = (replace(whole, variant=variant) for variant in self.variants)
-            yield from variants if ladder is None else sized(whole, ladder)
+            yield from variants if ladder is None else ladder.of(whole)
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         context = Context(subject, random, self.variants.get(subject.variant))
@@ -82,21 +82,9 @@ class CommandOperator(Operator):
 
     def words(self, subject: Subject, **more: str) -> str:
         """``fault``, filled in."""
-        form = form_of(subject.operation)
+        form = subject.operation.form
         what = _CALLED.get(form, "call") if form is not None else "call"
         return self.fault.format(what=what, variant=subject.variant, **more)
-
-
-def form_of(operation: Operation) -> Form | None:
-    """What is done under its name; None for what has none."""
-    return operation.named.form if operation.named is not None else None
-
-
-def idle_of(call: Call) -> Reply:
-    """What the command answers while the robot does nothing. Raises LookupError if nobody knows."""
-    if call.idle is None:
-        raise LookupError(f"nobody knows what {call.operation.name} answers to doing nothing")
-    return call.idle
 
 
 _HOME = Operation("robot:Arm.home")

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mutabot.frozen import frozen
@@ -35,12 +34,9 @@ class Magnitudes:
     unit: str | None
     steps: tuple[float, ...]
 
-
-def sized(subject: Subject, ladder: Magnitudes, direction: str = "") -> Iterator[Subject]:
-    """The subject, once for each magnitude of a ladder in one direction."""
-    for size in ladder.steps:
-        variant = f"{direction}{size:g}{'%' if ladder.unit == 'percent' else ladder.unit or ''}"
-        yield replace(subject, variant=variant, magnitude=size, unit=ladder.unit, direction=direction)
+    def of(self, subject: Subject, direction: str = "") -> Iterator[Subject]:
+        """The subject, once for each magnitude in one direction."""
+        return (subject.of_size(size, self.unit, direction) for size in self.steps)
 
 
 def series(first: float, count: int) -> tuple[float, ...]:

@@ -31,7 +31,7 @@ from random import Random
 from typing import Any, ClassVar
 
 from mutabot.families import ROBOT
-from mutabot.model import Call, Middleware, Operation, Pattern, Quantity
+from mutabot.model import Call, Middleware, Operation, Pattern, Quantity, Unchanged
 from mutabot.model.quantity import Value
 
 #: how often each class of bugs was counted in public studies, by the word of docstrings
@@ -137,6 +137,28 @@ class Subject:
     direction: str = ""
 
     @property
+    def required_quantity(self) -> Quantity:
+        """The quantity; an operator on values never gets a subject without one."""
+        assert self.quantity is not None
+        return self.quantity
+
+    def given(self, values: Mapping[str, Value], name: str) -> Value:
+        """A value of a call, by the name of its quantity. Raises Unchanged if the call does not give it."""
+        if name not in values:
+            raise Unchanged(self.why_missing)
+        return values[name]
+
+    @property
+    def why_missing(self) -> str:
+        """Why an operator leaves a call alone, or what it reads, that is without its value."""
+        return f"the call {'passes' if self.is_written else 'returns'} no plain value here"
+
+    def of_size(self, magnitude: float, unit: str | None, direction: str = "") -> Subject:
+        """The same with a fault of this magnitude, after which the variant is called."""
+        variant = f"{direction}{magnitude:g}{'%' if unit == 'percent' else unit or ''}"
+        return replace(self, variant=variant, magnitude=magnitude, unit=unit, direction=direction)
+
+    @property
     def written(self) -> tuple[Quantity, ...]:
         """Quantities the call writes."""
         return self.pattern.arguments if self.pattern is not None else self.operation.arguments
@@ -223,6 +245,79 @@ class Example:
     fails: str = ""
     refused: bool = False
 
+    @classmethod
+    def changed(
+        cls, operation: Operation, before: Any, after: Any, variant: str = "", **more: Any
+    ) -> Example:
+        """A value that the operator changes: as the program writes or the robot answers it, and the new one.
+
+        The first quantity of the operation is meant, or that named ``quantity``; with
+        ``size=("+", 20.0, "mm")`` the fault has a magnitude. ``before``, ``after`` and each of ``earlier``
+        may be all values of the call. ``more``: other attributes of the example.
+        """
+        subject = _subject(operation, variant, more)
+        values, others = _values(subject, before), _values(subject, after)
+        if subject.is_written:
+            return cls(subject, values, performed=(others,), **more)
+        return cls(subject, replied=values, performed=({},), received=others, **more)
+
+    @classmethod
+    def unchanged(
+        cls, operation: Operation, before: Any, away: str, variant: str = "", **more: Any
+    ) -> Example:
+        """A value that the operator leaves alone, and why; else as ``changed``."""
+        subject = _subject(operation, variant, more)
+        more["values" if subject.is_written else "replied"] = _values(subject, before)
+        return cls(subject, away=away, **more)
+
+    @classmethod
+    def whole(
+        cls,
+        operation: Operation,
+        value: Any,
+        *after: Any,
+        variant: str = "",
+        size: tuple[float, str | None] | None = None,
+        earlier: tuple[Any, ...] = (),
+        then: tuple[Any, ...] = (),
+        **more: Any,
+    ) -> Example:
+        """A call on which the operator acts as a whole.
+
+        Of a call that writes, ``value`` is what it writes, and ``after`` what each call writes that reaches
+        the robot. Of one that reads, they are what the robot answers, and what the program gets, if it gets
+        any. Values are those of the first quantity, or a table of several; ``size``: the magnitude and its
+        unit. ``more``: other attributes of the example.
+        """
+        first = next(iter((*operation.arguments, *operation.result)), None)
+
+        def of(one: Any) -> Mapping[str, Value]:
+            return one if first is None or isinstance(one, Mapping) else {first.name: one}
+
+        subject = Subject(operation, variant=variant)
+        subject = subject if size is None else subject.of_size(size[0], size[1])
+        known = {"earlier": tuple(map(of, earlier)), "then": tuple(map(of, then)), **more}
+        if operation.arguments or not operation.result:
+            return cls(subject, of(value), performed=tuple(map(of, after)), **known)
+        received = of(after[0]) if after else None
+        return cls(subject, replied=of(value), performed=({},), received=received, **known)
+
+
+def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subject:
+    """What an example is of; takes what says so out of its other attributes."""
+    quantities = {one.name: one for one in (*operation.arguments, *operation.result)}
+    quantity = quantities[more.pop("quantity", next(iter(quantities)))]
+    subject = Subject(operation, quantity=quantity, variant=variant)
+    more["earlier"] = tuple(_values(subject, one) for one in more.get("earlier", ()))
+    if "size" not in more:
+        return subject
+    direction, size, unit = more.pop("size")
+    return subject.of_size(size, unit, direction)
+
+
+def _values(subject: Subject, given: Any) -> Mapping[str, Value]:
+    return given if isinstance(given, Mapping) else {subject.required_quantity.name: given}
+
 
 class Operator(Rule):
     """A rule that makes mutants of calls.
@@ -266,8 +361,8 @@ class Operator(Rule):
         return self.calls
 
     @abstractmethod
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
-        """Where it could act in a call of this operation (and text command)."""
+    def subjects(self, whole: Subject) -> Iterable[Subject]:
+        """Where it could act in a call; ``whole`` is the call as a whole: its operation and text command."""
 
     @abstractmethod
     def middleware(self, subject: Subject, random: Random) -> Middleware:
@@ -299,7 +394,7 @@ def subject_of(
 
     The variant may have become one ``with_operation``. Controls act where they are put.
     """
-    for subject in rule.subjects(operation, pattern):
+    for subject in rule.subjects(Subject(operation, pattern)):
         name = subject.quantity.name if subject.quantity is not None else None
         if name == quantity and variant in (
             subject.variant,
@@ -339,7 +434,7 @@ class Context:
     @property
     def quantity(self) -> Quantity:
         """The subject's quantity, for operators on values."""
-        return quantity_of(self.subject)
+        return self.subject.required_quantity
 
     def let_go(self, call: Call) -> None:
         """Drop the reference to this call, whose value has been changed."""
@@ -363,12 +458,12 @@ class Context:
         if self.draw().random() >= self.option:
             raise Unchanged("not drawn for this call")
 
+    def next_value(self, value: Value, by: int = 1) -> Value:
+        """The value that comes so many places after another one among the quantity's values.
 
-def quantity_of(subject: Subject) -> Quantity:
-    """The subject's quantity; an operator on values never gets a subject without one."""
-    assert subject.quantity is not None
-    return subject.quantity
-
-
-class Unchanged(Exception):  # noqa: N818  # no error: a reason
-    """Why an operator leaves a call, or what it reads, as it is."""
+        Raises Unchanged if it is none of them.
+        """
+        values = self.quantity.values or ()
+        if value not in values:
+            raise Unchanged("it is not one of the known values")
+        return values[(values.index(value) + by) % len(values)]

@@ -130,11 +130,10 @@ def _draw_thing(draw: ImageDraw.ImageDraw, view: _View, path: TrackPath, row: in
         x, y = view.pixel(place)
         draw.ellipse((x - 5, y - 5, x + 5, y + 5), fill=colour)
         return
-    w, x, y, z = path.rows[row][3:7] if path.track.kind is TrackKind.POSE else (1.0, 0.0, 0.0, 0.0)
-    turn, corners = (w, x, y, z), {}
+    pose = path.rows[row][3:7] if path.track.kind is TrackKind.POSE else (1.0, 0.0, 0.0, 0.0)
+    turn, corners = units.Quaternion(*pose), {}
     for signs in product((-0.5, 0.5), repeat=3):
-        a, b, c = (part * edge for part, edge in zip(signs, size, strict=True))
-        _, *offset = units.product(units.product(turn, (0.0, a, b, c)), units.inverse(turn))
+        offset = turn.rotated([part * edge for part, edge in zip(signs, size, strict=True)])
         corners[signs] = view.pixel([one + other for one, other in zip(place, offset, strict=True)])
     for one, other in combinations(corners, 2):
         if sum(map(ne, one, other)) == 1:  # they differ along one edge

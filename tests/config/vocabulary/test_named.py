@@ -10,7 +10,7 @@ from mutabot.config.vocabulary import load
 from mutabot.errors import ConfigurationError
 from mutabot.model import Mode, Operation, Vocabulary
 from mutabot.model.codec import from_data, to_data
-from mutabot.model.operation import Form, Named, settings_of
+from mutabot.model.operation import Form, Named
 from mutabot.operators.operator import with_operation
 from pages import blocks
 
@@ -42,7 +42,7 @@ def test_a_topic_to_publish_on_comes_with_the_publisher(tmp_path: Path) -> None:
     (quantity,) = publish.arguments
     assert (quantity.name, str(quantity.path)) == ("pose.position.x", "message.pose.position.x")
     assert publish.source == "robot.toml:1 · publish /arm/goal"
-    assert advertise.arguments == settings_of(Form.ADVERTISE)
+    assert advertise.arguments == Form.ADVERTISE.settings
 
 
 def test_what_is_received_is_read(tmp_path: Path) -> None:

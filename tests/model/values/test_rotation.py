@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from mutabot.model.units import apart, distance, inverse, is_euler_order, to_quaternion, to_values
+from mutabot.model.units import Quaternion, apart, is_euler_order, to_quaternion, to_values
 
 ORDERS = [
     "".join(axes) for axes in combinations("xyz", repeat=3) if axes[0] != axes[1] and axes[1] != axes[2]
@@ -32,7 +32,7 @@ def test_euler_angles_are_those_of_scipy(order: str) -> None:
     for rotation in ROTATIONS:
         angles = rotation.as_euler(order)
         found = read("euler", order, angles)
-        assert distance(found, tuple(rotation.as_quat(scalar_first=True))) < 1e-9
+        assert found.distance(Quaternion(*rotation.as_quat(scalar_first=True))) < 1e-9
         assert to_values(found, "euler", order, same) == pytest.approx(angles, abs=1e-9)
 
 
@@ -41,7 +41,7 @@ def test_euler_angles_are_those_of_scipy(order: str) -> None:
 def test_euler_angles_lead_back_where_two_axes_fall_together(order: str, middle: float) -> None:
     before = read("euler", order, [0.4, middle, -0.3])
     after = read("euler", order, to_values(before, "euler", order, same))
-    assert distance(before, after) < 1e-6
+    assert before.distance(after) < 1e-6
 
 
 def test_rotation_vectors_are_those_of_scipy() -> None:
@@ -56,25 +56,25 @@ def test_quaternions_are_read_in_their_order_and_of_any_length(order: str) -> No
     rotation = ROTATIONS[0]
     parts = rotation.as_quat(scalar_first=order == "wxyz")
     found = read("quaternion", order, 2.5 * parts)
-    assert distance(found, tuple(rotation.as_quat(scalar_first=True))) < 1e-9
+    assert found.distance(Quaternion(*rotation.as_quat(scalar_first=True))) < 1e-9
     assert to_values(found, "quaternion", order, same) == pytest.approx(parts)
 
 
 def test_the_distance_is_the_angle_between_two_orientations() -> None:
     one, other = ROTATIONS[0], ROTATIONS[1]
-    found = distance(read("quaternion", "xyzw", one.as_quat()), read("quaternion", "xyzw", other.as_quat()))
+    found = read("quaternion", "xyzw", one.as_quat()).distance(read("quaternion", "xyzw", other.as_quat()))
     assert found == pytest.approx((one.inv() * other).magnitude())
 
 
 def test_half_a_turn_either_way_is_the_same_orientation() -> None:
     one, other = (read("rotation_vector", None, [0.0, angle, 0.0]) for angle in (math.pi, -math.pi))
-    assert distance(one, other) < 1e-9
-    assert distance(one, inverse(one)) < 1e-9
+    assert one.distance(other) < 1e-9
+    assert one.distance(one.inverse) < 1e-9
 
 
 def test_a_tiny_distance_keeps_its_digits() -> None:
     one, other = (read("rotation_vector", None, [0.0, 0.0, angle]) for angle in (0.5, 0.5 + 1e-9))
-    assert distance(one, other) == pytest.approx(1e-9, rel=1e-3)
+    assert one.distance(other) == pytest.approx(1e-9, rel=1e-3)
 
 
 @pytest.mark.parametrize("values", [[1.0, 2.0], [0.0] * 4, "abcd", [1, 2, 3, math.nan], None, [1, 2, 3, "w"]])

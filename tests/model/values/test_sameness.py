@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mutabot.model import Kind, Mode, Path, Quantity
-from mutabot.model.quantity import are_same, changes, is_same
+from mutabot.model.quantity import are_same, changes
 from mutabot.model.units import from_rotation_vector, to_euler
 
 YAW_TO = Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", mode=Mode.TO)
@@ -86,14 +86,14 @@ OTHERS = [
 
 @pytest.mark.parametrize(("quantity", "one", "other"), SAME)
 def test_the_robot_cannot_tell_them_apart(quantity: Quantity, one: Any, other: Any) -> None:
-    assert is_same(quantity, one, other)
-    assert is_same(quantity, other, one)
+    assert quantity.is_same(one, other)
+    assert quantity.is_same(other, one)
 
 
 @pytest.mark.parametrize(("quantity", "one", "other"), OTHERS)
 def test_the_robot_can_tell_them_apart(quantity: Quantity, one: Any, other: Any) -> None:
-    assert not is_same(quantity, one, other)
-    assert not is_same(quantity, other, one)
+    assert not quantity.is_same(one, other)
+    assert not quantity.is_same(other, one)
 
 
 @pytest.mark.parametrize("order", ["xyz", "ZYX", "zxz"])
@@ -102,7 +102,7 @@ def test_a_pose_in_another_writing_is_the_same_pose(order: str) -> None:
     angles = to_euler(from_rotation_vector([0.3, -0.7, 1.1]), order)
     first, middle, third = angles
     other = [first + math.pi, (-middle if order == "zxz" else math.pi - middle), third + math.pi]
-    assert is_same(quantity, angles, other)
+    assert quantity.is_same(angles, other)
 
 
 def test_values_of_a_call_are_compared_by_their_quantities() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.model.operation import Form, Refused
+from mutabot.model.operation import Form, Operation, Refused
 from mutabot_catalogue._examples import (
     ADVERTISE,
     CALL,
@@ -20,7 +20,6 @@ from mutabot_catalogue._examples import (
     SPEED,
     STAMP,
     TICK,
-    operation,
 )
 from tests.runtime.client import ClientStage, LostAnswerError
 
@@ -207,7 +206,7 @@ def check(event):
 
 
 SET_UP = """
-from mutabot.model.operation import Form, Refused
+from mutabot.model.operation import Form, Operation, Refused
 
 def run(client):
     client.set_up(Form.ADVERTISE, name="target", depth=10, reliability="reliable", deadline=0.0, latch=False)
@@ -269,7 +268,7 @@ def run(client):
 def test_the_header_of_a_copy_is_wrong(
     tmp_path: Path, operator: str, variant: str, quantity: str, expected: Any
 ) -> None:
-    send = operation(Form.PUBLISH, "/arm/target", (FRAME, STAMP))
+    send = Operation.under_name(Form.PUBLISH, "/arm/target", (FRAME, STAMP))
     own, client, _ = ClientStage(tmp_path, (send,)).mutated(HEADER, operator, variant, quantity)
     assert own == ("base", 20)
     (_, _, message) = client.log[0]

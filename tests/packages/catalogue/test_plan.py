@@ -18,7 +18,6 @@ from mutabot_catalogue._examples import (
     RECEIVE,
     SPEED,
     TICK,
-    operation,
 )
 
 
@@ -95,7 +94,7 @@ def test_operators_of_robots_leave_settings_alone() -> None:
 
 
 def test_operators_of_robots_leave_headers_alone() -> None:
-    hear = operation(Form.RECEIVE, "/scan", result=(HEARD_STAMP, HEARD_FRAME))
+    hear = Operation.under_name(Form.RECEIVE, "/scan", result=(HEARD_STAMP, HEARD_FRAME))
     header = Hit({}, {"header.stamp": 20.0, "header.frame_id": "base"})
     assert not planned(hear, header, family=ROBOT).mutants
     found = kinds(planned(hear, header))

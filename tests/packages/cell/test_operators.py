@@ -103,7 +103,7 @@ def test_a_quaternion_in_the_other_order_and_back_is_the_same(order: str) -> Non
 def test_a_quaternion_stays_one_of_unit_length(name: str) -> None:
     turned = quantity("turned", Kind.QUATERNION, order="wxyz")
     where = Operation("robot:Arm.orient", (turned,))
-    for subject in operator(name).subjects(where, None):
+    for subject in operator(name).subjects(Subject(where)):
         found = written(name, subject, {"turned": [0.1, -0.5, 0.7, 0.5]})["turned"]
         assert math.hypot(*found) == pytest.approx(1.0)
         assert found != [0.1, -0.5, 0.7, 0.5]

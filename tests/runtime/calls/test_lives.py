@@ -136,7 +136,7 @@ def mutants(vocabulary: Vocabulary, sites: list[SiteSeen]) -> Iterator[Mutant]:
         rule = operator(name)
         for operation in vocabulary.operations:
             subjects: dict[Any, Subject] = {}
-            for subject in rule.subjects(operation, None):
+            for subject in rule.subjects(Subject(operation)):
                 subjects.setdefault((subject.quantity and subject.quantity.name, subject.variant), subject)
             seen = next((one for one in sites if one.operation == operation.target), None)
             for (quantity, variant), subject in subjects.items() if seen is not None else ():

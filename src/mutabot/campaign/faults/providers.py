@@ -34,7 +34,6 @@ from mutabot.operators.operator import Rule, with_operation
 from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
 from mutabot.operators.registry import operator as operator_named
-from mutabot.operators.value import NOT_PASSED, NOT_RETURNED, label
 from mutabot.original import Hit, NoAnswerError, Original, RecordedAnswers, idle_of
 
 
@@ -245,7 +244,7 @@ def _subjects(
         if place.site.role is Role.ORACLE and Need.PROGRAM in rule.needs:
             continue
         with _named(rule, operation):
-            subjects = list(rule.subjects(operation, pattern))
+            subjects = list(rule.subjects(Subject(operation, pattern)))
         for subject in subjects:
             yield subject, rule
 
@@ -399,7 +398,7 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
     if quantity is None:
         return f"would change nothing in {calls}"
     if value is None and hits == 1:
-        return NOT_PASSED if subject.is_written else NOT_RETURNED
+        return subject.why_missing
     if value is None:
         return f"none of the {hits} calls {'passes' if subject.is_written else 'returns'} a plain value here"
     if quantity.is_numeric and not holds_number(value):
@@ -431,7 +430,7 @@ def _description(
         name = subject.pattern.name
         what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
     if seen is None and subject.quantity is not None and not rule.has_sizes:
-        return f"{what}: {rule.name} of {label(subject.quantity)}"
+        return f"{what}: {rule.name} of {subject.quantity.label}"
     return f"{what}: {rule.describe(subject, *(seen or (None, None)))}"
 
 

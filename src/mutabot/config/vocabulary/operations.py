@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import ANY, Case, Clock, Kind, Operation, Path, Pattern, Probe, Quantity, Wait
-from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused, settings_of
+from mutabot.model.operation import ENDINGS, WRITTEN, Form, Named, Refused
 from mutabot.model.signature import parse_signature
 
 from . import schema
@@ -117,7 +117,7 @@ def _read_operation(
     written = getattr(table, sides.written) if sides.written else None
     modes = in_each_mode(place / (sides.written or ""), written) if written else []
     described = [(cases, read_quantities(at, raw, sides, is_written=True)) for cases, at, raw in modes]
-    settings = settings_of(form) if form is not None else ()
+    settings = form.settings if form is not None else ()
     operation = Operation(
         target=target,
         arguments=described[0][1] if described else settings,

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Reply
+from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Reply, Unchanged
 from mutabot.model.notation import Notation
-from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, changed, unchanged, whole, writing
-from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
+from mutabot.operators.command import CommandOperator
+from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY
+from mutabot.operators.operator import Context, Example, Need, Subject
 
 if TYPE_CHECKING:
     from mutabot.model.quantity import Value
 
 _HOME = Operation("robot:Arm.home")
-_OPEN_TO = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
-_LAMP = writing("robot:Lamp.set", "lit", Kind.OUTPUT, values=(False, True))
-_FAN = writing("robot:Fan.set", "mode", Kind.OUTPUT, values=("off", "slow", "fast"))
+_OPEN_TO = Operation.writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
+_LAMP = Operation.writing("robot:Lamp.set", "lit", Kind.OUTPUT, values=(False, True))
+_FAN = Operation.writing("robot:Fan.set", "mode", Kind.OUTPUT, values=("off", "slow", "fast"))
 _LIFT = Pattern("lift/{height:g}", opposite="drop/{height:g}")
 _SEND = Operation("link:send", message="text", patterns=(_LIFT,))
 
@@ -37,7 +38,7 @@ class Skip(CommandOperator):
     examples = (Example(Subject(GRIP), {"position": 1}, performed=()), Example(Subject(_HOME), performed=()))
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        return idle_of(call)
+        return call.idle_reply
 
 
 class Repeat(CommandOperator):
@@ -50,7 +51,7 @@ class Repeat(CommandOperator):
 
     name = "repeat"
     fault = "do it twice"
-    examples = (whole(MOVE_BY, 0.1, 0.1, 0.1),)
+    examples = (Example.whole(MOVE_BY, 0.1, 0.1, 0.1),)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         await proceed(call)
@@ -68,21 +69,20 @@ class Opposite(CommandOperator):
 
     name = "opposite"
     examples = (
-        changed(GRIP, 1, 0),
-        changed(_LAMP, False, True),
-        changed(_OPEN_TO, 85.0, 0.0),
+        Example.changed(GRIP, 1, 0),
+        Example.changed(_LAMP, False, True),
+        Example.changed(_OPEN_TO, 85.0, 0.0),
         Example(Subject(CLOSE), performed=({"reversed": True},)),
         Example(Subject(_SEND, _LIFT), {"height": 5}, performed=({"height": 5, "reversed": True},)),
-        unchanged(_OPEN_TO, 40.0, "half open has no opposite"),
-        unchanged(GRIP, 0.5, "neither of the two states"),
-        unchanged(_FAN, "slow", "three states have no opposite"),
+        Example.unchanged(_OPEN_TO, 40.0, "half open has no opposite"),
+        Example.unchanged(GRIP, 0.5, "neither of the two states"),
+        Example.unchanged(_FAN, "slow", "three states have no opposite"),
     )
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
-        whole = Subject(operation, pattern)
+    def subjects(self, whole: Subject) -> Iterator[Subject]:
         for quantity in whole.written:
-            if quantity.kind in (Kind.OPENING, Kind.OUTPUT) and _ends(quantity) is not None:
-                yield Subject(operation, pattern, quantity)
+            if quantity.kind in (Kind.OPENING, Kind.OUTPUT) and quantity.ends is not None:
+                yield replace(whole, quantity=quantity)
         if whole.opposite is not None:
             yield whole
 
@@ -90,7 +90,10 @@ class Opposite(CommandOperator):
         quantity = context.subject.quantity
         if quantity is None:
             return await proceed(call.opposite())
-        return await proceed(call.with_value(quantity, other_end(quantity, call.values.get(quantity.name))))
+        end = quantity.other_end(call.values.get(quantity.name))
+        if end is None:
+            raise Unchanged("the value is neither of the two ends")
+        return await proceed(call.with_value(quantity, end))
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         if subject.quantity is not None:
@@ -99,18 +102,3 @@ class Opposite(CommandOperator):
         if opposite is not None and pattern is not None and pattern.notation is not None:
             return f"{Notation.compile(opposite).short} instead"
         return f"{opposite} instead"
-
-
-def _ends(quantity: Quantity) -> tuple[Value, Value] | None:
-    if quantity.values is not None:
-        return (quantity.values[0], quantity.values[1]) if len(quantity.values) == 2 else None
-    return quantity.range or quantity.clip
-
-
-def other_end(quantity: Quantity, value: Value) -> Value:
-    """The other of a quantity's two states. Raises Unchanged if the value is neither."""
-    ends = _ends(quantity)
-    value = quantity.clipped(value)
-    if ends is None or value is None or value not in ends:
-        raise Unchanged("the value is neither of the two ends")
-    return ends[1] if value == ends[0] else ends[0]

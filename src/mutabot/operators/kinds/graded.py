@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 from mutabot.families import GRADED
 from mutabot.model import Call, Kind, Mode, Operation, Proceed, Quantity, Reply
-from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector, product
+from mutabot.model.units import Dimension, convert, convert_difference, from_rotation_vector
 from mutabot.operators.command import CommandOperator
-from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, whole, writing
+from mutabot.operators.examples import LOCATE, MOVE_TO
 from mutabot.operators.magnitudes import Magnitudes, ladder_in, own_ladder, per_second
-from mutabot.operators.operator import Context, Need, Subject, quantity_of
-from mutabot.operators.value import ValueOperator, is_number, label, turned
+from mutabot.operators.operator import Context, Example, Need, Subject
+from mutabot.operators.value import ValueOperator
 
 if TYPE_CHECKING:
     from mutabot.model.quantity import Value
@@ -53,7 +53,7 @@ class NumberOperator(ValueOperator):
 
     def size_of(self, subject: Subject) -> float:
         """The magnitude in the quantity's unit."""
-        quantity, size = quantity_of(subject), subject.magnitude or 0.0
+        quantity, size = subject.required_quantity, subject.magnitude or 0.0
         unit = self.unit_of(subject)
         if unit is not None and unit != quantity.unit:
             size = convert_difference(size, unit, quantity.unit or "rad")
@@ -72,7 +72,7 @@ class NumberOperator(ValueOperator):
         verb = "" if subject.is_written else "reads "
         component = subject.direction.rstrip("+-")
         about = f" about {component}" if component and not component.startswith("[") else component
-        return f"{verb}{label(quantity_of(subject))}{about} {self._fault(subject)}"
+        return f"{verb}{subject.required_quantity.label}{about} {self._fault(subject)}"
 
     def _fault(self, subject: Subject) -> str:
         size = f"{subject.magnitude:g}"
@@ -101,13 +101,13 @@ def _in_component(context: Context, value: Value, change: Callable[[float], floa
     if quantity.is_whole:
         return _turned(quantity, component, value, change)
     if not component:
-        return _like(quantity, value, change(value)) if is_number(value) else None
+        return _like(quantity, value, change(value)) if quantity.is_scalar(value) else None
     index = int(component.strip("[]"))
     try:
         before = value[index]
     except (TypeError, IndexError, KeyError):
         return None
-    if not is_number(before):
+    if not quantity.is_scalar(before):
         return None
     copy = value.copy() if hasattr(value, "copy") else list(value)
     copy[index] = _like(quantity, before, change(float(before)))
@@ -117,7 +117,7 @@ def _in_component(context: Context, value: Value, change: Callable[[float], floa
 def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float], float]) -> Value | None:
     radians = convert_difference(change(0.0), quantity.unit or "rad", "rad")
     turn = from_rotation_vector([radians if one == axis else 0.0 for one in "xyz"])
-    return turned(quantity, value, lambda orientation: product(turn, orientation))
+    return quantity.rotated(value, turn.after)
 
 
 def _like(quantity: Quantity, before: Value, after: float) -> float:
@@ -127,12 +127,16 @@ def _like(quantity: Quantity, before: Value, after: float) -> float:
 
 #: angles that say where something is: a share of them means nothing, as their zero is anywhere
 _ANY_ZERO = frozenset({Kind.ORIENTATION, Kind.ANGLE, Kind.TEMPERATURE})
-_MOVE = writing("robot:Arm.move_by", "dy", Kind.TRANSLATION, axis="y", unit="m", frame="base", mode=Mode.BY)
+_MOVE = Operation.writing(
+    "robot:Arm.move_by", "dy", Kind.TRANSLATION, axis="y", unit="m", frame="base", mode=Mode.BY
+)
 _GO = replace(MOVE_TO, arguments=MOVE_TO.arguments[:1])
-_LIFT = writing("robot:Arm.lift_to", "z", Kind.TRANSLATION, axis="z", unit="m", mode=Mode.TO, range=(0, 0.5))
-_ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="deg")
+_LIFT = Operation.writing(
+    "robot:Arm.lift_to", "z", Kind.TRANSLATION, axis="z", unit="m", mode=Mode.TO, range=(0, 0.5)
+)
+_ORIENT = Operation.writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="deg")
 _MEANT = Subject(LOCATE)
-_FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
+_FEEL = Operation.reading("sensor:gap", Kind.DISTANCE, unit="m")
 
 
 class Offset(NumberOperator):
@@ -146,10 +150,10 @@ class Offset(NumberOperator):
 
     name = "offset"
     examples = (
-        changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm")),
-        changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm")),
-        changed(_ORIENT, [0.0, 0.0, 30.0], [0.0, 0.0, 50.0], size=("z+", 20.0, "deg")),
-        unchanged(_LIFT, 0.45, "0.55 m is outside the range [0, 0.5]", size=("+", 100.0, "mm")),
+        Example.changed(_MOVE, 0.2, 0.22, size=("+", 20.0, "mm")),
+        Example.changed(LOCATE, 0.55, 0.545, size=("-", 5.0, "mm")),
+        Example.changed(_ORIENT, [0.0, 0.0, 30.0], [0.0, 0.0, 50.0], size=("z+", 20.0, "deg")),
+        Example.unchanged(_LIFT, 0.45, "0.55 m is outside the range [0, 0.5]", size=("+", 100.0, "mm")),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
@@ -169,9 +173,9 @@ class Scale(NumberOperator):
 
     name = "scale"
     examples = (
-        changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
-        changed(_FEEL, 0.3, 0.27, size=("-", 10.0, "percent")),
-        unchanged(_MOVE, 0.0, "nothing is no share of", size=("+", 5.0, "percent")),
+        Example.changed(_MOVE, 0.2, 0.21, size=("+", 5.0, "percent")),
+        Example.changed(_FEEL, 0.3, 0.27, size=("-", 10.0, "percent")),
+        Example.unchanged(_MOVE, 0.0, "nothing is no share of", size=("+", 5.0, "percent")),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
@@ -202,14 +206,14 @@ class SensorNoise(NumberOperator):
     of_written = False
     fault = "+ noise, σ = {}"
     examples = (
-        changed(
+        Example.changed(
             LOCATE,
             0.55,
             # the draw for the first call of the generator that the examples are run with
             0.55 + 0.01 * Context(_MEANT, Random(1), number=1).draw().gauss(0.0, 1.0),
             size=("", 10.0, "mm"),
         ),
-        unchanged(LOCATE, None, "there is no number to disturb", size=("", 10.0, "mm")),
+        Example.unchanged(LOCATE, None, "there is no number to disturb", size=("", 10.0, "mm")),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
@@ -231,8 +235,8 @@ class Drift(NumberOperator):
     needs = frozenset({Need.CLOCK})
     of_written = False
     examples = (
-        changed(_FEEL, 0.3, 0.32, size=("+", 2.0, "mm/s"), time=10.0),
-        unchanged(_FEEL, 0.3, "no time has passed yet", size=("-", 2.0, "mm/s")),
+        Example.changed(_FEEL, 0.3, 0.32, size=("+", 2.0, "mm/s"), time=10.0),
+        Example.unchanged(_FEEL, 0.3, "no time has passed yet", size=("-", 2.0, "mm/s")),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
@@ -257,9 +261,9 @@ class Quantise(NumberOperator):
     directions = ("",)
     fault = "in steps of {}"
     examples = (
-        changed(_MOVE, 0.23, 0.25, size=("", 50.0, "mm")),
-        changed(LOCATE, 0.55, 0.56, size=("", 20.0, "mm")),
-        unchanged(_MOVE, 0.2, "it is a multiple of the step", size=("", 50.0, "mm")),
+        Example.changed(_MOVE, 0.23, 0.25, size=("", 50.0, "mm")),
+        Example.changed(LOCATE, 0.55, 0.56, size=("", 20.0, "mm")),
+        Example.unchanged(_MOVE, 0.2, "it is a multiple of the step", size=("", 50.0, "mm")),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
@@ -283,9 +287,11 @@ class Deadband(NumberOperator):
     directions = ("",)
     fault = "with a dead band of {}"
     examples = (
-        changed(_GO, 0.41, 0.4, size=("", 20.0, "mm"), earlier=(0.4,)),
-        changed(_FEEL, 0.31, 0.3, size=("", 20.0, "mm"), earlier=(0.3,)),
-        unchanged(_GO, 0.45, "it is far enough from the last target", size=("", 20.0, "mm"), earlier=(0.4,)),
+        Example.changed(_GO, 0.41, 0.4, size=("", 20.0, "mm"), earlier=(0.4,)),
+        Example.changed(_FEEL, 0.31, 0.3, size=("", 20.0, "mm"), earlier=(0.3,)),
+        Example.unchanged(
+            _GO, 0.45, "far enough from the last target", size=("", 20.0, "mm"), earlier=(0.4,)
+        ),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
@@ -298,7 +304,7 @@ class Deadband(NumberOperator):
         return after
 
 
-_PAUSE = writing("cell:Cell.wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 3600.0))
+_PAUSE = Operation.writing("cell:Cell.wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 3600.0))
 _HOME = Operation("robot:Arm.home")
 
 
@@ -316,8 +322,8 @@ class Lag(CommandOperator):
     has_sizes = True
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     examples = (
-        whole(_HOME, {}, {}, size=(200.0, "ms"), waited=0.2),
-        whole(_FEEL, 0.3, size=(50.0, "ms"), waited=0.05),
+        Example.whole(_HOME, {}, {}, size=(200.0, "ms"), waited=0.2),
+        Example.whole(_FEEL, 0.3, size=(50.0, "ms"), waited=0.05),
     )
 
     def fits(self, whole: Subject) -> bool:
@@ -354,8 +360,8 @@ class Early(NumberOperator):
     directions = ("-",)
     of_read = False
     examples = (
-        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms")),
-        unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
+        Example.changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms")),
+        Example.unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:

@@ -6,19 +6,11 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
+from mutabot.model import Kind, Mode, Operation, Path, Quantity, Unchanged
 from mutabot.model.quantity import READING_OF, Value
-from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.operator import Context, Need, Subject, Unchanged, quantity_of
-from mutabot.operators.value import (
-    NOT_PASSED,
-    ValueOperator,
-    ValuesOperator,
-    is_number,
-    label,
-    map_numbers,
-    the_other_way,
-)
+from mutabot.operators.examples import MOVE_BY, MOVE_TO
+from mutabot.operators.operator import Context, Example, Need, Subject
+from mutabot.operators.value import ValueOperator, ValuesOperator
 
 _PATH = Path.parse("message.pose.x", rooted=True)
 _GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)
@@ -36,12 +28,12 @@ _FACE = Operation("robot:Arm.face", (replace(_TURN, range=None),))
 _PUSH = Quantity("push", Path("push"), Kind.TRANSLATION, "x", "m", None, Mode.BY, range=(-1.0, 1.0))
 _STEP = Operation("env:Env.step", (_PUSH,))
 _CLIPPED = Operation("env:Env.step", (replace(_PUSH, clip=(-1.0, 1.0)),))
-_ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="rad")
+_ORIENT = Operation.writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="rad")
 _LIFT = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
 _LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
 _AHEAD = Quantity("linear.x", Path.parse("message.linear.x", rooted=True), Kind.SPEED, "x", "m/s")
 _DRIVE = Operation("publish /cmd_vel", (_AHEAD,))
-_GO = writing("base:Base.go", "speed", Kind.SPEED, unit="m/s", range=(-0.2, 1.0))
+_GO = Operation.writing("base:Base.go", "speed", Kind.SPEED, unit="m/s", range=(-0.2, 1.0))
 _X = MOVE_TO.arguments[0]
 _BY = replace(MOVE_BY, current="robot:Arm.tool_pose")
 _TO = replace(MOVE_TO, arguments=(_X,), current="robot:Arm.tool_pose")
@@ -65,27 +57,27 @@ class Reverse(ValueOperator):
     name = "reverse"
     of_read = False
     examples = (
-        changed(_MOVE, {"dy": 0.2, "yaw": 0.0}, {"dy": -0.2, "yaw": 0.0}),
-        changed(_MOVE, -0.9, 0.9),
-        changed(_MOVE, {"dy": 0.0, "yaw": 80}, {"dy": 0.0, "yaw": -80}, quantity="yaw"),
-        changed(_MOVE, [0.1, -0.2], [-0.1, 0.2]),
-        changed(_TURN_TO, 90, 270),
-        changed(_ORIENT, [0.0, 0.5, 0.0], [0.0, -0.5, 0.0]),
-        changed(_CLIPPED, 1.7, -1.7),
-        unchanged(_STEP, 1.7, "−1.7 m is outside the range [−1, 1]"),
-        unchanged(_ORIENT, [0.0, math.pi, 0.0], "half a turn the other way is the same orientation"),
-        unchanged(_FACE, 180, "the targets 180 and −180 degrees are the same"),
-        changed(_HIDDEN, 0.5, 0.1, current={"pose.x": 0.3}),
-        unchanged(_HIDDEN, 0.5, "the target is where the robot is", current={"pose.x": 0.5}),
-        changed(_DRIVE, 0.4, -0.4),
-        unchanged(_GO, 0.5, "−0.5 m/s is outside the range [−0.2, 1]"),
-        unchanged(_MOVE, 0.0, "a zero has no other way"),
-        unchanged(_MOVE, {"yaw": 80}, "the call does not give this component"),
-        unchanged(_LIFT_TO, 0.3, "−0.3 m is outside the allowed range"),
+        Example.changed(_MOVE, {"dy": 0.2, "yaw": 0.0}, {"dy": -0.2, "yaw": 0.0}),
+        Example.changed(_MOVE, -0.9, 0.9),
+        Example.changed(_MOVE, {"dy": 0.0, "yaw": 80}, {"dy": 0.0, "yaw": -80}, quantity="yaw"),
+        Example.changed(_MOVE, [0.1, -0.2], [-0.1, 0.2]),
+        Example.changed(_TURN_TO, 90, 270),
+        Example.changed(_ORIENT, [0.0, 0.5, 0.0], [0.0, -0.5, 0.0]),
+        Example.changed(_CLIPPED, 1.7, -1.7),
+        Example.unchanged(_STEP, 1.7, "−1.7 m is outside the range [−1, 1]"),
+        Example.unchanged(_ORIENT, [0.0, math.pi, 0.0], "half a turn the other way is the same orientation"),
+        Example.unchanged(_FACE, 180, "the targets 180 and −180 degrees are the same"),
+        Example.changed(_HIDDEN, 0.5, 0.1, current={"pose.x": 0.3}),
+        Example.unchanged(_HIDDEN, 0.5, "the target is where the robot is", current={"pose.x": 0.5}),
+        Example.changed(_DRIVE, 0.4, -0.4),
+        Example.unchanged(_GO, 0.5, "−0.5 m/s is outside the range [−0.2, 1]"),
+        Example.unchanged(_MOVE, 0.0, "a zero has no other way"),
+        Example.unchanged(_MOVE, {"yaw": 80}, "the call does not give this component"),
+        Example.unchanged(_LIFT_TO, 0.3, "−0.3 m is outside the allowed range"),
     )
 
     def needs_of(self, subject: Subject) -> frozenset[Need]:
-        quantity = quantity_of(subject)
+        quantity = subject.required_quantity
         found = {Need.PLACE} if quantity.relative else set()
         if quantity.kind in _EITHER and has_direction(quantity) is None:
             found.add(Need.SIGN)
@@ -98,10 +90,10 @@ class Reverse(ValueOperator):
         return {context.quantity.name: _within_turn(context.quantity, 2.0 * here - value)}
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
+        quantity = subject.required_quantity
         if not quantity.relative:
             return super().describe(subject, before, after)
-        return f"{label(quantity)} {quantity.text(before)} → as far to the other side of where it is"
+        return f"{quantity.label} {quantity.text(before)} → as far to the other side of where it is"
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         if quantity.kind in _EITHER:
@@ -111,8 +103,8 @@ class Reverse(ValueOperator):
     def change(self, value: Value, context: Context) -> Value | None:
         quantity = context.quantity
         if quantity.is_whole:
-            return the_other_way(quantity, value)
-        return map_numbers(value, lambda number: _within_turn(quantity, -number))
+            return quantity.inverted(value)
+        return quantity.map_numbers(value, lambda number: _within_turn(quantity, -number))
 
 
 class ByTo(ValuesOperator):
@@ -127,16 +119,15 @@ class ByTo(ValuesOperator):
     name = "by-to"
     needs = frozenset({Need.PLACE})
     examples = (
-        changed(_BY, 0.5, 0.25, current={"dx": 0.25}),
-        changed(_BY, -0.5, -0.75, current={"dx": 0.25}),
-        changed(_TO, 0.5, 0.75, current={"x": 0.25}),
-        unchanged(_BY, 0.5, "by and to agree at zero", current={"dx": 0.0}),
-        changed(_HIDDEN, 0.5, 0.2, current={"pose.x": 0.3}),
-        unchanged(_NEAR, 0.5, "0.75 is out of range", current={"x": 0.25}),
+        Example.changed(_BY, 0.5, 0.25, current={"dx": 0.25}),
+        Example.changed(_BY, -0.5, -0.75, current={"dx": 0.25}),
+        Example.changed(_TO, 0.5, 0.75, current={"x": 0.25}),
+        Example.unchanged(_BY, 0.5, "by and to agree at zero", current={"dx": 0.0}),
+        Example.changed(_HIDDEN, 0.5, 0.2, current={"pose.x": 0.3}),
+        Example.unchanged(_NEAR, 0.5, "0.75 is out of range", current={"x": 0.25}),
     )
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
-        whole = Subject(operation, pattern)
+    def subjects(self, whole: Subject) -> Iterable[Subject]:
         moved = whole.written if whole.current is not None else ()
         return [replace(whole, quantity=quantity) for quantity in moved if quantity.kind in READING_OF]
 
@@ -149,25 +140,22 @@ class ByTo(ValuesOperator):
         }
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
+        quantity = subject.required_quantity
         if quantity.relative:
-            return f"{label(quantity)} {quantity.text(before)} → the change alone, taken for the target"
+            return f"{quantity.label} {quantity.text(before)} → the change alone, taken for the target"
         was, becomes = ("by", "to") if quantity.mode is Mode.BY else ("to", "by")
         amount = quantity.text(before)
-        return f"{label(quantity)} {was} {amount} → {becomes} {amount}"
+        return f"{quantity.label} {was} {amount} → {becomes} {amount}"
 
 
 async def _value_and_place(values: Mapping[str, Value], context: Context) -> tuple[float, float]:
     """The value of the call, and where the robot is. Raises Unchanged."""
     quantity, value = context.quantity, values.get(context.quantity.name)
-    if value is None or not is_number(value):
-        raise Unchanged(NOT_PASSED)
+    if value is None or not quantity.is_scalar(value):
+        raise Unchanged(context.subject.why_missing)
     if quantity.mode is Mode.BY and value == 0:
         raise Unchanged("the amount is zero")
-    try:
-        return value, await context.call.current(quantity)
-    except NotToldError:
-        raise Unchanged("the position of the robot is not known yet") from None
+    return value, await context.call.current(quantity)
 
 
 def _within_turn(quantity: Quantity, angle: float) -> float:

@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from dataclasses import replace
 from random import Random
 
-from mutabot.model import Kind, Quantity
+from mutabot.model import Kind, Operation, Quantity
 from mutabot.model.quantity import MEASURED, PLAIN, WHOLE, Value
-from mutabot.model.units import convert, from_rotation_vector, product
-from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
-from mutabot.operators.operator import Context, Subject, quantity_of
-from mutabot.operators.value import ValueOperator, label, map_numbers, next_of, the_other_way, turned, within
+from mutabot.model.units import convert, from_rotation_vector
+from mutabot.operators.examples import LOCATE, X
+from mutabot.operators.operator import Context, Example, Subject
+from mutabot.operators.value import ValueOperator
 
 #: standard deviation where the vocabulary gives none: a clearly bad sensor, not a broken one (m, rad)
 DEFAULT_DEVIATION = {
@@ -21,12 +21,12 @@ DEFAULT_DEVIATION = {
 #: up to this many labels, each other label is a mutant of its own; with more, only the next one is
 ALL_UP_TO = 4
 
-_SEE = reading("camera:colour", Kind.LABEL, values=("red", "blue"))
-_IN_MM = reading("laser:distance", Kind.DISTANCE, unit="mm")
-_LOOK = reading("camera:orientation", Kind.QUATERNION, order="wxyz")
+_SEE = Operation.reading("camera:colour", Kind.LABEL, values=("red", "blue"))
+_IN_MM = Operation.reading("laser:distance", Kind.DISTANCE, unit="mm")
+_LOOK = Operation.reading("camera:orientation", Kind.QUATERNION, order="wxyz")
 _NOISY = replace(LOCATE, result=(replace(X, noise=1.0),))
-_SORT = reading("camera:part", Kind.LABEL, values=("nut", "bolt", "washer"))
-_FEEL = reading("gripper:holding", Kind.FLAG, values=(False, True))
+_SORT = Operation.reading("camera:part", Kind.LABEL, values=("nut", "bolt", "washer"))
+_FEEL = Operation.reading("gripper:holding", Kind.FLAG, values=(False, True))
 
 
 class Negate(ValueOperator):
@@ -41,17 +41,18 @@ class Negate(ValueOperator):
     kinds = MEASURED - PLAIN
     of_written = False
     examples = (
-        changed(LOCATE, 0.55, -0.55),
-        changed(_IN_MM, 12, -12),
-        changed(_LOOK, [0.8, 0.6, 0.0, 0.0], [0.8, -0.6, 0.0, 0.0]),
-        unchanged(LOCATE, 0.0, "a zero has no sign"),
-        unchanged(LOCATE, {}, "the reading has no such part this time"),
+        Example.changed(LOCATE, 0.55, -0.55),
+        Example.changed(_IN_MM, 12, -12),
+        Example.changed(_LOOK, [0.8, 0.6, 0.0, 0.0], [0.8, -0.6, 0.0, 0.0]),
+        Example.unchanged(LOCATE, 0.0, "a zero has no sign"),
+        Example.unchanged(LOCATE, {}, "the reading has no such part this time"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
-        if context.quantity.is_whole:
-            return the_other_way(context.quantity, value)
-        return map_numbers(value, lambda number: -number)
+        quantity = context.quantity
+        if quantity.is_whole:
+            return quantity.inverted(value)
+        return quantity.map_numbers(value, lambda number: -number)
 
 
 class Noise(ValueOperator):
@@ -70,13 +71,13 @@ class Noise(ValueOperator):
     draws = True
     of_written = False
     examples = (
-        changed(
+        Example.changed(
             _NOISY,
             0.55,
             # the first draw of Random(1).gauss(0, 1), the generator the examples are run with
             0.55 + Random(1).gauss(0.0, 1.0),
         ),
-        unchanged(_NOISY, None, "there is no number to disturb"),
+        Example.unchanged(_NOISY, None, "there is no number to disturb"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -86,17 +87,19 @@ class Noise(ValueOperator):
             return disturbed(quantity, value, random, deviation)
 
         def noisy_number(number: float) -> float:
-            noisy = within(number + random.gauss(0.0, deviation), quantity.range)
+            noisy = number + random.gauss(0.0, deviation)
+            if quantity.range is not None:
+                noisy = min(max(noisy, quantity.range[0]), quantity.range[1])
             return round(noisy) if isinstance(number, int) else noisy
 
-        return map_numbers(value, noisy_number)
+        return quantity.map_numbers(value, noisy_number)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        quantity = quantity_of(subject)
+        quantity = subject.required_quantity
         deviation = quantity.text(deviation_of(quantity))
         if quantity.is_whole:
             deviation = f"{deviation if quantity.unit else f'{deviation} rad'} about each axis"
-        return f"reads {label(quantity)} {quantity.text(before)} + noise, σ = {deviation}"
+        return f"reads {quantity.label} {quantity.text(before)} + noise, σ = {deviation}"
 
 
 class Misread(ValueOperator):
@@ -110,10 +113,10 @@ class Misread(ValueOperator):
     name = "misread"
     of_written = False
     examples = (
-        changed(_SEE, "red", "blue"),
-        changed(_SORT, "bolt", "nut", "+2"),
-        changed(_FEEL, True, False),
-        unchanged(_SEE, "grey", "not one of the labels"),
+        Example.changed(_SEE, "red", "blue"),
+        Example.changed(_SORT, "bolt", "nut", "+2"),
+        Example.changed(_FEEL, True, False),
+        Example.unchanged(_SEE, "grey", "not one of the labels"),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
@@ -124,7 +127,7 @@ class Misread(ValueOperator):
         return [f"+{shift}" for shift in range(1, labels)] if 2 < labels <= ALL_UP_TO else [""]
 
     def change(self, value: Value, context: Context) -> Value | None:
-        return next_of(value, context.quantity, int(context.subject.variant or "1"))
+        return context.next_value(value, int(context.subject.variant or "1"))
 
 
 def deviation_of(quantity: Quantity) -> float:
@@ -139,4 +142,4 @@ def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float
     """The orientation turned by a random rotation vector of this standard deviation in each part."""
     sigma = convert(deviation, quantity.unit or "rad", "rad")
     turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
-    return turned(quantity, value, lambda orientation: product(turn, orientation))
+    return quantity.rotated(value, turn.after)

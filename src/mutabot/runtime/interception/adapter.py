@@ -21,14 +21,14 @@ from types import CoroutineType
 from typing import Any
 
 from mutabot.errors import PathError, StrangeValueError, in_words
-from mutabot.model import Call, NotToldError, Operation, Path, Pattern, Quantity, Reply, Vocabulary
+from mutabot.model import Call, Operation, Path, Pattern, Quantity, Reply, Unchanged, Vocabulary
 from mutabot.model.answer import keep, restore
 from mutabot.model.data import UNKNOWN, is_of_numpy
 from mutabot.model.enumeration import is_member, name_of
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
 from mutabot.model.path import class_name
-from mutabot.model.quantity import Value, changes, is_reading_of, is_same
+from mutabot.model.quantity import Value, changes, is_reading_of
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
@@ -372,7 +372,7 @@ class Adapter:
         for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
             if quantity.name in reply.values:
                 value = reply.values[quantity.name]
-                if not is_same(quantity, value, before.get(quantity.name)):
+                if not quantity.is_same(value, before.get(quantity.name)):
                     result = quantity.put(result, value)
         return result
 
@@ -412,9 +412,9 @@ class Adapter:
             if is_reading_of(part, quantity):
                 number: Any = lately.get(part.name) if is_named else part.path.get(value)
                 if number is None and is_named:
-                    raise NotToldError(f"nothing has come yet of {reading.target}")
+                    raise Unchanged("the position of the robot is not known yet")
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
-        raise NotToldError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
+        raise Unchanged(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
 
     async def _ask(self, reading: Operation, invocation: Invocation) -> Any:
         value = self._other(reading.target, invocation)

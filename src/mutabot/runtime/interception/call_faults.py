@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 
 from mutabot.model import Call, CallFault, Reply
 from mutabot.model.clocks import sleep
-from mutabot.model.operation import ANSWERED, COMING
+from mutabot.model.operation import ANSWERED
 from mutabot.runtime.interception.live import copied
 from mutabot.runtime.targets.target import Delivery, MiddlewareControls, resolve
 
@@ -92,7 +92,7 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
         return partial(_raised, missing(reply.error))
     means = _means(call)
     named = call.operation.named
-    if named is not None and named.form in COMING:
+    if named is not None and named.form.comes_by_itself:
         parts = [(part.late, result(part)) for part in reply.parts]
         # the program may change what it got, and would find that in what comes next
         return partial(_given, Delivery((*parts[:1], *((late, copied(one)) for late, one in parts[1:]))))

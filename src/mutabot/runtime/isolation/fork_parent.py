@@ -408,7 +408,7 @@ class ForkParent:
         self.pipe.send(TokensHeld(count))
 
     def _wait(self, other: int | None = None) -> list[int]:
-        """Wait for children to end or run out of time, or until ``other`` can be read; return those that ended."""
+        """Wait until children end or run out of time, or ``other`` can be read; return those that ended."""
         until = min((child.deadline.until for child in self._children.values()), default=float("inf"))
         timeout = min(max(0.0, until - monotonic()), _LOOKS) * 1e3 + 1.0
         poll, children = select.poll(), {os.pidfd_open(pid): pid for pid in self._children}

@@ -22,9 +22,9 @@ What hooks keep to, so that all operators mean the same in every middleware:
 - Each use gives the handler a ``Where`` with ``means`` (``target.MiddlewareControls``): how the node sleeps,
   does something later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps.
   All of it by the clock of the node, so that simulated time counts.
-- What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``deliver``, which
-  calls the program's callback, or ``wait_for``, which stands around a wait. A handler's own result may be a
-  ``Delivery`` there and nowhere else: late, several times, or not at all.
+- What comes by itself (``Form.comes_by_itself``: messages, feedback, ticks of a timer) goes through
+  ``deliver``, which calls the program's callback, or ``wait_for``, which stands around a wait. A handler's
+  own result may be a ``Delivery`` there and nowhere else: late, several times, or not at all.
 - An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
 - What sets something up is ``wrapped(name=…, depth=…)`` with the arguments of ``SETTING_UP``, as they come
   out with the defaults of the middleware; those that it does not know are left out, and a deadline of 0 is

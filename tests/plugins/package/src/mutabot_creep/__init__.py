@@ -1,5 +1,5 @@
 """What this package brings to mutabot: the operator creep."""
 
-from mutabot.extensions import Extension
+from mutabot.api.faults import Extension
 
-EXTENSION = Extension(interface=1, operators={"creep": "mutabot_creep.creep:Creep"})
+EXTENSION = Extension(interface=2, operators={"creep": "mutabot_creep.creep:Creep"})
