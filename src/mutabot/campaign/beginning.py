@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import OpenedFiles
 from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of
+from mutabot.campaign.suppressions import divided, suppressions_of
 from mutabot.errors import JournalError, NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
@@ -84,9 +86,11 @@ def begin(
     of the robot's middleware may run tests; None for no simulation.
 
     Raises what ``take_baseline`` raises, ConfigurationError for what the original lacks of the vocabulary,
-    and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
+    and SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything. A mistake in a
+    decision about mutants is a ConfigurationError.
     """
     refuse_typos(request)
+    suppressions = suppressions_of(request)
     refuse_unhooked(request.vocabulary)
     prepared = prepare(request.project)
 
@@ -109,7 +113,12 @@ def begin(
     files = program_files(request.root, request.configuration.program)
     shared = shared_sites(campaign.baseline, request.vocabulary, campaign.sources, files)
     note_fit(campaign.baseline, request.vocabulary, progress, shared)
-    return campaign, results
+    return replace(campaign, suppressions=suppressions), results
+
+
+def whole_plan(campaign: Campaign) -> tuple[Plan, tuple[str, ...]]:
+    """Return the plan without excluded mutants, and the user's decisions that fit no mutant, in words."""
+    return divided(campaign, make_plan(campaign.baseline, campaign.request.project))
 
 
 def selected(campaign: Campaign, plan: Plan) -> Plan:
@@ -180,7 +189,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
         with OriginalRuns(request, kept_original(path), progress) as original:
             campaign, _ = begin(request, opened, progress, original=original, stack=stack)
         _leave(original, path)
-    plan = selected(campaign, make_plan(campaign.baseline, request.project))
+    plan = selected(campaign, whole_plan(campaign)[0])
     part = part_of(plan, request.shard, campaign.baseline)
     return part.mutants, part.left_out, campaign.baseline.untested
 
@@ -194,7 +203,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
         # files that the first reads itself are not opened by tests: it begins before the second
         with OriginalRuns(request, None, progress) as original, OpenedFiles(request.root, folders) as watch:
             campaign, _ = begin(request, opened, progress, original=original, stack=stack)
-        plan = make_plan(campaign.baseline, request.project)
+        plan, _ = whole_plan(campaign)
         mutants = selected(campaign, plan).mutants
         controls, unhandled = try_controls(campaign, mutants)
     _leave(original, request.journal_path)

@@ -20,6 +20,7 @@ from mutabot.model.deadline import Limit
 
 if TYPE_CHECKING:
     from mutabot.model.job import Job
+    from mutabot.model.suppression import Suppression
 
 #: a mutant in a round
 MutantRun = tuple[Mutant, int]
@@ -47,6 +48,7 @@ class Campaign:
         evidence: what is recorded; None if nothing is.
         proven: ways of running that controls have proven: an engine and ``Control.way``.
         is_short: whether mutants are run without tests that do not reach them, see ``campaign.confirmation``.
+        suppressions: which mutants the user accepts or excludes.
         real: the same over the real middleware, if this one is over a simulation of it.
         again: outcomes that were found so, and are to be found with the whole suite before they count.
     """
@@ -59,6 +61,7 @@ class Campaign:
     proven: set[tuple[str, str, str, bool]] = field(default_factory=set)
     is_short: bool = False
     again: list[Outcome] = field(default_factory=list)
+    suppressions: tuple[Suppression, ...] = ()
     real: Campaign | None = None
 
     @cached_property

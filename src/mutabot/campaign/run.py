@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot import __version__, extensions
 from mutabot.campaign import beginning
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.beginning import begin, locked_executor, selected
+from mutabot.campaign.beginning import begin, locked_executor, selected, whole_plan
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
@@ -32,12 +32,12 @@ from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
+from mutabot.campaign.suppressions import note_accepted, text_of
 from mutabot.errors import ControlError, JournalError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.faults import PlannedMutant
 from mutabot.journal import records
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.languages.registry import front_end_of
 from mutabot.model.activation import Activation
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
@@ -107,10 +107,11 @@ def _run(
     request, before, after = campaign.request, original.before, original.after
     _note_lacking(request, original, progress)
     baseline, decided = campaign.baseline, earlier_decision(journal)
-    whole = make_plan(baseline, request.project)
+    whole, unmatched = whole_plan(campaign)
     plan = selected(campaign, whole)
     part = part_of(plan, request.shard, baseline)
     _write_beginning(campaign, journal, results, plan, whole)
+    note_accepted(journal, campaign.suppressions, unmatched)
     write_shard(journal, request.shard, part)
     if request.shard is not None:
         progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
@@ -252,7 +253,7 @@ def _write_beginning(
         journal.add_tests(records.BaselineTest.of(round, repetition, end) for end in result.ends)
     carried = carry([one for one, _ in journal.known()], request, plan.mutants, whole.mutants)
     files = {mutant.site.span.file for mutant in (*plan.mutants, *carried)}
-    sources = {file: _text_of(path) for file in files if (path := request.root / file).is_file()}
+    sources = {file: text_of(path) for file in files if (path := request.root / file).is_file()}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
@@ -263,15 +264,6 @@ def _write_beginning(
     journal.set_meta(records.DRAWS, drawing(plan.mutants))
     journal.set_meta(records.UNTESTED, campaign.baseline.untested)
     journal.set_meta(records.REACHING, reaching(campaign.baseline, plan.mutants))
-
-
-def _text_of(file: Path) -> str:
-    """A program text with ``\\n`` at the ends of lines, as far as it can be read."""
-    source = file.read_bytes()
-    try:
-        return front_end_of(str(file)).text_of(source)
-    except (SyntaxError, ValueError):
-        return source.decode("utf-8", "replace")
 
 
 def _meta(request: Request) -> dict[str, Any]:

@@ -40,6 +40,7 @@ _OWN = {
     "replay": ("campaign:replay", "Re-run one mutant in fresh processes."),
     "results": ("results:results", "List mutants, scores and survivors."),
     "show": ("results:show", "Show the details of one mutant."),
+    "accept": ("accept:accept", "Accept survivors, with a reason."),
     "thresholds": ("results:thresholds", "Show how large a fault the tests miss."),
     "report": ("results:report", "Write pages, or formats of other tools."),
 }

@@ -379,6 +379,15 @@ class Journal(JournalReader):
     @classmethod
     def keep_original(cls, path: Path, kept: KeptBaseline) -> None:
         """Keep runs of the original for campaigns to come, and change nothing else that is there."""
+        with cls.amend(path) as journal:
+            if journal._is_new:
+                journal.set_meta(_NONE_YET_KEY, True)
+            journal.set_original(kept)
+
+    @classmethod
+    @contextmanager
+    def amend(cls, path: Path) -> Iterator[Journal]:
+        """Open a journal to change facts while no campaign runs; what it says of its campaign stays."""
         refuse_tracked(path)
         with guarded(path), ExitStack() as opened:
             lock = WriterLock.take(path)
@@ -387,11 +396,9 @@ class Journal(JournalReader):
             copy = opened.enter_context(closing(database.loaded(file)))
             journal = cls(path, copy, file, lock)
             opened.callback(journal.close)
-            if journal._is_new:
-                journal.set_meta(_NONE_YET_KEY, True)
-            else:
+            if not journal._is_new:
                 database.check_schema(path, copy)
-            journal.set_original(kept)
+            yield journal
 
     def close(self) -> None:
         """Close the file, and give the lock back."""

@@ -14,6 +14,7 @@ from mutabot.model import Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import from_data
 from mutabot.model.events import TestEnd
 from mutabot.model.outcome import same_end
+from mutabot.model.suppression import Accepted
 
 #: keys of the journal's meta
 DRAWING = "drawing"
@@ -35,6 +36,8 @@ ALTERED = "altered"
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 #: what no test reaches
 UNTESTED = "untested"
+#: survivors that are accepted
+ACCEPTED = "accepted"
 
 
 @frozen
@@ -492,6 +495,7 @@ FACTS: Mapping[str, Any] = {
     SHARD: ShardOf,
     REACHING: Reaching,
     UNTESTED: Untested,
+    ACCEPTED: Accepted,
     "vocabulary": Vocabulary,
 }
 

@@ -14,7 +14,7 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
-from mutabot.report.texts import status_of
+from mutabot.report.texts import state_of, status_of
 from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
@@ -53,6 +53,7 @@ def document(results: Results) -> dict[str, Any]:
             "flaky=flaky.tests verification repeats confirmation shard set_aside altered "
             "operators draws reaching untested sources",
         ),
+        "accepting": accepting_data(results),
         "sections": {name: _section(part, results) for name, part in brought("sections").items()},
     }
 
@@ -65,6 +66,16 @@ def _section(part: ExtensionPart, results: Results) -> Any:
         raise ExtensionError(f"{part.words} makes no section of these results: {error!r}") from error
 
 
+def accepting_data(results: Results) -> dict[str, Any]:
+    """Return the accepted survivors, and decisions about mutants that have no effect any more."""
+    return {
+        "survivors": [
+            data_of.facts(one, "number=mutant.number id=mutant.id *acceptance") for one in results.accepted
+        ],
+        "without_effect": [*results.needlessly_accepted, *results.accepting.unmatched],
+    }
+
+
 def replayed(mutant: Mutant, rounds: Iterable[records.Replayed]) -> dict[str, Any]:
     """One mutant that was run again, beside its outcomes in the journal."""
     return {**data_of.facts(mutant, "id number"), "rounds": data_of(list(rounds))}
@@ -74,11 +85,13 @@ def _mutant(result: MutantResult) -> dict[str, Any]:
     data = data_of.facts(
         result,
         "*mutant meaning=quantity rounds# kill_rate survivor=is_survivor indistinguishable distance worst "
-        "why earlier outdated",
+        "why earlier outdated accepted=acceptance?",
     )
-    data["status"] = data_of(status_of(result))
+    if not result.is_accepted:
+        data["accepted"] = None
+    data["status"] = None if status_of(result) is None else state_of(result)
     data["kill_rate"] = data_of.facts(result.kill_rate, "killed valid rate=score interval")
-    return data if result.is_survivor else data | {"distance": None, "worst": None}
+    return data if result.lets_through else data | {"distance": None, "worst": None}
 
 
 def _replayed(one: records.Replayed) -> dict[str, Any]:
@@ -145,7 +158,7 @@ data_of = Encoder(
         Diverged: "* worst",
         Score: "score check_score killed valid by_check timeouts counts=of_each",
         RoundScores: "*total score=mean check_score=mean_check interval check_interval sample_interval "
-        "sample_check_interval rounds#",
+        "sample_check_interval accepted rounds#",
         Group: "family role mutants population *scores",
         LeftOut: "id description reason",
         records.ControlEnd: "test_file control ok detail",

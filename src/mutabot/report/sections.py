@@ -16,7 +16,7 @@ from mutabot.results.results import MutantResult, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
 from mutabot.results.thresholds import line_of, thresholds_of
 
-from .texts import OUTSIDE, effect_text, escaped, rounds_text, status_of
+from .texts import OUTSIDE, acceptance_text, effect_text, escaped, rounds_text, status_of
 
 if TYPE_CHECKING:
     from mutabot.results.score import Group
@@ -59,6 +59,7 @@ def sections(results: Results, place: PlaceName) -> Iterator[Section]:
     yield from untested(results.untested)
     yield from _narrowed(results)
     yield from _survivors(results, place)
+    yield from accepted_sections(results, place)
     if found := unlooked(results.mutants):
         yield Section("Readings that no test checks", lines=found)
     yield from _outside(results, place)
@@ -93,8 +94,11 @@ def _errors(results: Results) -> Iterator[Section]:
 
 def _scores(results: Results) -> Iterator[Section]:
     """A row for each family and role. There is no combined score."""
-    columns = ("family · role", ">mutants", ">score", ">check score", ">killed")
+    columns: tuple[str, ...] = ("family · role", ">mutants", ">score", ">check score", ">killed")
     rows = [_score_row(group) for group in results.groups]
+    if results.accepted:
+        columns = (*columns, ">accepted")
+        rows = [(*row, str(one.scores.accepted)) for row, one in zip(rows, results.groups, strict=True)]
     if rows:
         yield Section("Scores", columns, rows, [_INTERVALS] if results.rounds > 1 else [])
     if results.drawing is not None:
@@ -191,6 +195,16 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
     columns = (*MUTANT_COLUMNS, "*effect", ">survived") if rows else ()
     lines = [f"{plural(len(same), 'survivor')} without a measured effect: {numbered(same)}"] if same else []
     yield Section(f"{plural(len(survivors), 'survivor')}{order}", columns, rows, lines)
+
+
+def accepted_sections(results: Results, place: PlaceName) -> Iterator[Section]:
+    """Accepted survivors with the reasons, and decisions that have no effect any more."""
+    rows = [(*mutant_cells(one.mutant, place), acceptance_text(one)) for one in results.accepted]
+    if rows:
+        title = f"{plural(len(rows), 'survivor')} accepted, in no score"
+        yield Section(title, (*MUTANT_COLUMNS, "*reason"), rows, is_detail=True)
+    if lines := [*results.needlessly_accepted, *results.accepting.unmatched]:
+        yield Section("Accepted or excluded without an effect", lines=lines)
 
 
 def _outside(results: Results, place: PlaceName) -> Iterator[Section]:

@@ -83,7 +83,7 @@ _META = (
 def portable(campaign: Results) -> Results:
     """The same campaign, fit for any report."""
     clean = Cleaner(campaign.meta.get("root"))
-    texts = "state mutants graded controls flaky attempt verification left_out untested"
+    texts = "state mutants graded controls flaky attempt verification left_out untested accepting"
     found: dict[str, Any] = {name: mapped(getattr(campaign, name), clean) for name in texts.split()}
     return replace(
         campaign,
@@ -134,7 +134,7 @@ OUTSIDE = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Ve
 
 
 def status_of(result: MutantResult) -> Verdict | None:
-    """The state; None if it has not been run.
+    """The verdict over all rounds; None if it has not been run. That a survivor is accepted changes nothing.
 
     - *survived* if any round lets it through: that is what there is to act on;
     - *not covered* if it is valid in some round, and no test reaches it in any of these;
@@ -145,11 +145,28 @@ def status_of(result: MutantResult) -> Verdict | None:
     valid = {verdict for verdict in found if verdict.is_valid}
     if valid == {Verdict.NOT_COVERED}:
         return Verdict.NOT_COVERED
-    if result.is_survivor:
+    if result.lets_through:
         return Verdict.SURVIVED
     if valid:
         return Verdict.TIMEOUT if valid == {Verdict.TIMEOUT} else Verdict.KILLED
     return next((verdict for verdict in OUTSIDE if verdict in found), None)
+
+
+#: the state of an accepted survivor, and of a mutant that has not been run
+ACCEPTED, NOT_RUN = "accepted", "not run"
+
+
+def state_of(result: MutantResult) -> str:
+    """The verdict over all rounds, *accepted* or *not run*: what a mutant is counted as."""
+    return ACCEPTED if result.is_accepted else str(status_of(result) or NOT_RUN)
+
+
+def acceptance_text(result: MutantResult) -> str:
+    """``accepted on 2026-01-31: the table is symmetric``; empty if it is not accepted."""
+    found = result.acceptance
+    if found is None or not result.is_accepted:
+        return ""
+    return f"accepted{f' on {found.date}' if found.date else ''}: {found.why}"
 
 
 def rounds_text(result: MutantResult) -> str:
@@ -162,14 +179,14 @@ def rounds_text(result: MutantResult) -> str:
 
 def reason_of(result: MutantResult) -> str:
     """Why a mutant has its state: its rounds, one line about it, and what a deciding test said."""
-    lines = [rounds_text(result)]
+    lines = [rounds_text(result), *filter(None, [acceptance_text(result)])]
     status = status_of(result)
-    if result.is_survivor:
+    if result.lets_through:
         lines.append(result.why)
     told: set[str] = set()
     for outcome in result.outcomes:
         text = outcome.message or ""
-        if text and text not in told and (not result.is_survivor or outcome.verdict is not status):
+        if text and text not in told and (not result.lets_through or outcome.verdict is not status):
             told.add(text)
             lines.append(f"round {outcome.round + 1}: {outcome.test + ': ' if outcome.test else ''}{text}")
     return "\n".join(lines)
@@ -191,7 +208,7 @@ def effect_text(result: MutantResult) -> str:
     _, diverged = telling(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
         why += f" (in {diverged.test.rpartition('::')[2]})"
-    if result.is_survivor and rate.killed:
+    if result.lets_through and rate.killed:
         where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
         why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"
     return why

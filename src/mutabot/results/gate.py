@@ -155,6 +155,8 @@ def _nothing_valid(results: Results) -> str:
     counts = Counter(one.verdict for one in results.outcomes)
     if not counts:
         return "no mutant was run, so nothing is known about the tests"
+    if results.accepted:
+        return f"no mutant is left to judge: {len(results.accepted)} of {len(results.mutants)} are accepted"
     if set(counts) == {Verdict.REFUSED}:
         return "the robot refused every mutant, so nothing is known about the tests"
     ends = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())

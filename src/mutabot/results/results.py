@@ -19,6 +19,7 @@ from mutabot.journal.files import is_written
 from mutabot.journal.journal import JournalReader
 from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
+from mutabot.model.suppression import Acceptance, Accepted
 from mutabot.results.divergence import change_text, explain, quantity_of, worst_of
 from mutabot.results.score import Group, RoundScores, Score, groups_of
 from mutabot.results.statistics import Confirmed
@@ -38,6 +39,7 @@ class MutantResult:
         why: one line about how it ended.
         earlier: whether an earlier campaign found some of it.
         outdated: whether something has changed since that it depends on, as far as that is known.
+        acceptance: why it is accepted if it survives; None if it is not.
     """
 
     mutant: Mutant
@@ -46,6 +48,7 @@ class MutantResult:
     why: str
     earlier: bool = False
     outdated: bool = False
+    acceptance: Acceptance | None = None
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -63,9 +66,19 @@ class MutantResult:
         return Score.of(self.outcomes)
 
     @property
-    def is_survivor(self) -> bool:
+    def lets_through(self) -> bool:
         """Whether any round lets it through, by surviving or because no test reaches it."""
-        return any(one.verdict.is_valid and not one.verdict.is_killed for one in self.outcomes)
+        return any(map(_lets_through, self.outcomes))
+
+    @property
+    def is_survivor(self) -> bool:
+        """Whether any round lets it through, and it is not accepted."""
+        return self.lets_through and self.acceptance is None
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether any round lets it through, and it is accepted: then it is in no score."""
+        return self.lets_through and self.acceptance is not None
 
     @property
     def worst(self) -> float:
@@ -125,6 +138,7 @@ class Results:
         reaching: which tests reach which sites.
         draws: names of operators that draw a number for each round.
         untested: what no test reaches of the program.
+        accepting: what is known of accepted survivors.
     """
 
     meta: Mapping[str, Any]
@@ -152,6 +166,7 @@ class Results:
     reaching: records.Reaching = field(default_factory=records.Reaching)
     draws: tuple[str, ...] = ()
     untested: records.Untested = field(default_factory=records.Untested)
+    accepting: Accepted = field(default_factory=Accepted)
 
     @property
     def altered(self) -> tuple[str, ...]:
@@ -205,6 +220,20 @@ class Results:
         """Mutants that some round lets through, the farthest from the original at any moment first."""
         found = [result for result in self.mutants if result.is_survivor]
         return sorted(found, key=lambda one: (-one.worst, one.indistinguishable, one.mutant.number))
+
+    @property
+    def accepted(self) -> list[MutantResult]:
+        """Survivors that are accepted, by number."""
+        return [result for result in self.mutants if result.is_accepted]
+
+    @property
+    def needlessly_accepted(self) -> list[str]:
+        """Decisions whose mutants are all killed in every valid round, in words."""
+        groups: dict[str, list[MutantResult]] = {}
+        for one in self.mutants:
+            if one.acceptance is not None:
+                groups.setdefault(one.acceptance.source, []).append(one)
+        return [_killed_now_text(source, those) for source, those in groups.items() if _is_killed(those)]
 
     @property
     def worst_first(self) -> list[MutantResult]:
@@ -298,8 +327,10 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
     told = {key: meta[key] for key in _TOLD if key in meta}
+    accepting: Accepted = meta.get(records.ACCEPTED) or Accepted()
     drawing, shard = told.get(records.DRAWING), told.get(records.SHARD)
-    groups = groups_of(mutants, outcomes, rounds, drawing)
+    accepted = _accepted(accepting, outcomes)
+    groups = groups_of(mutants, outcomes, rounds, drawing, accepted=accepted)
     is_whole = _is_whole(mutants, outcomes, rounds)
     drawn = groups if drawing is not None else ()
     old, outdated = _earlier(journal, mutants, outcomes, rounds) if earlier else ([], {})
@@ -308,7 +339,8 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         more = [mutant for mutant, _ in journal.known() if mutant.id in old_ids]
         mutants = sorted([*mutants, *more], key=lambda mutant: mutant.number)
         outcomes = [*outcomes, *old]
-        groups = groups_of(mutants, outcomes, rounds, None)
+        accepted = _accepted(accepting, outcomes)
+        groups = groups_of(mutants, outcomes, rounds, None, accepted=accepted)
     graded = {mutant.id for mutant in mutants if mutant.has_sizes}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
@@ -316,7 +348,10 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
         why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
         quantity = quantity_of(mutant, vocabulary)
-        return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, outdated.get(mutant.id, False))
+        return MutantResult(
+            mutant, row, quantity, why, mutant.id in old_ids, outdated.get(mutant.id, False),
+            None if mutant.has_sizes else accepting.mutants.get(mutant.id),
+        )  # fmt: skip
 
     texts = {file: journal.source(file) for file in sorted({one.site.span.file for one in mutants})}
     found = Results(
@@ -326,12 +361,13 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
         graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
         groups=groups,
-        all=RoundScores.of([one for one in outcomes if one.mutant not in graded], rounds),
+        all=RoundScores.of([one for one in outcomes if one.mutant not in graded], rounds, accepted=accepted),
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
         baseline=tuple(journal.tests()),
         drawn=drawn,
         attempt=_attempt(journal),
+        accepting=accepting,
         sources={file: text for file, text in texts.items() if text is not None},
         **told,
     )
@@ -339,6 +375,29 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     set_aside = tuple(journal.set_aside)
     state = _state(journal, shard, is_whole=is_whole and not set_aside)
     return replace(found, state=state, set_aside=set_aside)
+
+
+def _lets_through(outcome: Outcome) -> bool:
+    return outcome.verdict.is_valid and not outcome.verdict.is_killed
+
+
+def _is_killed(results: Iterable[MutantResult]) -> bool:
+    """Whether all of these have run in every round, and every valid round of each kills it."""
+    return all(one.kill_rate.valid and not one.lets_through and None not in one.rounds for one in results)
+
+
+def _killed_now_text(source: str, results: Sequence[MutantResult]) -> str:
+    numbers = in_short([str(one.mutant.number) for one in results], _SHOWN)
+    is_one = len(results) == 1
+    return (
+        f"{source}: mutant{'' if is_one else 's'} {numbers} {'is' if is_one else 'are'} killed now, so there "
+        "is nothing to accept"
+    )
+
+
+def _accepted(accepting: Accepted, outcomes: Iterable[Outcome]) -> set[str]:
+    """The ids of accepted mutants that some round lets through."""
+    return {one.mutant for one in outcomes if one.mutant in accepting.mutants and _lets_through(one)}
 
 
 def _earlier(
@@ -405,6 +464,8 @@ def unlooked(results: Iterable[MutantResult]) -> list[str]:
         mutant = one.mutant
         is_reading = mutant.site.role is Role.ORACLE and mutant.operation and mutant.quantity
         key = (mutant.operation, mutant.quantity or "")
+        if one.is_accepted:
+            continue
         if is_reading and not one.outdated and one.kill_rate.valid:
             groups.setdefault(key, []).append(one)
         elif is_reading and not one.outcomes and not mutant.ladder:  # of a ladder, a search runs some

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import field
 from statistics import fmean
 from typing import TYPE_CHECKING
@@ -80,6 +80,7 @@ class RoundScores:
         rounds: one score per round.
         interval, check_interval: of the mean score and of the mean check score, over rounds and mutants; None
             with fewer than two rounds or two mutants that were valid.
+        accepted: number of accepted survivors, which are in no score.
         sample_interval, sample_check_interval: of the scores that all mutants would have had in these rounds,
             where only a sample of them was run; None if all were, or if fewer than two were valid.
     """
@@ -89,18 +90,35 @@ class RoundScores:
     check_interval: Interval | None = None
     sample_interval: Interval | None = None
     sample_check_interval: Interval | None = None
+    accepted: int = 0
 
     @classmethod
-    def of(cls, outcomes: Iterable[Outcome], rounds: int, *, population: int | None = None) -> RoundScores:
+    def of(
+        cls,
+        outcomes: Iterable[Outcome],
+        rounds: int,
+        *,
+        population: int | None = None,
+        accepted: Collection[str] = (),
+    ) -> RoundScores:
         """The scores of these outcomes in rounds 0 … ``rounds`` − 1.
 
-        ``population`` is how many mutants those that were run are a random sample of; None if they are all.
+        Args:
+            outcomes: of any mutants.
+            rounds: number of rounds.
+            population: how many mutants those that were run are a random sample of; None if they are all.
+            accepted: ids of accepted survivors: their outcomes do not count.
         """
+        ignored: set[str] = set()
         by_round: list[list[Outcome]] = [[] for _ in range(rounds)]
         by_mutant: dict[str, list[Outcome | None]] = {}
         for outcome in outcomes:
-            by_round[outcome.round].append(outcome)
-            by_mutant.setdefault(outcome.mutant, [None] * rounds)[outcome.round] = outcome
+            row = by_mutant.setdefault(outcome.mutant, [None] * rounds)
+            if outcome.mutant in accepted:
+                ignored.add(outcome.mutant)
+            else:
+                by_round[outcome.round].append(outcome)
+                row[outcome.round] = outcome
         killed = [
             [_share(one, lambda one: one.verdict.is_killed) for one in row] for row in by_mutant.values()
         ]
@@ -111,6 +129,7 @@ class RoundScores:
             crossed(found),
             sampled(killed, population) if population is not None else None,
             sampled(found, population) if population is not None else None,
+            len(ignored),
         )
 
     @property
@@ -152,12 +171,17 @@ class Group:
 
 
 def groups_of(
-    mutants: Sequence[Mutant], outcomes: Iterable[Outcome], rounds: int, drawing: Drawing | None = None
+    mutants: Sequence[Mutant],
+    outcomes: Iterable[Outcome],
+    rounds: int,
+    drawing: Drawing | None = None,
+    *,
+    accepted: Collection[str] = (),
 ) -> tuple[Group, ...]:
     """One group per family and role, in the order in which they first occur in the plan.
 
     Graded mutants have none: the magnitudes of a ladder are no population of faults.
-    ``drawing`` says how the mutants were drawn, if they were.
+    ``drawing`` says how the mutants were drawn, if they were. ``accepted``: as in ``RoundScores.of``.
     """
     key_of = {
         mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants if not mutant.has_sizes
@@ -171,7 +195,7 @@ def groups_of(
     for (family, role), those in found.items():
         stratum = drawing.stratum(family, role) if drawing is not None else None
         population = stratum.population if stratum is not None else None
-        scores = RoundScores.of(those, rounds, population=population)
+        scores = RoundScores.of(those, rounds, population=population, accepted=accepted)
         groups.append(Group(family, role, sizes[family, role], scores, population))
     return tuple(groups)
 

@@ -71,7 +71,7 @@ _LINE = (
     "cpu_s=outcome.cpu simulated_s=outcome.simulated distance=outcome.distance way=outcome.way "
     "indistinguishable=outcome.indistinguishable divergence commands=outcome.commands engine=outcome.engine "
     "repeats=outcome.repeats confirmed=outcome.confirmed magnitude=mutant.magnitude "
-    "magnitude_unit=mutant.unit direction=mutant.direction?"
+    "magnitude_unit=mutant.unit direction=mutant.direction? accepted=accepted.why"
 )
 #: the columns of the table by their stable names, in the order of files; one with a unit ends in it
 COLUMNS = tuple(word.partition("=")[0] for word in _LINE.split())
@@ -87,6 +87,7 @@ def rows(results: Results) -> Iterator[dict[str, Any]]:
             row = SimpleNamespace(
                 mutant=result.mutant, quantity=result.quantity, outcome=outcome, before=before, after=after,
                 divergence=next(iter(outcome.divergence), None),
+                accepted=result.acceptance if result.is_accepted else None,
             )  # fmt: skip
             cells = _FACTS.facts(row, _LINE)
             is_number = {

@@ -19,6 +19,7 @@ from pathlib import Path, PurePosixPath
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from mutabot.config.suppressions import FILE as ACCEPTED_FILE
 from mutabot.journal.files import REPORT_MARK
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ _FOR_PEOPLE = re.compile(
 )
 
 
-_FOR_TOOLS = {".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
+_FOR_TOOLS = {ACCEPTED_FILE, ".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
 #: files that make a folder a virtual environment, or a report of mutabot
 _MARKS = ("pyvenv.cfg", REPORT_MARK)
 _HASH = "#"

@@ -34,6 +34,9 @@ def _lines(material: Material) -> Iterator[str]:
         else:
             hidden += 1
     told = [f"{hidden} more survivors are not shown here; `mutabot results` lists them"] if hidden else []
+    accepted = len(material.campaign.accepted)
+    if accepted:
+        told.append(f"{accepted} accepted survivor{'s are' if accepted != 1 else ' is'} not shown")
     if not material.campaign.is_complete:
         campaign = material.campaign
         told.append(f"the campaign is not complete ({campaign.state}): {campaign.known}")

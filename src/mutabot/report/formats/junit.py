@@ -1,4 +1,4 @@
-"""JUnit XML: a test case per mutant, which every CI system shows. A survivor is a failure."""
+"""JUnit XML: a test case per mutant, which CI systems show. A survivor that is not accepted is a failure."""
 
 from __future__ import annotations
 
@@ -8,14 +8,24 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree as Xml
 
 from mutabot.model import Verdict
-from mutabot.report.texts import one_line, reason_of, rounds_text, short_reason, status_of, why_alone
+from mutabot.report.texts import (
+    ACCEPTED,
+    NOT_RUN,
+    acceptance_text,
+    one_line,
+    reason_of,
+    rounds_text,
+    short_reason,
+    state_of,
+    why_alone,
+)
 
 if TYPE_CHECKING:
     from mutabot.report.format import Material
     from mutabot.results.results import MutantResult
 
 #: state to the element that says so; states that are not here passed
-_ELEMENT: Mapping[Verdict | None, str] = {
+_ELEMENT: Mapping[str, str] = {
     Verdict.SURVIVED: "failure",
     Verdict.NOT_COVERED: "failure",
     Verdict.ERROR: "error",
@@ -23,7 +33,8 @@ _ELEMENT: Mapping[Verdict | None, str] = {
     Verdict.REFUSED: "skipped",
     Verdict.INVALID: "skipped",
     Verdict.NO_EFFECT: "skipped",
-    None: "skipped",
+    ACCEPTED: "skipped",
+    NOT_RUN: "skipped",
 }
 
 
@@ -53,7 +64,7 @@ def make(material: Material) -> str:
 
 
 def _counts(results: Sequence[MutantResult]) -> dict[str, str]:
-    elements = [_ELEMENT.get(status_of(result)) for result in results]
+    elements = [_ELEMENT.get(state_of(result)) for result in results]
     return {
         "tests": str(len(results)),
         "failures": str(elements.count("failure")),
@@ -82,15 +93,16 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
             "time": _seconds([result]),
         },
     )
-    status = status_of(result)
-    element = _ELEMENT.get(status)
+    state = state_of(result)
+    element = _ELEMENT.get(state)
     text = f"{replace(mutant.site.span, file=file).place}: {mutant.description}\n{reason_of(result)}"
     if element is None:
         Xml.SubElement(case, "system-out").text = text
         return
-    reason = f": {short_reason(result)}" if status is not None else ""
-    why = why_alone(result) if element == "failure" else f"{rounds_text(result)}{reason}"
+    reason = f": {short_reason(result)}" if state != NOT_RUN else ""
+    ended = acceptance_text(result) or f"{rounds_text(result)}{reason}"
+    why = why_alone(result) if element == "failure" else ended
     told = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
     if element != "skipped":
-        told.set("type", str(status).replace(" ", "-"))
+        told.set("type", state.replace(" ", "-"))
     told.text = text

@@ -13,14 +13,14 @@ from typing import Any
 from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
-from mutabot.report.texts import reason_of, status_of
+from mutabot.report.texts import ACCEPTED, NOT_RUN, reason_of, state_of
 from mutabot.results.results import MutantResult, killing_tests
 
 _SCHEMA_VERSION = "2.0"
 #: in percent; what the page paints green and red. They are the schema's customary ones, and no limit of ours
 _THRESHOLDS = {"high": 80, "low": 60}
 #: our state to theirs. docs/reports.md has the reasons
-_STATUS: Mapping[Verdict | None, str] = {
+_STATUS: Mapping[str, str] = {
     Verdict.KILLED: "Killed",
     Verdict.TIMEOUT: "Timeout",
     Verdict.SURVIVED: "Survived",
@@ -30,7 +30,8 @@ _STATUS: Mapping[Verdict | None, str] = {
     Verdict.ERROR: "RuntimeError",  # the run failed, and no test did
     Verdict.NO_EFFECT: "Ignored",  # it ran and was the original: nothing was there to judge
     Verdict.UNSTABLE: "Ignored",  # it ran, and what came of it is not believed
-    None: "Pending",  # it was planned, and has not been run yet
+    ACCEPTED: "Ignored",  # somebody has looked at it, and its reason says why it may survive
+    NOT_RUN: "Pending",  # it was planned, and has not been run yet
 }
 
 
@@ -75,7 +76,7 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
         "description": mutant.description,
         "replacement": _replacement(mutant, material),
         "location": _location(mutant.site.span, material),
-        "status": _STATUS[status_of(result)],
+        "status": _STATUS[state_of(result)],
         "statusReason": reason_of(result),
         "coveredBy": [*dict.fromkeys([*material.campaign.reached_by(mutant), *killed_by])],
         "killedBy": [*killed_by],

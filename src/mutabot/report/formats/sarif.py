@@ -1,4 +1,4 @@
-"""SARIF 2.1.0: a result per survivor, for code scanning and editors."""
+"""SARIF 2.1.0: a result per survivor, for code scanning and editors; accepted ones are suppressed."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from mutabot.report.texts import survivor_text
 
 if TYPE_CHECKING:
     from mutabot.model import Mutant, Site
+    from mutabot.model.suppression import Acceptance
     from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -30,7 +31,7 @@ _HELP = (
 
 def make(material: Material) -> str:
     """The report."""
-    survivors = material.campaign.survivors
+    survivors = [*material.campaign.survivors, *material.campaign.accepted]
     rules = {name: index for index, name in enumerate(sorted({one.mutant.operator for one in survivors}))}
     return dumps(
         {
@@ -52,7 +53,8 @@ def make(material: Material) -> str:
 
 def _driver(material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
     version = str(material.campaign.meta.get("mutabot", ""))
-    known = {one.mutant.operator: one.mutant for one in material.campaign.survivors}
+    survivors = [*material.campaign.survivors, *material.campaign.accepted]
+    known = {one.mutant.operator: one.mutant for one in survivors}
     return {
         "name": "Mutabot",
         **({"version": version} if version else {}),
@@ -94,7 +96,17 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
         "locations": [_location(mutant.site, material)],
         "partialFingerprints": {_FINGERPRINT: mutant.id},
         "properties": {"mutant": mutant.id, "number": mutant.number},
+        **_suppressions(result.acceptance),
     }
+
+
+def _suppressions(acceptance: Acceptance | None) -> dict[str, Any]:
+    """Why a survivor is accepted; code scanning does not show it then."""
+    if acceptance is None:
+        return {}
+    kind = "inSource" if acceptance.in_source else "external"
+    reason = f"{acceptance.why} ({acceptance.source})"
+    return {"suppressions": [{"kind": kind, "status": "accepted", "justification": reason}]}
 
 
 def _level(result: MutantResult) -> str:

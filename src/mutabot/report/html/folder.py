@@ -25,7 +25,7 @@ from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
 from mutabot.report.sections import suggested_check
 from mutabot.report.terminal.console import mark_of
-from mutabot.report.texts import effect_text, mapped, status_of
+from mutabot.report.texts import acceptance_text, effect_text, mapped, state_of
 from mutabot.results.divergence import worst_of
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
@@ -73,6 +73,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         # thousands of rows do not repeat the names of their cells
         "columns": [*rows[0]] if rows else [],
         "mutants": [[*one.values()] for one in rows],
+        "withoutEffect": [*campaign.needlessly_accepted, *campaign.accepting.unmatched],
         "unlooked": unlooked(campaign.mutants),
         "ladders": [
             {**data_of.facts(one, _LADDER), "text": line_of(one)}
@@ -91,8 +92,8 @@ def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
             counts[2] += by is By.CHECK
     return {
         **data_of.facts(result, _ROW),
-        "status": data_of(status_of(result)) or "not run",
-        "why": effect_text(result),
+        "status": state_of(result),
+        "why": "; ".join(filter(None, [acceptance_text(result), effect_text(result)])),
         "ends": "".join(mark_of(one).letter for one in result.rounds),
         "kills": [*kills.values()],
     }

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from mutabot.model.outcome import end_in_words
 from mutabot.report.sections import Section, between, plural, suggested_check
-from mutabot.report.texts import effect_text, telling
+from mutabot.report.texts import acceptance_text, effect_text, telling
 from mutabot.results.divergence import numbers_text
 
 from .console import below, heading, letters, make_table, mark_of, plain, print_section
@@ -84,6 +84,7 @@ def _facts(result: MutantResult) -> Table:
         "change": f"the program {result.change}" if result.change is not None else "",
         "killed": of_rounds + interval,
         "result": effect_text(result),
+        "accepted": acceptance_text(result).removeprefix("accepted").removeprefix(": ").strip(),
     }
     table = make_table(("", "*"), header=False)
     for name, text in facts.items():

@@ -41,7 +41,7 @@
       [one.line, one.endLine] = [one.span.line, one.span.end_line];
       one.place = one.line ? `${one.file}:${one.line}` : one.file || "–";
       one.reach = reaching.get(one.site) || [];
-      one.survives = /[SN]/.test(one.ends);
+      one.survives = /[SN]/.test(one.ends) && one.status !== "accepted";
       one.haystack = [one.number, one.id, one.place, one.function, one.operator, one.description, one.why].join("\n").toLowerCase();
       return one;
     });

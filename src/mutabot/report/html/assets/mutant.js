@@ -212,7 +212,7 @@
   function looked(one, page) {
     const section = h("section", { "aria-labelledby": "looked" }, h("h2", { id: "looked" }, "Checks that ran"));
     const outcome = page.rounds.find((each) => each && each.looked.length);
-    if (!one.survives) return "";
+    if (!one.survives && one.status !== "accepted") return "";
     if (!outcome) {
       section.append(one.status === "not covered" ? empty("No test ran it.", "Add a test that runs this line first.")
         : empty("It is not known what the tests checked.", "Checks are seen where pytest rewrites assertions; this journal holds none for this mutant."));

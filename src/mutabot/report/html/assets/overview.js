@@ -77,7 +77,8 @@
       h("td", null, dots(one)),
       h("td", { class: "n" }, percent(one.check_score), h("small", null, between(one.check_interval))),
       h("td", null, bar(one)),
-      h("td", { class: "n" }, one.mutants, one.population ? h("small", null, `drawn of ${one.population}`) : null));
+      h("td", { class: "n" }, one.mutants, one.population ? h("small", null, `drawn of ${one.population}`) : null,
+        one.accepted ? h("small", null, `${one.accepted} accepted`) : null));
   }
 
   /** The score's interval, its rounds and the check score on a scale from 0 to 100 %. */
@@ -150,6 +151,7 @@
   }
 
   function unseen(campaign) {
+    if (isUnderWay(campaign)) return ""; // a mutant that is still to be run may show that a test notices something
     const none = campaign.tests.map((name, index) => [name, index]).filter(([, index]) => !campaign.mutants.some((one) => one.kills.some((kill) => kill[0] === index)));
     const section = h("section", { "aria-labelledby": "unseen" }, h("h2", { id: "unseen" }, "Gaps: unchecked readings and idle tests"));
     if (!campaign.unlooked.length && !none.length) {
@@ -168,12 +170,13 @@
 
   function outside(campaign) {
     const section = h("section", { "aria-labelledby": "outside" }, h("h2", { id: "outside" }, "Not counted in the score"));
-    const found = ["error", "unstable", "refused", "invalid", "no effect", "not run"]
+    const found = ["accepted", "error", "unstable", "refused", "invalid", "no effect", "not run"]
       .map((name) => [name, campaign.mutants.filter((one) => one.status === name).length]).filter(([, many]) => many);
     if (found.length) {
       section.append(h("ul", { class: "plain" }, found.map(([name, many]) => h("li", null,
         h("a", { href: address(["mutants"], { status: name }) }, marks.status(name)), ` ${count(many, "mutant")}: ${marks.MEANING[name]}`))));
     } else section.append(h("p", { class: "hint" }, "Every planned mutant was run and is counted."));
+    if (campaign.withoutEffect.length) section.append(h("h3", null, "Accepted or excluded without an effect"), h("ul", { class: "plain" }, campaign.withoutEffect.map((one) => h("li", null, one))));
     const nothing = "would change nothing";
     const headings = Map.groupBy(campaign.left_out, (one) => one.reason.startsWith(nothing) ? `Left out that ${nothing}` : `Left out: ${one.reason}`);
     for (const [heading, those] of [...headings].sort(([one], [other]) => other.startsWith("Left out that") - one.startsWith("Left out that"))) {

@@ -1,0 +1,189 @@
+"""Accepted survivors and excluded mutants: those of the project's file, and comments in the program.
+
+A comment stands at the end of a line of the call, or alone above it::
+
+    arm.translate(dz=-0.1)  # mutabot: accept reverse, skip: the table is symmetric
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import tokenize
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mutabot.campaign.faults.providers import family_of, operators_of_packages
+from mutabot.config.mistakes import raise_errors
+from mutabot.config.suppressions import read_suppressions
+from mutabot.errors import ConfigurationError, UnknownNameError, unknown_name_text
+from mutabot.journal import records
+from mutabot.languages.registry import front_end_of, program_files
+from mutabot.model import LeftOut
+from mutabot.model.suppression import Acceptance, Accepted, Action, Suppression, first_fitting
+from mutabot.operators import registry
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign
+    from mutabot.campaign.plan import Plan
+    from mutabot.campaign.request import Request
+    from mutabot.journal.journal import Journal
+    from mutabot.model import Mutant
+
+_MARK = "mutabot:"
+_COMMENT = re.compile(rf"\W*{_MARK}\s*(?P<action>[\w-]*)\s*(?P<operators>[^:]*)(?::\s*(?P<why>.*))?")
+#: a comment of a language whose front end is of a package, by the signs that languages have for them
+_ANY_COMMENT = re.compile(rf"(?P<before>.*?)(?P<comment>(?:#|//|--|[;!'%])\s*{_MARK}.*)")
+_COMMENT_LINE = re.compile(r"#|//|--|[;!'%]")
+_USAGE = f"write `# {_MARK} accept OPERATOR: why`, or `exclude`; several operators with commas, * for any"
+
+
+def suppressions_of(request: Request) -> tuple[Suppression, ...]:
+    """All decisions of a project. Raises ConfigurationError, about all mistakes at once."""
+    configuration = request.configuration
+    found = [*read_suppressions(request.root)]
+    for file in program_files(request.root, (*configuration.program, *configuration.oracle)):
+        found += comments_in(file, text_of(request.root / file))
+    raise_errors([*_unknown_operators(found)])
+    return tuple(found)
+
+
+def text_of(file: Path) -> str:
+    """A program text with ``\\n`` at the ends of lines, as far as it can be read."""
+    source = file.read_bytes()
+    try:
+        return front_end_of(str(file)).text_of(source)
+    except (SyntaxError, ValueError):
+        return source.decode("utf-8", "replace")
+
+
+def _unknown_operators(found: Iterable[Suppression]) -> Iterator[ConfigurationError]:
+    for one in found:
+        if one.operator and not {"*", "?"} & {*one.operator} and one.operator not in registry.names():
+            known = [*registry.names(), *operators_of_packages()]
+            if one.operator not in known:
+                file, _, line = one.source.rpartition(":")
+                text = unknown_name_text("operator", one.operator, known)
+                yield UnknownNameError(text, file=file, line=int(line))
+
+
+def comments_in(file: str, text: str) -> list[Suppression]:
+    """The decisions in the comments of a program file. Raises ConfigurationError."""
+    if _MARK not in text:
+        return []
+    lines, found, errors = text.split("\n"), list[Suppression](), list[ConfigurationError]()
+    for number, comment, is_alone in _comments(file, text):
+        parts = _COMMENT.match(comment)
+        if parts is None:
+            continue
+        operators = [name.strip() for name in parts["operators"].split(",") if name.strip()]
+        why, action = (parts["why"] or "").strip(), parts["action"]
+        if action not in [*Action] or not operators or not why:
+            lacking = "names no operator" if not operators else "has no reason"
+            problem = f"there is no {action!r}" if action not in [*Action] else f"`{action}` {lacking}"
+            errors.append(ConfigurationError(f"{problem}; {_USAGE}", file=file, line=number))
+            continue
+        at = _next_code(lines, number) if is_alone else number
+        one = Suppression(
+            Action(action), why, f"{file}:{number}", file=file, numbers=(at, at), in_source=True
+        )
+        found += [replace(one, operator=operator) for operator in operators]
+    raise_errors(errors)
+    return found
+
+
+def _comments(file: str, text: str) -> Iterator[tuple[int, str, bool]]:
+    """Yield the line of each comment that has the mark, its text, and whether it stands alone."""
+    if not file.lower().endswith(".py"):
+        for number, line in enumerate(text.split("\n"), start=1):
+            if _MARK in line and (found := _ANY_COMMENT.match(line)):
+                yield number, found["comment"], not found["before"].strip()
+        return
+    try:
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            if token.type == tokenize.COMMENT and re.match(rf"\W*{_MARK}", token.string):
+                yield token.start[0], token.string, not token.line[: token.start[1]].strip()
+    except (tokenize.TokenError, SyntaxError):
+        return  # the tests will say what is wrong with this file
+
+
+def _next_code(lines: Sequence[str], number: int) -> int:
+    """The first line below a comment, by numbers from 1, that is neither a comment nor empty."""
+    below = ((at, lines[at - 1].strip()) for at in range(number + 1, len(lines) + 1))
+    return next((at for at, text in below if text and not _COMMENT_LINE.match(text)), number)
+
+
+def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
+    """Return the plan without excluded mutants, and the decisions that fit no mutant, in words.
+
+    Excluded mutants are left out, with the reason. Numbers stay as they are.
+    """
+    if not campaign.suppressions:
+        return plan, ()
+    lines, left_out = _SourceLines(campaign.request.root), list(plan.left_out)
+    excluding = [one for one in campaign.suppressions if one.action is Action.EXCLUDE]
+    kept = []
+    for mutant in plan.mutants:
+        found = first_fitting(excluding, mutant, lines.of(mutant))
+        if found is None:
+            kept.append(mutant)
+        else:
+            left_out.append(LeftOut(mutant.id, mutant.description, f"excluded: {found.why}"))
+    unmatched = tuple(_unmatched(campaign, plan, lines))
+    for text in unmatched:
+        campaign.progress.note(text)
+    return replace(plan, mutants=kept, left_out=left_out), unmatched
+
+
+def _unmatched(campaign: Campaign, plan: Plan, lines: _SourceLines) -> Iterator[str]:
+    """Decisions that fit no mutant of the families of this campaign, in words."""
+    ids = {one.id for one in plan.left_out}
+    for one in campaign.suppressions:
+        named = [mutant for mutant in plan.mutants if one.names(mutant)]
+        if one.id in ids or any(one.fits(mutant, lines.of(mutant)) for mutant in named):
+            continue
+        if one.id and named:
+            now = lines.of(named[0])[named[0].site.span.line - 1].strip()
+            yield f"{one.source}: the line of {one.id} has changed from {one.line!r} to {now!r}: decide again"
+        elif _is_of(one, campaign.request.families):
+            yield f"{one.source}: no mutant is {one.words}: the decision has no effect"
+
+
+def _is_of(one: Suppression, families: Collection[str]) -> bool:
+    """Whether a decision may be about mutants of these families."""
+    if not one.id and (not one.operator or {"*", "?"} & {*one.operator}):
+        return True
+    return family_of(one.id or one.operator) in families
+
+
+def note_accepted(journal: Journal, suppressions: Iterable[Suppression], unmatched: Sequence[str]) -> None:
+    """Write into a journal which of its mutants are accepted if they survive, and what fits none."""
+    accepting = [one for one in suppressions if one.action is Action.ACCEPT]
+    texts: dict[str, list[str]] = {}
+    found = {}
+    for mutant in (*journal.mutants(), *(one for one, _ in journal.known())) if accepting else ():
+        file = mutant.site.span.file
+        if file not in texts:
+            texts[file] = (journal.source(file) or "").split("\n")
+        one = first_fitting(accepting, mutant, texts[file])
+        if one is not None:
+            found[mutant.id] = Acceptance(one.why, one.source, one.date, one.in_source)
+    journal.set_meta(records.ACCEPTED, Accepted(found, tuple(unmatched)))
+
+
+class _SourceLines:
+    """Lines of the program's files, each read once."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self._of: dict[str, list[str]] = {}
+
+    def of(self, mutant: Mutant) -> list[str]:
+        """The lines of the file in which a mutant stands; none if it stands in none."""
+        file = mutant.site.span.file
+        if file not in self._of:
+            path = self._root / file
+            self._of[file] = text_of(path).split("\n") if path.is_file() else []
+        return self._of[file]

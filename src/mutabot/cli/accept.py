@@ -1,0 +1,97 @@
+"""The command ``accept``: survivors that may survive, each with a reason."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from typer import Option
+
+from mutabot.campaign.suppressions import comments_in, note_accepted
+from mutabot.cli import options
+from mutabot.cli.output import print_json, tell
+from mutabot.config.suppressions import FILE, add_acceptances, read_suppressions
+from mutabot.errors import SelectionError, UsageError
+from mutabot.journal.files import find_journal, is_written
+from mutabot.journal.journal import Journal
+from mutabot.report.document import accepting_data
+from mutabot.report.sections import Section, accepted_sections, numbered
+from mutabot.report.terminal.console import make_console, print_section, short_place
+from mutabot.report.texts import acceptance_text, state_of
+from mutabot.results.results import MutantResult, Results, find_mutant, results_at
+
+_MUTANTS = "Numbers, ids, or unique parts of ids. Without any, list what is accepted."
+_WHY = "Why these may survive. It is written beside each of them."
+_Mutants = Annotated[list[str] | None, typer.Argument(metavar="[MUTANT]...", help=_MUTANTS)]
+_Why = Annotated[str, Option("--why", metavar="TEXT", help=_WHY)]
+
+
+def accept(
+    context: typer.Context, mutant: _Mutants = None, why: _Why = "", json: options.Json = False
+) -> None:
+    """Accept survivors, with a reason: they leave the list of survivors and the score.
+
+    Writes mutabot-accepted.toml beside the configuration; commit it. Without a mutant, applies that file and
+    the comments in the program to the last campaign, and lists what is accepted.
+    """
+    path = find_journal(context.obj)
+    root, names = path.parent.parent, mutant or []
+    if names and not why.strip():
+        raise UsageError('say why these may survive: --why "…"')
+    if why and not names:
+        raise UsageError("--why needs a mutant: `mutabot accept 5 --why …`")
+    results = results_at(path, earlier=True)
+    chosen = list({one.mutant.id: one for one in (find_mutant(results, name) for name in names)}.values())
+    _refuse_others(chosen)
+    if chosen:
+        entries = [(one.mutant.id, _line(results, one)) for one in chosen]
+        add_acceptances(root, entries, why.strip(), datetime.date.today())
+    if is_written(path):
+        tell([f"{FILE} is written; a campaign is running: `mutabot accept` applies it when that has ended"])
+        return
+    _apply(path, root, results)
+    found = results_at(path, earlier=True)
+    if json:
+        print_json(accepting_data(found))
+        return
+    shown = [*accepted_sections(found, short_place)] or [Section("No survivor is accepted")]
+    for section in shown:
+        print_section(make_console(), section)
+    if chosen:
+        tell([f"\naccepted {numbered([one.mutant.number for one in chosen])}; commit {FILE}"])
+
+
+def _refuse_others(chosen: Sequence[MutantResult]) -> None:
+    """Raise SelectionError for mutants that cannot be accepted."""
+    wrong = []
+    for one in chosen:
+        name = f"mutant {one.mutant.number}"
+        if one.is_accepted:
+            wrong.append(f"{name} is {acceptance_text(one)} ({one.acceptance and one.acceptance.source})")
+        elif one.mutant.has_sizes:
+            wrong.append(f"{name} is a magnitude of a graded fault, which is in no score: nothing to accept")
+        elif not one.is_survivor:
+            wrong.append(f"{name} is no survivor ({state_of(one)}): only survivors can be accepted")
+    if wrong:
+        raise SelectionError("\n".join(wrong))
+
+
+def _line(results: Results, result: MutantResult) -> str:
+    """The first line of a mutant's place, as the campaign saw it."""
+    span = result.mutant.site.span
+    lines = (results.source(span.file) or "").split("\n")
+    return lines[span.line - 1].strip() if 1 <= span.line <= len(lines) else ""
+
+
+def _apply(path: Path, root: Path, results: Results) -> None:
+    """Write into the journal what the file and the program of its campaign say."""
+    suppressions = [*read_suppressions(root)]
+    for file, text in results.sources.items():
+        suppressions += comments_in(file, text)
+    sources = {one.source for one in suppressions}
+    unmatched = [one for one in results.accepting.unmatched if one.partition(": ")[0] in sources]
+    with Journal.amend(path) as journal:
+        note_accepted(journal, suppressions, unmatched)

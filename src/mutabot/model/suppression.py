@@ -1,0 +1,118 @@
+"""Decisions of a user about mutants: to accept a survivor, or not to run a mutant.
+
+A decision names one mutant by its id, or some by file, operator and text of the line. The line is compared as
+well where an id is given: ids count equal calls of a function, so another one before it moves them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
+from enum import StrEnum
+
+from mutabot.frozen import frozen
+
+from .mutant import Mutant, is_like
+
+
+class Action(StrEnum):
+    """What becomes of the mutants."""
+
+    ACCEPT = "accept"
+    EXCLUDE = "exclude"
+
+
+@frozen
+class Suppression:
+    """One decision. A mutant has to meet everything that is given.
+
+    Attributes:
+        action: what becomes of the mutants.
+        why: the reason.
+        source: where it is written, ``file:line``.
+        id: the id of a mutant; empty for any.
+        file: path of a program file, in which ``*`` and ``?`` are wild; empty for any.
+        operator: name of an operator, likewise.
+        line: text of one of the lines that the mutant's place takes, without blanks around it, likewise.
+        numbers: first and last line that the mutant's place has to meet; None for any.
+        date: when it was made, as ``2026-01-31``; empty if it is not said.
+        in_source: whether it is a comment in the program.
+    """
+
+    action: Action
+    why: str
+    source: str
+    id: str = ""
+    file: str = ""
+    operator: str = ""
+    line: str = ""
+    numbers: tuple[int, int] | None = None
+    date: str = ""
+    in_source: bool = False
+
+    def fits(self, mutant: Mutant, lines: Sequence[str]) -> bool:
+        """Whether a mutant is meant; ``lines`` are those of its file."""
+        return self.names(mutant) and (not self.line or self.has_line(mutant, lines))
+
+    def names(self, mutant: Mutant) -> bool:
+        """The same, whatever its line says."""
+        span = mutant.site.span
+        first, last = self.numbers or (span.line, span.end_line)
+        return (
+            self.id in ("", mutant.id)
+            and first <= span.end_line
+            and span.line <= last
+            and (not self.file or is_like(self.file, span.file))
+            and (not self.operator or is_like(self.operator, mutant.operator))
+        )
+
+    def has_line(self, mutant: Mutant, lines: Sequence[str]) -> bool:
+        """Whether one of the lines that the mutant's place takes has the text."""
+        span = mutant.site.span
+        return any(is_like(self.line, text.strip()) for text in lines[max(0, span.line - 1) : span.end_line])
+
+    @property
+    def words(self) -> str:
+        """What it names: ``reverse in mission.py:22``."""
+        if self.id:
+            return self.id
+        what = self.operator or "mutants"
+        where = [f"in {self.file}"] if self.file else []
+        return " ".join([what, *where, *([f"at {self.line!r}"] if self.line else [])])
+
+
+@frozen
+class Acceptance:
+    """Why a survivor is accepted.
+
+    Attributes:
+        why: the reason.
+        source: where that is written, ``file:line``.
+        date: when it was accepted; empty if it is not said.
+        in_source: whether it is a comment in the program.
+    """
+
+    why: str
+    source: str
+    date: str = ""
+    in_source: bool = False
+
+
+@frozen
+class Accepted:
+    """What a campaign knows of accepted survivors.
+
+    Attributes:
+        mutants: by the ids of mutants that are accepted if they survive.
+        unmatched: decisions that fit no mutant, a line each with the reason.
+    """
+
+    mutants: Mapping[str, Acceptance] = field(default_factory=dict)
+    unmatched: tuple[str, ...] = ()
+
+
+def first_fitting(
+    suppressions: Iterable[Suppression], mutant: Mutant, lines: Sequence[str]
+) -> Suppression | None:
+    """The first decision that means a mutant; None if there is none."""
+    return next((one for one in suppressions if one.fits(mutant, lines)), None)
