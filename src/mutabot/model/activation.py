@@ -34,7 +34,7 @@ FATAL_CONTROL = "mutabot.runtime.active_fault:FatalControl"
 
 
 def at_call(span: Span, operation: str, pattern: str | None) -> Key:
-    """A call of an operation, or of one of its text commands, at a site."""
+    """Return the key of a call of an operation, or of one of its text commands, at a site."""
     place = span.line, span.column, span.end_line, span.end_column
     return (CALL, span.file, *place, operation, pattern)
 
@@ -101,7 +101,7 @@ class Activation:
         return replace(own, identity=identity, fatal=fatal)
 
     def control(self, *, is_fatal: bool = False) -> Activation:
-        """The control at the same place that changes nothing, or the fatal one."""
+        """Return the activation of the identity control at the same place, or of the fatal one."""
         own, reference = (self.fatal, FATAL_CONTROL) if is_fatal else (self.identity, IDENTITY_CONTROL)
         return own or Activation(reference, self.data, self.keys, self.awaits)
 

@@ -39,7 +39,7 @@ def future_class(value: Any) -> str | None:
 
 
 def never_done(kind: str, here: Mapping[str, Any]) -> Any:
-    """A new future of this kind that nobody ever completes. Raises LookupError where there can be none."""
+    """Return a new future of this kind that never completes. Raises LookupError if the kind has none."""
     known = brought("futures").get(kind)
     if kind == "concurrent.futures.Future" or known is not None:
         reference = known.reference if known is not None else "concurrent.futures:Future"
@@ -196,7 +196,7 @@ def _array(kind: str, shape: list[int], content: str) -> Any:
 
 
 def _is_all_state(value: Any) -> bool:
-    """Whether attributes are all there is to an object, and making another one has no effect."""
+    """Return whether an object consists of its attributes alone, so that making another has no effect."""
     kind = type(value)
     for name in _OWN_WAYS:
         own = getattr(kind, name, None)

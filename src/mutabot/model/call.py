@@ -13,7 +13,7 @@ from mutabot.model.quantity import Quantity, Value
 
 
 class CallFault(StrEnum):
-    """What can befall a call that has a name on a middleware, beside other values.
+    """Faults of the middleware that can happen to a named call, such as loss or delay.
 
     An operator that wants one first asks ``call.cannot(call_fault)``.
     """
@@ -81,7 +81,7 @@ class Reply:
         return replace(self, values={**self.values, quantity.name: value})
 
     def as_is(self, why: str) -> Reply:
-        """The same reply, with the reason why the operator leaves it alone."""
+        """Return the same reply, with the reason why the operator leaves it unchanged."""
         return replace(self, away=why)
 
     def later(self, seconds: float) -> Reply:
@@ -174,7 +174,7 @@ class Call:
         return replace(self, values={**self.values, quantity.name: value})
 
     def with_call_fault(self, call_fault: CallFault, seconds: float = 0.0) -> Call:
-        """The same call, which something befalls."""
+        """Return the same call with a fault of the middleware."""
         return replace(self, call_faults={**self.call_faults, call_fault: seconds})
 
     def as_is(self, why: str) -> Call:

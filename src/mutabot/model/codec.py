@@ -61,7 +61,7 @@ def sparse(value: Any) -> dict[str, Any]:
 
 @cache
 def _defaults(kind: type[Any]) -> tuple[tuple[str, Any, bool], ...]:
-    """The fields of a dataclass with their defaults, and whether each object has a default of its own."""
+    """Return the fields of a dataclass with their defaults, and whether each default is made by a factory."""
     return tuple(
         (one.name, one.default, False)
         if one.default_factory is MISSING

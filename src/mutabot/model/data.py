@@ -57,7 +57,7 @@ def _is_exact(value: Any) -> bool:
 
 
 def data_of(value: Any) -> Any:
-    """A value as operators see it; ``UNKNOWN`` if nobody may look into it.
+    """Return a value as operators see it; ``UNKNOWN`` if it is opaque.
 
     It is the value itself where it is plain, or of numpy, or a member of an enumeration. Decimals and
     fractions become floating-point numbers, of which ``in_place_of`` makes the like of what was there.
@@ -122,7 +122,7 @@ def _as_float(value: Any) -> Any:
 
 
 def _exactly(before: Any, value: float) -> Any:
-    """The like of a decimal or fraction: all its digits stay where its sign alone is another."""
+    """Return a value as a decimal or fraction, keeping all digits where only the sign differs."""
     number = _as_float(before)
     if value == number:
         return before

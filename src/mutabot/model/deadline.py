@@ -97,7 +97,7 @@ class Deadline:
         return processor if computes else min(wall, processor)
 
     def overdue(self, test: str | None) -> str:
-        """Which limit is exceeded, in words; without a ``test``, before it began one."""
+        """Return a text that names the exceeded limit; without a ``test``, that before the first test."""
         of, seconds = "wall clock", self.limit.wall
         if self.by_processor and self.limit.processor is not None:
             of, seconds = "processor time", self.limit.processor

@@ -46,7 +46,7 @@ def member_of(kind: type[Any], written: Any) -> Any | None:
 
 
 def name_of(member: Any) -> str:
-    """A member's name; how it prints where it has none of its own."""
+    """Return a member's name, or its text if it has no name."""
     return str(member.name or member)
 
 

@@ -1,4 +1,4 @@
-"""Files of events: one for each process, one event a line, numbered from 1 and sealed.
+"""Files of events: one for each process, one numbered and sealed event a line.
 
 A file needs nobody who listens, and its content stays when its process dies. The seal shows a reader that a
 line is whole, ours, and of this process; the number shows that none is missing and none comes twice. The
@@ -27,7 +27,7 @@ _SHOWN = 60
 
 
 def sealed(event: Event, number: int, name: str, key: str, default: Callable[[Any], Any] = repr) -> bytes:
-    """The line of an event that is the one of this number in the file of this name.
+    """Return the sealed line of an event, given its number in the file of this name.
 
     ``default`` gives data for what JSON does not know.
     """
@@ -58,14 +58,14 @@ def seal(text: bytes, number: int, name: str, key: str) -> bytes:
 
 
 class EventReader:
-    """The events of one process, as far as they are written by now.
+    """Read the events of one process, as far as they have been written.
 
     Args:
         path: the file.
         key: of the seals.
 
     Attributes:
-        damage: why these events cannot be relied on, in words, which is told once, as ``Untrusted``; None as
+        damage: why these events cannot be relied on, reported once as ``Untrusted``; None as
             far as they can.
         is_torn: whether the last line has no end: it is being written, or its writer was killed meanwhile.
     """

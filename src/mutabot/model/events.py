@@ -1,6 +1,6 @@
-"""Events: what the processes of a job tell, each in a file of its own, see ``event_file``.
+"""Events that the processes of a job report, each in its own file, see ``event_file``.
 
-The test process, its forks and the processes below the tests tell them alike. Times are those of
+The test process, its forks and the processes below the tests report the same kinds. Times are those of
 ``time.monotonic``, which all processes share. The end of a test is also what the journal keeps
 of the baseline.
 """
@@ -24,7 +24,7 @@ TRACE_LIMIT = 5000
 
 
 class Event:
-    """Something that a process tells: the classes below are all there are."""
+    """Base of all events, which are the classes below."""
 
     __slots__ = ()
 
@@ -241,7 +241,7 @@ class NotInstrumented(Event):
 
 @frozen
 class KnownLater(Event):
-    """At a site stood an operation, and in another test something that nothing tells to be one."""
+    """An operation was called at a site at which another test called something unrecognised."""
 
     span: Span
     operation: str
@@ -262,7 +262,7 @@ class CallsAsked(Event):
 
 @frozen
 class ForkTestEnd(Event):
-    """A fork has finished a test: the one in which it was forked, or a later one.
+    """A fork has finished a test, either the one in which it was forked or a later one.
 
     Attributes:
         mutant: id of the mutant it was.
@@ -436,7 +436,7 @@ class Serving(Event):
 
 @frozen
 class Began(Event):
-    """A process below the tests has begun to tell.
+    """A process below the tests has begun to report.
 
     Attributes:
         pid, group: its number, and that of its process group.
@@ -507,9 +507,9 @@ class Did(Event):
 
 @frozen
 class Used(Event):
-    """What the process has used in the running test by now: the last one counts.
+    """The time that the process has used in the running test; the last event counts.
 
-    ``exceeded`` is the limit that was exceeded, in words.
+    ``exceeded`` names the limit that was exceeded.
     """
 
     operations: int
@@ -520,7 +520,7 @@ class Used(Event):
 
 @frozen
 class Raised(Event):
-    """An exception that nobody caught ended the process, or one of its threads.
+    """An uncaught exception ended the process, or one of its threads.
 
     Attributes:
         text: its type and what it says.

@@ -16,7 +16,7 @@ _WRITING = os.O_WRONLY | os.O_RDWR
 
 
 def open_file(path: str | os.PathLike[str], flags: int, mode: int = 0o600) -> int:
-    """Open a file; never wait, and follow no link. One to write to has no other name and no other owner.
+    """Open a regular file without blocking or following links; a file to write to must be owned and unlinked.
 
     Raises OSError for anything else.
     """

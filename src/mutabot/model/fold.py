@@ -25,7 +25,7 @@ _PATIENCE, _PAUSE = 1.0, 0.002
 
 @dataclass(slots=True)
 class ChildRecord:
-    """A process below the tests, and what it told.
+    """A process below the tests, and its events.
 
     Attributes:
         began: what it is.
@@ -163,7 +163,7 @@ class Children:
         return [file for file in files if file.endswith(SUFFIX) and file[0].isdigit()]
 
     def _new_in(self, name: str) -> list[events.Event]:
-        """The new events of a process, which may be in the midst of writing one."""
+        """Return the new events of a process, which may be in the middle of writing another."""
         path = os.path.join(self._folder, name)
         reader = self._readers.setdefault(name, EventReader(path, self._key))
         found = reader.read()
@@ -235,7 +235,7 @@ class Known:
 
 
 def fold(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
-    """The end of a test, as the test process alone would tell it, with what the others told during it."""
+    """Return the end of a test, combined with the events of the processes below it."""
     if not records:
         return end
     end = _with_calls(end, records, known)
@@ -244,7 +244,7 @@ def fold(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> e
 
 
 def calls_of(records: Sequence[ChildRecord], known: Known) -> Iterator[tuple[int, events.Called]]:
-    """The calls of each process in their order, one process after the other, each with its site."""
+    """Yield the calls of each process in order, one process after the other, each with its site."""
     for one in records:
         yield from ((known.index_of(one.sites[call.site]), call) for call in one.called)
 

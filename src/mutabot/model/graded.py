@@ -104,12 +104,12 @@ def wanted_magnitudes(demands: Iterable[Demand], mutant: Mutant, kind: Kind | No
 
 
 def is_at_least(magnitude: float, demanded: float) -> bool:
-    """Whether a magnitude of a ladder is the demanded one or more; units may have been converted."""
+    """Return whether a magnitude of a ladder is at least the demanded one, up to rounding of units."""
     return magnitude > demanded or is_same(magnitude, demanded)
 
 
 def is_same(one: float, other: float) -> bool:
-    """Whether two magnitudes are one and the same."""
+    """Return whether two magnitudes are equal, up to rounding of units."""
     return math.isclose(one, other, rel_tol=1e-9)
 
 
@@ -134,7 +134,7 @@ def _rounded(value: float) -> float:
 
 
 class MagnitudeResult(StrEnum):
-    """What the tests made of one magnitude."""
+    """How the tests judged one magnitude."""
 
     #: a check, an exception or a time-out ended it
     NOTICED = "noticed"

@@ -1,4 +1,4 @@
-"""The job: what the controller tells the process that runs the robot program.
+"""The job that the controller gives to the process that runs the robot program.
 
 The controller writes one ``Job`` into the home of that process, which answers with the events of
 ``model.events``. It is pickled: every process below the tests reads one, and to make the same of JSON took a
@@ -30,7 +30,7 @@ PIPE_VARIABLE = "MUTABOT_PIPE"
 
 @frozen
 class RefusedAt:
-    """The calls of one site that the robot refuses in the original, in one test.
+    """Calls at one site that the robot refuses in the original, in one test.
 
     Attributes:
         span, operation, pattern: the site, and what is called there.
@@ -83,7 +83,7 @@ class Pictures:
 
 @frozen
 class Job:
-    """One session inside: which tests to run, as which mutant.
+    """One run of tests as the original or as a mutant.
 
     Attributes:
         root: absolute path of the project; files in spans are relative to it.
@@ -153,7 +153,7 @@ class Job:
 
     @property
     def is_of_text(self) -> bool:
-        """Whether it has to do with the program text alone: no call, no clock, no other fault."""
+        """Return whether the job concerns the program text alone, without calls, a clock or other faults."""
         is_of_text = all(one.reference == TEXT_FAULT for one in self.active.values())
         return is_of_text and not (self.vocabulary.operations or self.vocabulary.clock)
 
@@ -167,7 +167,7 @@ class Job:
         return replace(slim, simulated={}, extensions={}) if self.is_of_text else slim
 
     def left_out(self, mutant: str) -> frozenset[str]:
-        """The tests that are not run as this mutant once one has reached it."""
+        """Return the tests that are left out for this mutant once it has been reached."""
         numbers = self.reaching.get(mutant)
         if not numbers or self.tests is None:
             return frozenset()
@@ -200,7 +200,7 @@ def read_job(home: str | os.PathLike[str]) -> Job:
 
 @frozen
 class Idle:
-    """What a command answered at one place in the baseline, test by test.
+    """Answers of a command at one place in the baseline, by test.
 
     Attributes:
         answers: the different answers, as data that ``answer.restore`` understands.
@@ -248,6 +248,6 @@ class Idle:
         return self.answers[self.of_test.get(self.key(round, test), 0)]
 
     def is_varying(self, round: int, test: str) -> bool:
-        """Whether answers differed in a test; in an unknown one, whether they did anywhere."""
+        """Return whether answers differed within a test; for an unknown test, whether they did in any."""
         key = self.key(round, test)
         return key in self.varying if key in self.of_test else bool(self.varying)

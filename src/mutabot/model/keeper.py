@@ -44,7 +44,7 @@ def main() -> NoReturn:
 
 
 def guard(folder: str, controller: int) -> None:
-    """Fork: the new process is to be the worker and returns; this one looks after it and never does."""
+    """Fork the worker, in which this function returns; this process supervises it and never returns."""
     libc = ctypes.CDLL(None)
     libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
@@ -117,7 +117,7 @@ def _end_others() -> None:
 
 
 def _children() -> list[int]:
-    """The processes whose parent this one is."""
+    """Return the children of this process."""
     own = os.getpid()
     try:
         with open(f"/proc/self/task/{own}/children", encoding="ascii") as file:
@@ -133,7 +133,7 @@ def _parent(pid: str) -> int:
 
 
 def name_of(pid: int) -> str:
-    """A process by its command line and number, in one line."""
+    """Return the command line and number of a process in one line."""
     command = b""
     with suppress(OSError), open(f"/proc/{pid}/cmdline", "rb") as file:
         command = file.read()

@@ -128,7 +128,7 @@ class Moment:
 
 
 class Role(StrEnum):
-    """Whose call it is. The two are never mixed in one score."""
+    """Whether a call belongs to the program or to the oracle; no score mixes the two."""
 
     PROGRAM = "program"
     ORACLE = "oracle"

@@ -173,7 +173,7 @@ class Case:
 
 @frozen(refuses=True)
 class Pattern:
-    """One command of an operation whose calls are several: by a text, by the value of an argument, or both.
+    """One command of an operation that carries several, told apart by a text, an argument's value, or both.
 
     Attributes:
         text: the notation of the text, such as ``lift/{height:g}``, together with the cases.
@@ -203,7 +203,7 @@ class Pattern:
 
     @property
     def notation(self) -> str | None:
-        """The notation of the text by which a call is this command; None if no text tells."""
+        """The notation of the text that selects this command; None if no text does."""
         return self.base if self.when else self.text
 
     @property
@@ -220,7 +220,7 @@ class Pattern:
 
 @frozen(refuses=True)
 class Operation:
-    """One callable of a robot API, and what its arguments and result mean.
+    """One callable of a robot API, with the meaning of its arguments and result.
 
     Attributes:
         target: the callable as ``module:qualified.name``.
@@ -265,12 +265,12 @@ class Operation:
 
     @classmethod
     def reading(cls, target: str, kind: Kind, **more: Any) -> Operation:
-        """An operation that returns one value and commands nothing; ``more``: attributes of its quantity."""
+        """Make an operation that returns one value and is no command; ``more``: attributes of its quantity."""
         return cls(target, result=(Quantity("result", Path(), kind, **more),), command=False)
 
     @classmethod
     def writing(cls, target: str, name: str, kind: Kind, **more: Any) -> Operation:
-        """An operation with one argument; ``more``: attributes of its quantity."""
+        """Make an operation with one argument; ``more``: attributes of its quantity."""
         return cls(target, (Quantity(name, Path(name), kind, **more),))
 
     @classmethod
@@ -338,13 +338,13 @@ class Operation:
 
     @property
     def currents(self) -> tuple[str, ...]:
-        """All operations that tell where the robot is, for any of its calls."""
+        """The readings that give the robot's position, for any of its calls."""
         named = (self.current, *(pattern.current for pattern in self.patterns))
         return tuple(dict.fromkeys(name for name in named if name is not None))
 
     @property
     def readings(self) -> tuple[Quantity, ...]:
-        """The quantities that may tell where the robot is: what it reads, or what is published last."""
+        """The quantities that can give the robot's position: those read, or those published last."""
         is_published = self.named is not None and self.named.form is Form.PUBLISH
         return self.arguments if is_published else self.result
 
@@ -450,7 +450,7 @@ class Vocabulary:
         return next((operation for operation in self.operations if operation.target == target), None)
 
     def quantity(self, target: str, pattern: str | None, name: str | None) -> Quantity | None:
-        """The quantity of this name in a command of an operation, or in the operation; None if none is."""
+        """Return the quantity of this name in a command or in its operation; None if there is none."""
         operation = self.operation(target)
         if operation is None or name is None:
             return None

@@ -1,4 +1,4 @@
-"""Outcomes: the one named end of a mutant in a round, its place in the score, and what was seen of it."""
+"""Outcomes: the verdict on a mutant in a round, its place in the score, and its evidence."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ KILLED = frozenset({Verdict.KILLED, Verdict.TIMEOUT})
 
 @frozen
 class Check:
-    """One check of a test.
+    """One check that a test makes.
 
     Attributes:
         place: ``file:line`` of it.
@@ -86,7 +86,7 @@ class Looked:
 
 @frozen
 class Apart:
-    """How far one thing was from where it is in the original at the same time.
+    """The distance of one object from its position in the original at the same time.
 
     Attributes:
         name: which thing, such as ``box``; ``box turned`` for its orientation.
@@ -121,7 +121,7 @@ class Apart:
 
 @frozen
 class Diverged:
-    """How the world of one test differs from the original's.
+    """How a test of a mutant differs from the same test of the original.
 
     Attributes:
         test: node id.
@@ -144,7 +144,7 @@ class Diverged:
 
     @property
     def worst(self) -> float:
-        """How far the world was from the original's at the worst moment, in multiples of the tolerance."""
+        """The largest distance from the original, in multiples of the tolerance."""
         return max((one.worst for one in self.apart), default=0.0)
 
 
@@ -186,7 +186,7 @@ class Compared:
 
 @frozen
 class Kill:
-    """One test that noticed a mutant.
+    """A test that noticed a mutant.
 
     Attributes:
         test: node id.
@@ -203,12 +203,12 @@ class Kill:
 
 @frozen
 class Outcome:
-    """The end of one mutant in one round.
+    """The verdict on one mutant in one round, with its evidence.
 
     Attributes:
         mutant: the mutant's id.
         round: 0-based round.
-        verdict: the one named end.
+        verdict: the verdict.
         by: what noticed it, for a kill.
         test: node id of the test that killed, timed out, was refused or failed the tool; else None.
         exception: type of the exception that ended that test, as ``module:Name``.
@@ -310,7 +310,7 @@ class LeftOut:
 
     @property
     def heading(self) -> str:
-        """The heading it is listed under: one for all that would change nothing, else the reason."""
+        """The heading of its list: a common one for mutants without effect, otherwise the reason."""
         return NOTHING if self.reason.startswith(NOTHING) else self.reason
 
 

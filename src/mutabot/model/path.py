@@ -30,7 +30,7 @@ _SLICE = re.compile(r"\s*(-?\d{1,9})?\s*:\s*(-?\d{1,9})?\s*(?::\s*(-?\d{1,9})?\s
 
 @frozen
 class Step:
-    """One step of a path: an attribute's name, or an index, key or slice in brackets."""
+    """A step of a path: an attribute's name, or an index, key or slice in brackets."""
 
     attribute: str | None = None
     item: Any = None

@@ -88,7 +88,7 @@ def _all_children() -> dict[int, list[int]]:
 
 
 def ran_below() -> float:
-    """Seconds that processes below this one have been on a processor: those that ended and those that run."""
+    """Return the processor seconds of all processes below this one, both ended and running."""
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = ended.ru_utime + ended.ru_stime
     try:
@@ -101,7 +101,7 @@ def ran_below() -> float:
 
 
 def shortage() -> float | None:
-    """Seconds since the start of the system in which some task had no processor; None if nobody counts."""
+    """Return the seconds in which some task waited for a processor since boot; None if not recorded."""
     try:
         for line in _read(_PRESSURE).splitlines():
             kind, *fields = line.split()
@@ -198,7 +198,7 @@ class TimeUsed:
         return f"processors were short for {min(1.0, short):.0%} of the time" if short >= _SHORT else None
 
     def _had(self, processes: Iterable[int]) -> tuple[float, float]:
-        """Seconds that all their tasks together were on a processor, and stood in the queue for one."""
+        """Return the seconds that their tasks spent on a processor, and waiting for one."""
         roots = list(processes)
         found = accounts_of(below(roots)) if roots else None
         if not found:

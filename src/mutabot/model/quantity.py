@@ -34,7 +34,7 @@ _TURNED_ROUND = 1e-3
 
 
 def seconds_of(stamp: Any) -> float | None:
-    """The seconds of a stamp, or of a number that is one; None for anything else."""
+    """Return the seconds of a time stamp or a number; None for anything else."""
     if isinstance(stamp, int | float) and not isinstance(stamp, bool):
         return float(stamp)
     for whole, rest in _PARTS:
@@ -63,7 +63,7 @@ Value = Any
 
 
 class Kind(StrEnum):
-    """The meaning of a quantity: mostly a physical one.
+    """The kind of a quantity, mostly a physical one.
 
     A setting is what something is set up with, such as the name of a topic; no vocabulary describes it.
     """
@@ -166,7 +166,7 @@ READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: 
 
 @frozen(refuses=True)
 class Quantity:
-    """The meaning of one argument, or of one part of a result.
+    """The meaning of an argument, or of a part of a result.
 
     Attributes:
         name: how ids and reports call it (``dx``, ``.pose.x``, ``height``, ``result``).
@@ -425,7 +425,7 @@ class Quantity:
 def distinct_texts(
     one: Value, other: Value, text: Callable[[Value, int], str], digits: int
 ) -> tuple[str, str]:
-    """Two values as texts, with as many significant digits as tell them apart, but at least ``digits``."""
+    """Return two values as texts with enough significant digits to differ, and at least ``digits``."""
     for more in range(digits, _MOST_DIGITS + 1):
         texts = text(one, more), text(other, more)
         if texts[0] != texts[1]:
@@ -434,7 +434,7 @@ def distinct_texts(
 
 
 def is_reading_of(reading: Quantity, written: Quantity) -> bool:
-    """Whether a reading tells where a commanded motion starts from: same axis, no other frame.
+    """Return whether a reading gives the start of a commanded motion: same axis, no other frame.
 
     The target that was sent last tells it as well.
     """
@@ -455,7 +455,7 @@ def is_number(value: Any) -> bool:
 
 
 def holds_number(value: Any) -> bool:
-    """Whether a recorded value is a number, or holds one; of strange kinds of numbers texts are recorded."""
+    """Return whether a recorded value is or holds a number; foreign number types are recorded as texts."""
     if isinstance(value, list | tuple):
         return any(map(holds_number, value))
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Signatures as a vocabulary writes them, for callables that tell none: ``(body, joints, mode=0, …)``.
+"""Signatures as a vocabulary writes them, for callables without one: ``(body, joints, mode=0, …)``.
 
 ``…`` (or ``...``) stands for what is not said: as the last item for any further arguments, as a default for
 one that is not known.
@@ -46,7 +46,7 @@ def parse_signature(text: str) -> Signature:
 
 
 def takes_anything(signature: Signature) -> bool:
-    """Whether arguments of any number and name fit, so that the signature does not tell what they mean."""
+    """Return whether a signature accepts any arguments, so that it does not name them."""
     kinds = {parameter.kind for parameter in signature.parameters.values()}
     return {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD} <= kinds
 
@@ -89,7 +89,7 @@ def _parameter(name: ast.arg, kind: Any, default: ast.expr | None) -> Parameter:
 
 
 def signature_of(wrapped: Any) -> Signature | None:
-    """What a callable tells about its arguments; None if it tells nothing."""
+    """Return the signature of a callable; None if it has none."""
     try:
         return inspect.signature(wrapped)
     except (TypeError, ValueError):

@@ -41,7 +41,7 @@ def digest(text: bytes) -> str:
 
 
 def together(parts: Iterable[Executed | None]) -> Executed | None:
-    """The units of all of these; None if those of one are not known."""
+    """Return the union of executed units; None if those of any part are unknown."""
     found: dict[str, set[int]] = {}
     for part in parts:
         if part is None:
@@ -68,7 +68,7 @@ class ExecutedByTests:
             self._told.append(executed)
 
     def by(self, tests: Iterable[str]) -> Executed | None:
-        """The units that count for these tests; None if those of one are not known."""
+        """Return the units that these tests depend on; None if those of any test are unknown."""
         last = max((self._numbers[test] for test in tests if test in self._numbers), default=-1)
         return together(self._told[: last + 1])
 
@@ -85,7 +85,7 @@ def is_test_file(name: str) -> bool:
 
 
 def is_unit(node: ast.AST) -> bool:
-    """Whether a function is a unit of its own: a decorator that is not known may do anything with it."""
+    """Return whether a function is a separate unit; one with an unknown decorator is not."""
     return isinstance(node, FunctionNode) and all(map(_is_plain, node.decorator_list))
 
 
@@ -181,11 +181,11 @@ class File:
         return tuple(sorted(getattr(self.nodes[name], "lineno", MODULE) for name in names))
 
     def shown(self, name: str) -> str:
-        """A unit in words: ``place() in sorting.py``."""
+        """Return a unit as text: ``place() in sorting.py``."""
         return f"{name.partition('#')[0]}() in {self.name}" if name else f"module level of {self.name}"
 
     def moves_to(self, new: File) -> dict[NodeExtent, NodeExtent | None]:
-        """Where lines and nodes of this text stand in a new one; None where that is not clear."""
+        """Map lines and nodes of this text to those of a new one; None where that is ambiguous."""
         found: dict[NodeExtent, NodeExtent | None] = {}
         for name, node in (self.nodes or {}).items():
             if new.nodes is None or self.said[name] != new.said.get(name):

@@ -89,7 +89,7 @@ OF_ANY = (Dimension.TIME, Dimension.RATIO)
 
 
 def units_of(dimensions: Collection[Dimension]) -> tuple[str, ...]:
-    """The units that measure one of these."""
+    """Return the units of these dimensions."""
     return tuple(name for name, unit in UNITS.items() if unit.dimension in dimensions)
 
 
@@ -113,7 +113,7 @@ def convert(value: float, unit: str, to: str) -> float:
 
 
 def convert_difference(difference: float, unit: str, to: str) -> float:
-    """A difference of two values given in ``unit``, expressed in ``to``: where scales begin is all one.
+    """Convert a difference of two values from ``unit`` to ``to``, ignoring the offsets of scales.
 
     Raises ValueError when the two units measure different things.
     """
@@ -142,7 +142,7 @@ class Quaternion(NamedTuple):
         return Quaternion(self.w, -self.x, -self.y, -self.z)
 
     def after(self, first: Quaternion) -> Quaternion:
-        """The rotation that does ``first``, and then this one: the product of both."""
+        """Return the rotation that applies ``first`` and then this one: their product."""
         a, b, c, d = self
         w, x, y, z = first
         return Quaternion(
