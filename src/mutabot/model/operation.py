@@ -265,7 +265,7 @@ class Operation:
 
     @classmethod
     def reading(cls, target: str, kind: Kind, **more: Any) -> Operation:
-        """Make an operation that returns one value and is no command; ``more``: attributes of its quantity."""
+        """Make an operation that returns one value, no command; ``more``: attributes of its quantity."""
         return cls(target, result=(Quantity("result", Path(), kind, **more),), command=False)
 
     @classmethod
