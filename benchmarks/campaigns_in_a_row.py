@@ -36,7 +36,7 @@ from typing import Any
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 
 ENGINES = ("fork", "replay")
@@ -291,7 +291,7 @@ class interrupting:  # noqa: N801  # reads as a statement
 def request_for(folder: Path, engine: str) -> Request:
     """A campaign on a project that runs everything."""
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     return Request(configuration, vocabulary, 1, 1, JOBS, engine=engine, fresh=True)
 
 

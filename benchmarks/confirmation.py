@@ -28,7 +28,7 @@ from mutabot.campaign import confirmation
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
 from mutabot.results.results import read_results
@@ -115,7 +115,7 @@ def campaign(folder: Path, mode: str) -> None:
         confirmation._fixed = lambda campaign: -math.inf  # all else is dearer
         confirmation._affordable = lambda *given: iter(())
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     request = Request(
         configuration, vocabulary, rounds=1, seed=configuration.seed, jobs=2, fresh=True, repeats=False
     )

@@ -32,7 +32,7 @@ from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.options import Sample
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.model.codec import to_data
@@ -132,7 +132,7 @@ def request_for(
 ) -> Request:
     """The campaign: all mutants or so many of them, and nothing taken over from the other engine."""
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     jobs = len(os.sched_getaffinity(0))
     return Request(
         configuration, vocabulary, rounds, configuration.seed, jobs,

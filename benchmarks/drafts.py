@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import mutabot_init.propose
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model import Vocabulary
 from mutabot_init.propose import propose
 
@@ -39,7 +39,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", help="libraries; without any, all")
     parser.add_argument("--show", action="store_true", help="print the drafts and what differs")
     given = parser.parse_args()
-    mutabot_init.propose.shipped = tuple  # type: ignore[attr-defined]
+    mutabot_init.propose.shipped_vocabularies = tuple  # type: ignore[attr-defined]
     names = given.names or sorted(path.stem for path in FOLDER.glob("*.toml"))
     title = "operations: right | wrong | missing | quantities: right | wrong | asked | missing"
     print(f"| library | {title} | edits |\n|{'---|' * 9}")
@@ -84,8 +84,8 @@ def _measured(library: dict[str, Any], show: bool) -> Counter[str] | None:
             return None
         draft = (folder / "robot.toml").read_text(encoding="utf-8")
         has_operations = any(line.startswith("[[operation]]") for line in draft.splitlines())
-        ours = load(["robot.toml"], folder) if has_operations else Vocabulary()
-        found, differences = _compared(ours, load(["expected.toml"], folder), draft)
+        ours = load_vocabulary(["robot.toml"], folder) if has_operations else Vocabulary()
+        found, differences = _compared(ours, load_vocabulary(["expected.toml"], folder), draft)
     if show:
         print("\n".join([*told, draft, *differences]))
     return found

@@ -24,7 +24,7 @@ from textwrap import dedent
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
@@ -142,7 +142,7 @@ def write_project(folder: Path, chance: float, moves: int) -> None:
 def campaign(folder: Path, seed: int, *, repeats: bool = True) -> Results:
     """One campaign; raises MutabotError if it ends without verdicts."""
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     request = Request(configuration, vocabulary, rounds=1, seed=seed, jobs=2, fresh=True)
     path = run_campaign(replace(request, repeats=repeats), _Silent())
     with Journal.open(path) as journal:

@@ -13,7 +13,7 @@ import timeit
 from pathlib import Path
 from unittest.mock import Mock
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model.events import Event
 from mutabot.model.job import Job
 from mutabot.runtime.interception.trace import Locator
@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def _calls(folder: Path) -> None:
-    job = Job(str(folder), ("bench_program.py",), (), load(["robot.toml"], folder), 1, 0)
+    job = Job(str(folder), ("bench_program.py",), (), load_vocabulary(["robot.toml"], folder), 1, 0)
     locator = Locator(job.root, job.program, job.oracle)
     session = Session(job, Nowhere(), locator)
     session.install()

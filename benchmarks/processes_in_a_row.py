@@ -26,7 +26,7 @@ from typing import Any
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.families import USUAL
 from mutabot.journal.journal import Journal
 
@@ -53,7 +53,7 @@ class Silent:
 def request_for(folder: Path, given: argparse.Namespace) -> Request:
     """Nothing is taken over from the last campaign."""
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     jobs = len(os.sched_getaffinity(0))
     return Request(
         configuration,

@@ -34,7 +34,7 @@ from unittest.mock import patch
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model.graded import Bracket, MagnitudeResult, bracket_of, seen
 
@@ -61,8 +61,9 @@ class Silent:
 def request_of(folder: Path, given: argparse.Namespace, **more: Any) -> Request:
     """The request of ``mutabot run --family graded --fresh``."""
     configuration = load_configuration(folder)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     request = Request(
-        configuration, load(configuration.vocabulary, configuration.root), given.rounds, 1, given.jobs,
+        configuration, vocabulary, given.rounds, 1, given.jobs,
         only=tuple(given.only or MOVES), families=("graded",), fresh=True,
     )  # fmt: skip
     return replace(request, **more)

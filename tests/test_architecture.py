@@ -29,7 +29,7 @@ ALLOWED = {
     "config": {"errors", "extensions", "families", "limits", "model", "operators", "faults"},
     "evidence": {"model"},
     "runtime": {"errors", "extensions", "model", "languages", "operators", "evidence", "shared_memory"},
-    "execution": {"errors", "model"},
+    "execution": {"errors", "extensions", "model"},
     "journal": {"errors", "model", "repository"},
     "original": {"errors", "model"},
     "api": {

@@ -22,8 +22,8 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
 
-from mutabot.config.vocabulary import load
-from mutabot.config.vocabulary.load import shipped
+from mutabot.config.vocabulary import load_vocabulary
+from mutabot.config.vocabulary.load import shipped_vocabularies
 from mutabot.model import Operation, Vocabulary
 from mutabot.model.events import Problem
 from mutabot.model.job import Job
@@ -40,13 +40,13 @@ _PARAMETERS = re.compile(r"\((.*)\)(?: -> .*)?$")
 def main() -> int:
     """Print what fits and what does not."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    others = [name for name in shipped() if name != "cell"]  # that one is the suite's
+    others = [name for name in shipped_vocabularies() if name != "cell"]  # that one is the suite's
     parser.add_argument("names", nargs="*", default=others, help="shipped vocabularies; default all but cell")
     parser.add_argument("--strict", action="store_true", help="a package that is missing is an error")
     given = parser.parse_args()
     failed = False
     for name in given.names:
-        vocabulary = load([name], Path())
+        vocabulary = load_vocabulary([name], Path())
         packages = sorted({one.module.partition(".")[0] for one in vocabulary.operations})
         missing = [package for package in packages if not _imports(package)]
         if missing:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from mutabot.cli.output import echo, tell
+from mutabot.api.reports import echo
 
 from .propose import propose
 from .template import start
@@ -19,12 +20,12 @@ def init(
         list[Path] | None,
         typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
     ] = None,
-    template: tuple[str, str] | None = None,
+    template: tuple[str, Mapping[str, str]] | None = None,
 ) -> None:
     """Draft a configuration and a vocabulary from one run of the tests, or start a project."""
     if template is not None:
         lines = start(context.obj, program or [], *template)
     else:
-        lines = propose(context.obj, program or [], tell=lambda text: tell([text]))
+        lines = propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True))
     for line in lines:
         echo(line)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mutabot.errors import UsageError
+from mutabot.api.reports import UsageError
 
 #: folders that hold no code of the project
 _SKIPPED = frozenset(

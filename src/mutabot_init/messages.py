@@ -6,12 +6,11 @@ Units and axes are those of REP 103. Where no convention is known of a type, the
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.config.vocabulary.schema import FORMS, SIDES, Sides
-from mutabot.model.operation import Form
+from mutabot.api.values import Form
 
 from .guess import Guess, NameContext, Table, guess_argument, guess_elements, guess_reading
 from .watched import Use, Values, WatchedPart
@@ -29,8 +28,19 @@ _ENDINGS = {
 #: what the tests alone read is worth a word if they wait for it: it is what they judge by. What goes wrong in
 #: a callback of theirs, the client library may keep to itself
 _READINGS = frozenset({Form.RECEIVE, Form.TRANSFORM})
-#: forms that entries are made of
-_DESCRIBED = frozenset({*SIDES, Form.TICK, Form.SLEEP})
+#: what entries are made of: the key that names one, its direction, and the keys of what it writes and reads
+_ENTRIES: Mapping[Form, tuple[str, str | None, str | None, str | None]] = {
+    Form.PUBLISH: ("topic", "publish", "fields", None),
+    Form.RECEIVE: ("topic", "receive", None, "fields"),
+    Form.CALL: ("service", None, "request", "response"),
+    Form.GOAL: ("action", None, "goal", None),
+    Form.FEEDBACK: ("action", None, None, "feedback"),
+    Form.RESULT: ("action", None, None, "result"),
+    Form.PARAMETER: ("parameter", None, None, "value"),
+    Form.TRANSFORM: ("tf", None, None, "fields"),
+    Form.TICK: ("timer", None, None, None),
+    Form.SLEEP: ("rate", None, None, None),
+}
 
 #: how names begin with which the middleware itself does something
 _OF_MIDDLEWARE = (
@@ -90,11 +100,11 @@ def entries(found: Sequence[Use]) -> list[MessageEntry]:
     """An entry for each name that the program uses, and for the readings of the tests that mean something."""
     made: dict[tuple[str, str, str | None], MessageEntry] = {}
     for use in sorted(found, key=lambda use: use.of_tests):
-        if use.form not in _DESCRIBED or use.name.startswith(_OF_MIDDLEWARE):
+        if use.form not in _ENTRIES or use.name.startswith(_OF_MIDDLEWARE):
             continue
         if use.of_tests and (use.form not in _READINGS or use.is_called_back):
             continue
-        key, direction = next(key for key, forms in FORMS.items() if use.form in forms)
+        key, direction, _, _ = _ENTRIES[use.form]
         entry = made.setdefault((key, use.name, direction), MessageEntry(key, use.name, direction))
         if entry.uses and use.of_tests and not entry.of_tests:
             continue  # what the program reads is told of the program alone
@@ -116,8 +126,8 @@ def _type(use: Use) -> str:
 
 
 def _described(use: Use) -> Iterator[DescribedPart]:
-    sides = SIDES.get(use.form, Sides(None, None))
-    for table, values in ((sides.written, use.written), (sides.read, use.read)):
+    _, _, written, read = _ENTRIES[use.form]
+    for table, values in ((written, use.written), (read, use.read)):
         if table is None:
             continue
         place = MessagePlace.of(use, values, is_written=values is use.written)

@@ -8,17 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from mutabot.config.vocabulary import load
-from mutabot.config.vocabulary.load import shipped
-from mutabot.errors import ConfigurationError, UsageError
-from mutabot.model import ANY, Vocabulary
+from mutabot.api.reports import MutabotError, UsageError
+from mutabot.api.values import Vocabulary, load_vocabulary, shipped_vocabularies
 
 from .layout import Layout, compared_with, imported_modules, look
 from .messages import MessageEntry, entries
-from .observe import LIMIT, observe
+from .observe import LIMIT, merged, watch
 from .operations import Proposal, commands_of, proposals, tells_commands
 from .text import counted, questions_in, value_text, vocabulary_text
-from .watched import WatchedCallable
+from .watched import ANY, WatchedCallable
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
 #: vocabularies of environments that are reached through the wrappers of another one
@@ -65,8 +63,8 @@ def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list
     files = (*layout.program, *layout.tests)
     imported = {name.partition(".")[0] for path in files for name in imported_modules(path)}
     every: dict[str, ShippedVocabulary] = {}
-    for name in shipped():
-        vocabulary = load([name], layout.root)
+    for name in shipped_vocabularies():
+        vocabulary = load_vocabulary([name], layout.root)
         packages = frozenset(one.module.partition(".")[0] for one in vocabulary.operations)
         overridden = frozenset(
             one.target.rpartition(".")[2] for one in vocabulary.operations if one.overrides
@@ -89,7 +87,8 @@ class _Look:
 
     Attributes:
         layout: where what lies.
-        seen: the watched run of the tests.
+        run: the watched run of the tests.
+        seen: what all its processes saw.
         known: shipped vocabularies that fit it.
         named: proposed operations that have a name on a middleware.
         operations: calls that no shipped vocabulary describes, whether or not they are proposed.
@@ -99,7 +98,8 @@ class _Look:
     def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
         self.layout = look(root, given)
         tell("running the tests once, to see what the program calls")
-        self.seen = observe(self.layout, limit)
+        self.run = watch(self.layout, limit)
+        self.seen = merged(self.run.seen)
         self.program = [self.layout.relative(path) for path in self.layout.program]
         self.calls = without_doubles([call for call in self.seen.calls if call.sites])
         self.known = known_vocabularies(self.layout, self.calls)
@@ -252,8 +252,8 @@ def _loads(text: str) -> bool:
     with TemporaryDirectory() as folder:
         (Path(folder) / VOCABULARY).write_text(text, encoding="utf-8")
         try:
-            load([VOCABULARY], Path(folder))
-        except ConfigurationError:
+            load_vocabulary([VOCABULARY], Path(folder))
+        except MutabotError:
             return False
     return True
 
@@ -270,15 +270,15 @@ def _configuration(found: _Look) -> str:
 
 
 def _told(found: _Look, questions: int) -> list[str]:
-    seen = found.seen
+    run = found.run
     how = " (guessed; to choose other files: mutabot init FILE…)" if found.layout.guessed else ""
-    counts = ", ".join(f"{count} {outcome}" for outcome, count in seen.outcomes.items())
+    counts = ", ".join(f"{count} {outcome}" for outcome, count in run.outcomes.items())
     lines = [f"program: {', '.join(found.program)}{how}"]
-    if seen.trouble:
-        lines.append(f"the tests could not be watched: {seen.trouble}")
+    if run.trouble:
+        lines.append(f"the tests could not be watched: {run.trouble}")
     if counts:
         lines.append(f"tests: {counts}; {_counted(found)}")
-    lines += [f"  {problem}" for problem in seen.problems[:3] if not seen.trouble]
+    lines += [f"  {problem}" for problem in run.problems[:3] if not run.trouble]
     lines.append(f"wrote {CONFIGURATION}")
     for one in found.known:
         calls = counted(sum(map(one.describes, found.calls)), "call")

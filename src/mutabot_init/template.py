@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePosixPath
 
-from mutabot.errors import UsageError
-from mutabot.extensions import brought
+from mutabot.api.reports import UsageError
 
 
-def start(root: Path, program: Sequence[Path], name: str, value: str) -> list[str]:
-    """Write the project that a template makes of a value; the lines say what was written and what comes next.
+def start(root: Path, program: Sequence[Path], name: str, files: Mapping[str, str]) -> list[str]:
+    """Write the project that a template makes; the lines say what was written and what comes next.
 
     Args:
         root: the project's folder; made if it is not there.
         program: as given to ``mutabot init``; a template brings its own.
-        name, value: of the option.
+        name: the option's.
+        files: the texts of the project's files, by their paths relative to ``root``, with ``/``.
 
-    Raises UsageError if a file is there already, and for a value that the template does not know.
+    Raises UsageError if a file is there already or cannot be written.
     """
     if program:
         raise UsageError(f"--{name} writes a program: leave {', '.join(map(str, program))} out")
-    files = brought("templates")[name].load_function()(value)
     paths = {root.joinpath(*PurePosixPath(file).parts): text for file, text in files.items()}
     for path in paths:
         if path.exists():

@@ -7,12 +7,10 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from mutabot.model import ANY
-
 from .guess import Guess
 from .messages import DescribedPart, MessageEntry
 from .operations import Proposal
-from .watched import WatchedPart
+from .watched import ANY, WatchedPart
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: the longest text that is shown as an example, and values of each part

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.model.operation import Form
+from mutabot.api.values import Form
 
-#: names the file that says what to watch: program, tests, output
-WATCH_VARIABLE = "MUTABOT_WATCH"
+#: the owner of a method of any object, as targets name it
+ANY = "*:*"
 
 
 @dataclass(slots=True)
@@ -157,13 +157,7 @@ class WatchedCalls:
     Attributes:
         calls: callables in the order in which they were first used.
         uses: what was done under names.
-        outcomes: number of tests by outcome.
-        problems: what failed, in pytest's words.
-        trouble: why the run tells less than it could; empty if it went well.
     """
 
     calls: list[WatchedCallable] = field(default_factory=list)
     uses: list[Use] = field(default_factory=list)
-    outcomes: dict[str, int] = field(default_factory=dict)
-    problems: list[str] = field(default_factory=list)
-    trouble: str = ""

@@ -17,7 +17,7 @@ import pytest
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 
@@ -147,7 +147,7 @@ def request_for(folder: Path, **changes: Any) -> Request:
     if changes.get("engine") == "fork" and (why := no_private_files()) is not None:
         pytest.skip(why)
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     values = {
         "rounds": configuration.rounds,
         "seed": configuration.seed,

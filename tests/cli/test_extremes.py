@@ -19,7 +19,7 @@ from mutabot.cli.options import with_options
 from mutabot.config import options as limits
 from mutabot.config.configuration import Settings, load_configuration
 from mutabot.config.demands import DemandTable
-from mutabot.config.vocabulary import load, schema
+from mutabot.config.vocabulary import load_vocabulary, schema
 from mutabot.errors import ConfigurationError, ExitCode
 from tests.campaign.project import write_project
 
@@ -176,7 +176,7 @@ def test_a_vocabulary_that_cannot_be_meant_is_told(tmp_path: Path, table: str) -
         # a text, or a number that the vocabulary compares with nothing, may do
         is_free = value in ("-1", f'"{DIGITS}"', "inf", "-inf", "nan", "1e999")
         with suppress(ConfigurationError) if is_free else pytest.raises(ConfigurationError) as error:
-            load(["robot.toml"], tmp_path)
+            load_vocabulary(["robot.toml"], tmp_path)
         assert error is None or len(str(error.value)) < 20_000
 
 

@@ -11,7 +11,7 @@ from tests.campaign.project import Quiet
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Moment, Verdict
 
@@ -31,7 +31,7 @@ def ends(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[Verdict]]:
     folder = tmp_path_factory.mktemp("loop") / "loop"
     shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns(".mutabot", "__pycache__"))
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     moments = tuple(Moment.parse(text) if text else None for text in EXPECTED)
     request = Request(
         configuration, vocabulary, 2, 1, 2,

@@ -15,7 +15,7 @@ from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.report.document import document, dumps
@@ -91,7 +91,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def journal(project: Path) -> Journal:
     """The journal of a campaign on the copy."""
     configuration = load_configuration(project)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     request = Request(configuration, vocabulary, ROUNDS, configuration.seed, jobs=2)
     return Journal.open(run_campaign(request, Silent()))
 
@@ -125,7 +125,7 @@ def test_every_mutant_ends_as_it_must(journal: Journal) -> None:
 @pytest.mark.whole
 def test_the_same_program_as_a_script_in_a_process_of_its_own_ends_alike(project: Path) -> None:
     configuration = load_configuration(project / "script")
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     few = ("*:pick:*", "*lift/{height}:repeat", "*lift/{height}:opposite", "*color*")
     request = Request(configuration, vocabulary, ROUNDS, configuration.seed, jobs=2, only=few, repeats=False)
     with Journal.open(run_campaign(request, Silent())) as journal:

@@ -17,7 +17,7 @@ from types import ModuleType
 from typing import Any
 from unittest import mock
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.activation import Activation
 from mutabot.model.events import Event, SiteSeen
@@ -82,7 +82,7 @@ class Stage:
 
     @property
     def vocabulary(self) -> Vocabulary:
-        return load(["robot.toml"], self.folder)
+        return load_vocabulary(["robot.toml"], self.folder)
 
     def session(
         self,

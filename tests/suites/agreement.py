@@ -16,7 +16,7 @@ from mutabot.campaign.beginning import plan_only
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.report.document import data_of, document
@@ -326,8 +326,9 @@ def request_for(
            if entry.name not in ("mutabot", *needed)]  # fmt: skip
     more = [word for name in off for word in ("-p", name)]
     configuration = configuration.model_copy(update={"pytest_args": (*configuration.pytest_args, *more)})
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     return Request(
-        configuration, load(configuration.vocabulary, configuration.root), rounds, configuration.seed, jobs,
+        configuration, vocabulary, rounds, configuration.seed, jobs,
         fresh=True, families=tuple(families), engine="auto" if engine == "fork" else engine, evidence=True,
     )  # fmt: skip
 

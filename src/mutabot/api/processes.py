@@ -10,14 +10,19 @@ if TYPE_CHECKING:
     from mutabot.campaign.request import ExecutorChoice, Request
     from mutabot.config.table import ProjectFiles, Table
     from mutabot.execution.interruption import interruptible
+    from mutabot.execution.observation import Observed, observe
     from mutabot.execution.task import Executor, Result, Task
     from mutabot.execution.workers import Workers
     from mutabot.model.job import Job
+    from mutabot.runtime.observer import CallOrigin, Observer
 
 __all__ = [
+    "CallOrigin",
     "Executor",
     "ExecutorChoice",
     "Job",
+    "Observed",
+    "Observer",
     "ProjectFiles",
     "Request",
     "Result",
@@ -25,6 +30,7 @@ __all__ = [
     "Task",
     "Workers",
     "interruptible",
+    "observe",
 ]
 _HOMES = {
     "mutabot.campaign.request": (
@@ -36,6 +42,10 @@ _HOMES = {
         "Table",
     ),
     "mutabot.execution.interruption": ("interruptible",),
+    "mutabot.execution.observation": (
+        "Observed",
+        "observe",
+    ),
     "mutabot.execution.task": (
         "Executor",
         "Result",
@@ -43,5 +53,9 @@ _HOMES = {
     ),
     "mutabot.execution.workers": ("Workers",),
     "mutabot.model.job": ("Job",),
+    "mutabot.runtime.observer": (
+        "CallOrigin",
+        "Observer",
+    ),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

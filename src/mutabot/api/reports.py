@@ -7,19 +7,26 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.errors import UsageError
+    from mutabot.cli.output import echo
+    from mutabot.errors import MutabotError, UsageError
     from mutabot.model.outcome import Outcome, Verdict
     from mutabot.results.results import MutantResult, Results
 
 __all__ = [
+    "MutabotError",
     "MutantResult",
     "Outcome",
     "Results",
     "UsageError",
     "Verdict",
+    "echo",
 ]
 _HOMES = {
-    "mutabot.errors": ("UsageError",),
+    "mutabot.cli.output": ("echo",),
+    "mutabot.errors": (
+        "MutabotError",
+        "UsageError",
+    ),
     "mutabot.model.outcome": (
         "Outcome",
         "Verdict",

@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
+    from mutabot.config.vocabulary.load import load_vocabulary, shipped_vocabularies
     from mutabot.model.call import Call, CallFault, Proceed, Reply
-    from mutabot.model.operation import Form, Operation
+    from mutabot.model.operation import Form, Operation, Vocabulary
     from mutabot.model.path import Path
     from mutabot.model.quantity import Kind, Mode, Quantity, Value
+    from mutabot.model.signature import parse_signature
+    from mutabot.runtime.targets.target import resolve
 
 __all__ = [
     "Call",
@@ -24,8 +27,17 @@ __all__ = [
     "Quantity",
     "Reply",
     "Value",
+    "Vocabulary",
+    "load_vocabulary",
+    "parse_signature",
+    "resolve",
+    "shipped_vocabularies",
 ]
 _HOMES = {
+    "mutabot.config.vocabulary.load": (
+        "load_vocabulary",
+        "shipped_vocabularies",
+    ),
     "mutabot.model.call": (
         "Call",
         "CallFault",
@@ -35,6 +47,7 @@ _HOMES = {
     "mutabot.model.operation": (
         "Form",
         "Operation",
+        "Vocabulary",
     ),
     "mutabot.model.path": ("Path",),
     "mutabot.model.quantity": (
@@ -43,5 +56,7 @@ _HOMES = {
         "Quantity",
         "Value",
     ),
+    "mutabot.model.signature": ("parse_signature",),
+    "mutabot.runtime.targets.target": ("resolve",),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

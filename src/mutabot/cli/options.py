@@ -125,7 +125,7 @@ def with_options(function: Callable[..., object]) -> Callable[..., object]:
 
     Its ``**given: Unpack[…]`` becomes the options of a class above. A parameter ``executor`` becomes an
     option for each executor, and takes which was chosen: its name and the option's value. So does a parameter
-    ``template``.
+    ``template``: it takes the name, and the files that the template makes of the value.
     """
     own = signature(function, eval_str=True)
     kind = next((name for name in _OF_PARTS if name in own.parameters), "")
@@ -134,10 +134,12 @@ def with_options(function: Callable[..., object]) -> Callable[..., object]:
 
     @wraps(function)
     def command(**values: Any) -> object:
-        chosen = [(part.name, value) for key, part in names.items() if (value := values.pop(key)) is not None]
+        chosen = [(part, value) for key, part in names.items() if (value := values.pop(key)) is not None]
         if len(chosen) > 1:
-            raise UsageError(f"{' and '.join(f'--{name}' for name, _ in chosen)}: {_OF_PARTS[kind][1]}")
-        return function(**values, **({kind: chosen[0]} if chosen else {}))
+            raise UsageError(f"{' and '.join(f'--{part.name}' for part, _ in chosen)}: {_OF_PARTS[kind][1]}")
+        for part, value in chosen:
+            values[kind] = part.name, part.load_function()(value) if kind == "template" else value
+        return function(**values)
 
     parameters = list(_parameters(own.parameters.values(), names))
     changed: Any = command

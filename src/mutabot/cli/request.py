@@ -12,7 +12,7 @@ from mutabot.campaign.request import ExecutorChoice, Request
 from mutabot.campaign.simulation import with_simulation
 from mutabot.config.configuration import load_configuration
 from mutabot.config.options import Sample, Shard, seconds_of
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
 from mutabot.faults import asked_for
@@ -61,7 +61,7 @@ def request_of(
         chosen = kind.parse(executor[1], root, configuration.tables.get(executor[0]))
     return Request(
         configuration=configuration,
-        vocabulary=load(configuration.vocabulary, configuration.root, families),
+        vocabulary=load_vocabulary(configuration.vocabulary, configuration.root, families),
         rounds=given.get("rounds") or configuration.rounds,
         seed=configuration.seed if seed is None else seed,
         jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),

@@ -15,11 +15,8 @@ from dataclasses import dataclass, replace
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
-from mutabot.model import ANY
-from mutabot.model.path import class_name
-from mutabot.model.signature import parse_signature, signature_of, takes_anything
-from mutabot.runtime.targets.target import NotFoundError, resolve
-from mutabot_init.watched import WatchedCallable
+from mutabot.api.values import parse_signature, resolve
+from mutabot_init.watched import ANY, WatchedCallable
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
 _OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)
@@ -56,8 +53,9 @@ class Callee:
 
     @functools.cached_property
     def _told(self) -> tuple[inspect.Signature | None, bool]:
-        signature = signature_of(_function(self.raw))
-        if signature is None:
+        try:
+            signature = inspect.signature(_function(self.raw))
+        except (TypeError, ValueError):
             documented = self._documented()
             return documented, documented is not None
         parameters = list(signature.parameters.values())
@@ -77,8 +75,18 @@ class Callee:
                 named = _UNNAMED.sub(lambda match, names=names: names.get(int(match[1]), match[0]), first)
                 with suppress(ValueError):
                     found.append(parse_signature(named.removeprefix(name).rstrip(":.")))
-        telling = (one for one in found if not takes_anything(one))
+        telling = (one for one in found if not _takes_anything(one))
         return max(telling, key=lambda one: len(one.parameters), default=None)
+
+
+def class_name(kind: type) -> str:
+    """``module:Qualified.Name``, as vocabularies name a class."""
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def _takes_anything(signature: inspect.Signature) -> bool:
+    kinds = {parameter.kind for parameter in signature.parameters.values()}
+    return {inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD} <= kinds
 
 
 def meant_by(kind: type, name: str) -> Callee | None:
@@ -162,7 +170,7 @@ def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:
         return None
     try:
         _, _, found = resolve(sys.modules[module], qualname)
-    except NotFoundError:
+    except LookupError:
         return None
     if found is not raw:
         return None

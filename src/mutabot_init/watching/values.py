@@ -8,7 +8,6 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from mutabot.model.quantity import seconds_of
 from mutabot_init.watched import Values, WatchedPart
 
 #: different values that are kept of each part, elements of a sequence, parts of a value
@@ -67,14 +66,10 @@ def type_of(value: Any) -> str:
 def _parts(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
     value = plain(value)
     declared, part.type = part.type, part.type or type_of(value)
-    is_stamp = hasattr(type(value), "sec") or hasattr(
-        type(value), "secs"
-    )  # the type's: a mock has any attribute
-    seconds = seconds_of(value) if is_stamp else None
     if value is None:
         return
-    if seconds is not None or isinstance(value, bool | int | float | str):
-        value = seconds if seconds is not None else value
+    value = _in_seconds(value)
+    if isinstance(value, bool | int | float | str):
         part.values = [value[:_LONGEST] if isinstance(value, str) else value] if _is_finite(value) else []
         yield part
     elif isinstance(value, enum.Enum) or depth == 0 or declared in _WHOLE:
@@ -164,6 +159,14 @@ def _message_fields(value: Any) -> Mapping[str, str] | None:
     if hasattr(kind, "get_fields_and_field_types"):
         return dict(kind.get_fields_and_field_types())
     return None
+
+
+def _in_seconds(value: Any) -> Any:
+    """A moment or duration of a message in seconds; anything else as it is."""
+    for whole, rest in (("sec", "nanosec"), ("secs", "nsecs")):
+        if hasattr(type(value), whole) and hasattr(value, rest):  # the type's: a mock has any attribute
+            return float(getattr(value, whole) + getattr(value, rest) / 1e9)
+    return value
 
 
 def _is_finite(value: Any) -> bool:

@@ -1,8 +1,6 @@
 """What one process sees of the calls in some files: which callables and names of a middleware, which values.
 
-Every call, and every attribute that is read, asks the watch first: see ``program_text.call_sites``. Nothing
-changes that the program can see. What is done under the names of a middleware passes the hooks of a campaign
-(``runtime.targets.target``).
+Every call, and every attribute that is read, comes here first. Nothing changes that the program can see.
 """
 
 from __future__ import annotations
@@ -11,25 +9,27 @@ import inspect
 import re
 import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from functools import cache, cached_property
-from types import FrameType, ModuleType
+from functools import cache, cached_property, partial
+from types import ModuleType
 from typing import Any
 
-from mutabot.model import Role, Span
-from mutabot.model.operation import MAIN, SETTING_UP, WRITTEN, Form
-from mutabot.model.path import class_name
-from mutabot.runtime.interception.adapter import is_mock
-from mutabot.runtime.interception.frames import border
-from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
-from mutabot.runtime.targets.target import NOWHERE, Handler, Messages, Where
+from mutabot.api.processes import CallOrigin, Observer
+from mutabot.api.values import Form
 from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
-from mutabot_init.watching.callee import Callee, any_method, described, function_of, meant_by, method_of
+from mutabot_init.watching.callee import (
+    Callee,
+    any_method,
+    class_name,
+    described,
+    function_of,
+    meant_by,
+    method_of,
+)
 from mutabot_init.watching.values import look, plain
 
 #: calls of one callable whose values are looked at; more are only counted
@@ -69,162 +69,68 @@ _under_way: ContextVar[tuple[_Seen, ...]] = ContextVar("mutabot_watched_calls", 
 
 #: uses of one name whose messages are looked at; more are only counted
 _MOST_USES = 300
-_LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
+#: forms that bring no answer
+_UNANSWERED = frozenset({Form.PUBLISH, Form.GOAL})
 
 
-@border
-def _carried_out(wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-    """Call what is used; calls that it makes itself do not count, as in a campaign."""
-    return wrapped(*args, **kwargs)
+class Watch(Observer):
+    """What is seen of the calls in some files, and of what is done under names of a middleware."""
 
-
-class NamesSeen(Messages):
-    """All that the program and the tests do under names.
-
-    Args:
-        locator: tells whose file is whose.
-        passed: told of each use: calls that are under way lead to it.
-    """
-
-    def __init__(
-        self,
-        locator: Locator,
-        passed: Callable[[], None],
-    ) -> None:
-        self._locator, self._passed = locator, passed
-        self.uses: dict[tuple[Form, str, bool, bool], Use] = {}
+    def __init__(self, libraries: Sequence[str], is_test: Callable[[str], bool | None]) -> None:
+        super().__init__(libraries, is_test)
+        self._seen: dict[tuple[str, bool], _Seen] = {}
+        self._method_of = cache(method_of)
+        self._only_class = cache(_only_class)
+        self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
-        super().__init__(lambda target, finding: None)
 
-    def find(self, form: Form, name: str, node: str | None) -> Handler | None:
-        """What looks at a use; None where something is set up, which is noted at once."""
-        self._passed()
-        if form in SETTING_UP:
-            self._use(form, name, self._locator.locate(sys._getframe(1)), False)
-        if form not in _LOOKED_AT:
+    def called(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> Any:
+        """Return what is called in the place of ``found``, which was read from ``receiver``."""
+        if isinstance(found, type):
+            return found
+        callee = function_of(found) if receiver is None else self._method(receiver, name)
+        if receiver is not None and not caller.is_test:
+            callee = self._stood_for(receiver, name, callee, found)
+        return self._wrapped(found, self._of(callee, caller), caller)
+
+    def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
+        """Note that an attribute was read from ``receiver``."""
+        raw = inspect.getattr_static(type(receiver), name, None)
+        if isinstance(raw, property | cached_property):
+            seen = self._of(method_of(receiver, name), caller)
+            if seen is not None and self._counts(seen, caller):
+                self._answer(seen, found)
+
+    def used(
+        self, form: Form, name: str, caller: CallOrigin | None, written: Sequence[Any], *, is_callback: bool
+    ) -> Callable[[Any], None] | None:
+        """Look at what is done under a name; calls that are under way lead to it."""
+        for seen in _under_way.get():
+            seen.call.leads_to_names = True
+        if caller is None:
             return None
-
-        def handle(
-            wrapped: Callable[..., Any],
-            instance: Any,
-            args: tuple[Any, ...],
-            kwargs: dict[str, Any],
-            where: Where = NOWHERE,
-        ) -> Any:
-            code, locator = where.code, self._locator
-            place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
-            use = self._use(form, name, place, code is not None)
-            if use is not None and args:
-                self._look(use.written, args[0])
-            if inspect.iscoroutinefunction(wrapped):
-                return self._awaited(use, wrapped(*args, **kwargs))
-            result = _carried_out(wrapped, args, kwargs)
-            self._answer(use, result)
-            return result
-
-        return handle
-
-    def _use(
-        self, form: Form, name: str, place: tuple[Span, Role] | None, is_called_back: bool
-    ) -> Use | None:
-        """The use that a place is one of, if its message is to be looked at."""
-        if place is None:
-            return None
-        span, role = place
         with self._lock:
-            key = (form, name, role is Role.ORACLE, is_called_back)
-            use = self.uses.setdefault(key, Use(*key))
-            where = f"{span.file}:{span.line}"
+            key = (form, name, caller.is_test, is_callback)
+            use = self._uses.setdefault(key, Use(*key))
+            where = f"{caller.file}:{caller.line}"
             use.sites[where] = use.sites.get(where, 0) + 1
-            return use if sum(use.sites.values()) <= _MOST_USES else None
-
-    async def _awaited(self, use: Use | None, waiting: Any) -> Any:
-        result = await waiting
-        self._answer(use, result)
-        return result
-
-    def _answer(self, use: Use | None, result: Any) -> None:
-        if use is not None and (use.form not in WRITTEN or use.form is Form.CALL):
-            self._look(use.read, result)
+            if sum(use.sites.values()) > _MOST_USES:
+                return None
+        for message in written:
+            self._look(use.written, message)
+        return None if form in _UNANSWERED else partial(self._look, use.read)
 
     def _look(self, values: Values, value: Any) -> None:
         with self._lock, suppress(Exception):  # looking at values must not disturb the program
             look(values, value, message=True)
 
-
-class _Public:
-    """All names that are not private."""
-
-    def __contains__(self, name: object) -> bool:
-        return not str(name).startswith("_")
-
-
-class Watch:
-    """What is seen of the calls in some files.
-
-    Args:
-        locator: tells whose file is whose.
-        libraries: client libraries of middlewares, with ``*`` for any text: what is done through them has a
-            name of its own.
-    """
-
-    def __init__(
-        self,
-        locator: Locator,
-        libraries: Iterable[str] = (),
-    ) -> None:
-        self._locator, self._libraries = locator, tuple(libraries)
-        self._seen: dict[tuple[str, bool], _Seen] = {}
-        self._method_of = cache(method_of)
-        self._only_class = cache(_only_class)
-        self._names: NamesSeen | None = None
-        self.sites = CallSites(_Public(), locator.role, self.called, hands=self.read, are_read=True)
-
-    @classmethod
-    def of(cls, order: Mapping[str, Any]) -> Watch:
-        """Return the watch of a process; ``order`` is what ``mutabot init`` asks for."""
-        program, tests = (tuple(order[kind].values()) for kind in ("program", "tests"))
-        return cls(Locator(order["root"], program, tests), order["libraries"])
-
-    def install(self) -> None:
-        """Watch what is imported from now on."""
-        self._names = NamesSeen(self._locator, self._leads)
-        self.sites.install()
-
-    def called(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        """Return what is called in the place of ``found``, which was read from ``receiver``."""
-        is_plain = receiver is NOTHING
-        if isinstance(found, type):
-            return found
-        callee = function_of(found) if is_plain else self._method(receiver, site.name)
-        if not is_plain and site.role is Role.PROGRAM:
-            callee = self._stood_for(receiver, site.name, callee, found)
-        return self._wrapped(found, self._of(callee, site), site)
-
-    def read(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        """Note that an attribute was read from ``receiver``."""
-        raw = inspect.getattr_static(type(receiver), site.name, None)
-        if isinstance(raw, property | cached_property):
-            seen = self._of(method_of(receiver, site.name), site)
-            if seen is not None and self._counts(seen, site):
-                self._answer(seen, found)
-        return found
-
     def data(self) -> WatchedCalls:
         """What was seen: callables, and what was done under names."""
-        uses = list(self._names.uses.values()) if self._names is not None else []
-        return WatchedCalls([self._call(seen) for seen in list(self._seen.values())], uses)
-
-    def _leads(self) -> None:
-        """Something is done under a name: the calls that are under way lead to it."""
-        for seen in _under_way.get():
-            seen.call.leads_to_names = True
-
-    def _place(self, site: CallSite) -> tuple[str, int]:
-        return self._locator.relative(site.path), site.extent[0]
+        calls = [self._call(seen) for seen in list(self._seen.values())]
+        return WatchedCalls(calls, list(self._uses.values()))
 
     def _is_of_tests(self, callee: Callee) -> bool:
-        return self._locator.role(callee.file) is Role.ORACLE
+        return self.is_test(callee.file) is True
 
     def _method(self, value: Any, name: str) -> Callee | None:
         """A method by its name; looked up once for each class."""
@@ -234,11 +140,11 @@ class Watch:
 
     def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
         """What a mock or a class of the tests stands for: the robot's callable, or any of its name."""
-        if is_mock(value):
+        if _is_mock(value):
             spelt = re.split(r"\W", value._extract_mock_name())[0]
             kind = vars(value).get("_spec_class") or self._only_class(spelt, name)
             return (meant_by(kind, name) if kind is not None else None) or any_method(name)
-        if is_mock(found) and isinstance(value, type | ModuleType):
+        if _is_mock(found) and isinstance(value, type | ModuleType):
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
             is_class = name[:1].isupper()
             return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
@@ -248,23 +154,23 @@ class Watch:
         robots = next((one for one in meant if one is not None and not self._is_of_tests(one)), None)
         return robots or any_method(name, callee)
 
-    def _of(self, callee: Callee | None, site: CallSite) -> _Seen | None:
+    def _of(self, callee: Callee | None, caller: CallOrigin) -> _Seen | None:
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
         if callee is None:
             return None
-        key = (callee.target, site.role is Role.ORACLE)
+        key = (callee.target, caller.is_test)
         known = self._seen.get(key)
         if known is None or (known.callee.raw is None and callee.raw is not None):
             top = callee.target.partition(":")[0].partition(".")[0]
-            if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
+            if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self.libraries):
                 return None
-            call = described(callee, of_tests=key[1], own=self._locator.role(callee.file) is Role.PROGRAM)
+            call = described(callee, of_tests=key[1], own=self.is_test(callee.file) is False)
             call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
             known = self._seen[key] = _Seen(callee, call)
         return known
 
-    def _wrapped(self, function: Any, seen: _Seen | None, site: CallSite) -> Any:
-        if seen is None or not self._counts(seen, site):
+    def _wrapped(self, function: Any, seen: _Seen | None, caller: CallOrigin) -> Any:
+        if seen is None or not self._counts(seen, caller):
             return function
 
         instance = getattr(function, "__self__", None)
@@ -296,12 +202,11 @@ class Watch:
             text = "it returns a coroutine but is no coroutine function: name the one behind it"
             seen.call.problem = text
 
-    def _counts(self, seen: _Seen, site: CallSite) -> bool:
+    def _counts(self, seen: _Seen, caller: CallOrigin) -> bool:
         """Count a call; whether its values are to be looked at."""
         if seen.call.of_tests and (seen.call.own or self._is_of_tests(seen.callee)):
             return False
-        file, line = self._place(site)
-        where = f"{file}:{line}"
+        where = f"{caller.file}:{caller.line}"
         seen.call.sites[where] = seen.call.sites.get(where, 0) + 1
         return seen.call.count <= MOST_CALLS
 
@@ -420,6 +325,12 @@ def _prints_itself(value: Any) -> bool:
         return False
     text = str(value)
     return "\n" not in text and " object at " not in text
+
+
+def _is_mock(value: Any) -> bool:
+    """Whether a value is a mock, whatever it says that it is."""
+    module = sys.modules.get("unittest.mock")
+    return module is not None and issubclass(type(value), module.NonCallableMock)
 
 
 def _is_no_robot(top: str) -> bool:

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mutabot.config.configuration import Settings, load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import ConfigurationError
 from mutabot.model import Vocabulary
 from mutabot.model.codec import from_data, to_data
@@ -92,7 +92,7 @@ def test_any_vocabulary_is_loaded_or_refused(
 ) -> None:
     write(tmp_path / "robot.toml", {**data, "operation": described})
     found: list[Vocabulary] = []
-    error = refusal(lambda: found.append(load(["robot.toml"], tmp_path)))
+    error = refusal(lambda: found.append(load_vocabulary(["robot.toml"], tmp_path)))
     assert error is None or str(error).startswith("robot.toml")
     for vocabulary in found:
         assert from_data(Vocabulary, json.loads(json.dumps(to_data(vocabulary)))) == vocabulary

@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.config.configuration import load_configuration
 from mutabot.config.mistakes import problem_error
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import ConfigurationError, UnknownNameError, VocabularyError
 from mutabot.model.events import Problem
 
@@ -534,7 +534,7 @@ def refused(action: Any, *arguments: Any) -> str:
 
 def vocabulary_refused(folder: Path, text: str) -> str:
     (folder / "robot.toml").write_text(text)
-    return refused(load, ["robot.toml"], folder)
+    return refused(load_vocabulary, ["robot.toml"], folder)
 
 
 @pytest.mark.parametrize("name", VOCABULARIES)
@@ -591,7 +591,7 @@ def test_all_mistakes_of_a_file_are_told_in_the_order_of_its_lines(tmp_path: Pat
     )
     (tmp_path / "robot.toml").write_text(text)
     with pytest.raises(UnknownNameError) as caught:
-        load(["robot.toml"], tmp_path)
+        load_vocabulary(["robot.toml"], tmp_path)
     lines = str(caught.value).splitlines()
     assert [line.split(" · ")[0] for line in lines] == [f"robot.toml:{n}" for n in (1, 4, 4, 5)]
     assert "'chekcs'; did you mean 'checks'" in lines[0]
@@ -607,7 +607,7 @@ def test_no_more_than_ten_mistakes_are_told_one_by_one(tmp_path: Path) -> None:
 def test_unlike_descriptions_of_a_call_in_two_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "more.toml").write_text(GOOD_OPERATION + "refusals = ['a:B']")
     (tmp_path / "robot.toml").write_text(GOOD_OPERATION)
-    message = refused(load, ["robot.toml", "more.toml"], tmp_path)
+    message = refused(load_vocabulary, ["robot.toml", "more.toml"], tmp_path)
     assert message.startswith("more.toml:2 · robot:Arm.move · call: is described twice")
     assert "robot.toml:1" in message
 
@@ -615,7 +615,9 @@ def test_unlike_descriptions_of_a_call_in_two_files_are_refused(tmp_path: Path) 
 def test_two_clocks_are_refused(tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_text("clock = { tick = 'a:b' }")
     (tmp_path / "b.toml").write_text("clock = { tick = 'a:c' }")
-    assert "described twice, differently: also in a.toml:1" in refused(load, ["a.toml", "b.toml"], tmp_path)
+    assert "described twice, differently: also in a.toml:1" in refused(
+        load_vocabulary, ["a.toml", "b.toml"], tmp_path
+    )
 
 
 def test_two_tolerances_of_one_probe_are_refused(tmp_path: Path) -> None:
@@ -625,12 +627,12 @@ def test_two_tolerances_of_one_probe_are_refused(tmp_path: Path) -> None:
 
 def test_an_unknown_vocabulary_is_refused_with_the_nearest_file(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text(GOOD_OPERATION)
-    assert "'robot.toml'" in refused(load, ["robto.toml"], tmp_path)
+    assert "'robot.toml'" in refused(load_vocabulary, ["robto.toml"], tmp_path)
 
 
 def test_a_vocabulary_that_is_not_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_bytes(b"call = '\xff'")
-    assert "robot.toml: is not UTF-8" in refused(load, ["robot.toml"], tmp_path)
+    assert "robot.toml: is not UTF-8" in refused(load_vocabulary, ["robot.toml"], tmp_path)
 
 
 @pytest.mark.parametrize("files", [{}, {"pyproject.toml": "[project]\nname='a'"}])
@@ -705,4 +707,4 @@ def test_a_problem_without_a_name_or_a_source_keeps_its_text() -> None:
 def test_mistakes_of_a_vocabulary_are_vocabulary_errors(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text("[[operation]]\ncall = 'x'")
     with pytest.raises(VocabularyError):
-        load(["robot.toml"], tmp_path)
+        load_vocabulary(["robot.toml"], tmp_path)

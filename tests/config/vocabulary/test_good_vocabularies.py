@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from mutabot.config.vocabulary import load
-from mutabot.config.vocabulary.load import shipped
+from mutabot.config.vocabulary import load_vocabulary
+from mutabot.config.vocabulary.load import shipped_vocabularies
 from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary
 from mutabot.model.answer import restore
 from mutabot.model.codec import from_data, to_data
@@ -51,7 +51,7 @@ patterns = [
 
 def loaded(folder: Path, text: str) -> Vocabulary:
     (folder / "robot.toml").write_text(text)
-    return load(["robot.toml"], folder)
+    return load_vocabulary(["robot.toml"], folder)
 
 
 def only(folder: Path, text: str) -> Operation:
@@ -109,14 +109,14 @@ def test_the_documentation_names_every_kind() -> None:
 
 
 def test_every_shipped_vocabulary_loads(tmp_path: Path) -> None:
-    for name in shipped():
-        assert load([name], tmp_path).operations
+    for name in shipped_vocabularies():
+        assert load_vocabulary([name], tmp_path).operations
 
 
 def test_a_shipped_vocabulary_is_found_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "arm.toml").write_text("[[operation]]\ncall = 'a:b'\n")
     monkeypatch.setattr(sys.modules["mutabot.config.vocabulary.load"], "_SHIPPED", tmp_path)
-    assert load(["arm"], tmp_path / "project").operations[0].source == "arm:1 · a:b"
+    assert load_vocabulary(["arm"], tmp_path / "project").operations[0].source == "arm:1 · a:b"
 
 
 @pytest.mark.parametrize(
@@ -400,7 +400,7 @@ def test_files_are_put_together_and_equal_descriptions_are_one(tmp_path: Path) -
     common = "refusals = ['a:B']\nclock = { tick = 'sim:step' }\n[[operation]]\ncall = 'a:b'\n"
     (tmp_path / "one.toml").write_text(common)
     (tmp_path / "two.toml").write_text("# later\n" + common + "[[operation]]\ncall = 'a:c'\n")
-    vocabulary = load(["one.toml", "two.toml", "one.toml"], tmp_path)
+    vocabulary = load_vocabulary(["one.toml", "two.toml", "one.toml"], tmp_path)
     assert [operation.target for operation in vocabulary.operations] == ["a:b", "a:c"]
     assert vocabulary.refusals == ("a:B",)
 
@@ -408,9 +408,9 @@ def test_files_are_put_together_and_equal_descriptions_are_one(tmp_path: Path) -
 def test_operations_may_refer_to_those_of_another_file(tmp_path: Path) -> None:
     (tmp_path / "one.toml").write_text("[[operation]]\ncall = 'a:open'\nopposite = 'a:close'\n")
     (tmp_path / "two.toml").write_text("[[operation]]\ncall = 'a:close'\n")
-    assert len(load(["one.toml", "two.toml"], tmp_path).operations) == 2
+    assert len(load_vocabulary(["one.toml", "two.toml"], tmp_path).operations) == 2
 
 
 def test_windows_line_ends_and_byte_order_marks_are_taken(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_bytes(b"\xef\xbb\xbf[[operation]]\r\ncall = 'a:b'\r\n")
-    assert load(["robot.toml"], tmp_path).operations[0].source == "robot.toml:1 · a:b"
+    assert load_vocabulary(["robot.toml"], tmp_path).operations[0].source == "robot.toml:1 · a:b"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import VocabularyError
 
 GOOD = """
@@ -33,7 +33,7 @@ result = { kind = "position", axis = "x", unit = "m" }
 
 def test_a_method_is_an_operation_of_a_kind_of_its_own(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text(GOOD, encoding="utf-8")
-    operations = load(["robot.toml"], tmp_path).operations
+    operations = load_vocabulary(["robot.toml"], tmp_path).operations
     assert {one.kind for one in operations} == {"methods"}
     by_name = {one.name: one for one in operations}
     assert by_name["*.move_by"].current == "*:*.position"
@@ -58,4 +58,4 @@ def test_a_method_is_an_operation_of_a_kind_of_its_own(tmp_path: Path) -> None:
 def test_what_is_wrong_is_told(tmp_path: Path, lines: str, text: str) -> None:
     (tmp_path / "robot.toml").write_text(f"[[operation]]\n{lines}\n", encoding="utf-8")
     with pytest.raises(VocabularyError, match=text.replace("(", r"\(").replace(")", r"\)")):
-        load(["robot.toml"], tmp_path)
+        load_vocabulary(["robot.toml"], tmp_path)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import ConfigurationError
 from mutabot.model import Mode, Operation, Vocabulary
 from mutabot.model.codec import from_data, to_data
@@ -21,7 +21,7 @@ GOAL = 'topic = "/arm/goal"\ndirection = "publish"\n'
 
 def loaded(folder: Path, text: str) -> Vocabulary:
     (folder / "robot.toml").write_text(text)
-    return load(["robot.toml"], folder)
+    return load_vocabulary(["robot.toml"], folder)
 
 
 def entry(folder: Path, text: str) -> dict[str, Operation]:

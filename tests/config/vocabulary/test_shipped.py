@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from check_shipped import compare
-from mutabot.config.vocabulary import load
-from mutabot.config.vocabulary.load import shipped
+from mutabot.config.vocabulary import load_vocabulary
+from mutabot.config.vocabulary.load import shipped_vocabularies
 from mutabot.errors import VocabularyError
 from mutabot.model import Kind, Vocabulary
 
@@ -28,9 +28,9 @@ def _compared(vocabulary: Vocabulary) -> list[str]:
     return list(compare(vocabulary))
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", shipped_vocabularies())
 def test_it_loads_and_is_documented(name: str, tmp_path: Path) -> None:
-    assert load([name], tmp_path).operations
+    assert load_vocabulary([name], tmp_path).operations
     assert f"| `{name}` |" in DOCS.read_text(encoding="utf-8")
 
 
@@ -40,9 +40,9 @@ def test_a_file_of_ones_own_goes_before_a_shipped_one(names: list[str], tmp_path
         f'[[operation]]\ncall = "{URX}"\n'
         'arguments."tpose[2]" = { kind = "translation", axis = "z", unit = "m", mode = "by" }\n'
     )
-    found = {one.target: one for one in load(names, tmp_path).operations}
+    found = {one.target: one for one in load_vocabulary(names, tmp_path).operations}
     assert [one.name for one in found[URX].arguments] == ["tpose[2]"]
-    assert len(found) == len(load(["urx"], tmp_path).operations)
+    assert len(found) == len(load_vocabulary(["urx"], tmp_path).operations)
 
 
 @pytest.mark.needs("cell")
@@ -51,7 +51,7 @@ def test_the_clock_and_probes_of_ones_own_go_before_shipped_ones(tmp_path: Path)
         'clock = { tick = "pybullet:stepSimulation", step = 0.01 }\n'
         '[[probe]]\ncall = "mutabot_cell:world"\ntolerance = 0.5\n'
     )
-    found = load(["cell", "own.toml"], tmp_path)
+    found = load_vocabulary(["cell", "own.toml"], tmp_path)
     assert found.clock is not None
     assert found.clock.tick == "pybullet:stepSimulation"
     assert [probe.tolerance for probe in found.probes] == [0.5]
@@ -62,12 +62,12 @@ def test_two_files_of_ones_own_still_may_not_disagree(tmp_path: Path) -> None:
         quantity = f'{{ kind = "translation", axis = "{axis}", unit = "m", mode = "by" }}'
         (tmp_path / name).write_text(f'[[operation]]\ncall = "{URX}"\narguments."tpose[0]" = {quantity}\n')
     with pytest.raises(VocabularyError, match="described twice, differently"):
-        load(["a.toml", "urx", "b.toml"], tmp_path)
+        load_vocabulary(["a.toml", "urx", "b.toml"], tmp_path)
 
 
 @pytest.mark.needs("cell")
 def test_the_cell_that_comes_with_mutabot_has_what_its_vocabulary_says(tmp_path: Path) -> None:
-    assert misfits(load(["cell"], tmp_path)) == []
+    assert misfits(load_vocabulary(["cell"], tmp_path)) == []
 
 
 def test_what_a_package_does_not_have_is_found(tmp_path: Path) -> None:
@@ -76,7 +76,7 @@ def test_what_a_package_does_not_have_is_found(tmp_path: Path) -> None:
         'arguments.height = { kind = "translation", axis = "z", unit = "m", mode = "by" }\n'
         '[[operation]]\ncall = "json:JSONEncoder.lift"\n'
     )
-    found = misfits(load(["wrong.toml"], tmp_path))
+    found = misfits(load_vocabulary(["wrong.toml"], tmp_path))
     assert len(found) == 2
     assert any("has no argument 'height'" in problem for problem in found)
     assert any("has no 'lift'" in problem for problem in found)
@@ -84,7 +84,7 @@ def test_what_a_package_does_not_have_is_found(tmp_path: Path) -> None:
 
 def parts_of(name: str, call: str, folder: Path) -> dict[str, list[str]]:
     """What a shipped vocabulary says of a call: its quantities with kind and unit, by the case it is in."""
-    operation = load([name], folder).operation(call)
+    operation = load_vocabulary([name], folder).operation(call)
     assert operation is not None
     cases = [(one.text, (*one.arguments, *one.result)) for one in operation.patterns]
     found = cases or [("", (*operation.arguments, *operation.result))]
@@ -119,7 +119,7 @@ def test_xarm_is_in_the_units_that_the_call_says(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["ur_rtde", "urx"])
 def test_the_orientations_of_universal_robots_are_rotation_vectors(name: str, tmp_path: Path) -> None:
     """They mean something only as a whole; only joints turn about an axis each."""
-    for operation in load([name], tmp_path).operations:
+    for operation in load_vocabulary([name], tmp_path).operations:
         patterns = [(*one.arguments, *one.result) for one in operation.patterns]
         for quantity in (
             part for parts in [(*operation.arguments, *operation.result), *patterns] for part in parts

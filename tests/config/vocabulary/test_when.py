@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model import Operation, Vocabulary
 from mutabot.model.codec import from_data, to_data
 from tests.config.vocabulary.test_named import loaded, refused
@@ -80,7 +80,7 @@ def test_what_is_told_twice_alike_counts_once(tmp_path: Path) -> None:
     entry = f"[[operation]]\n{CALL}{GRIP}{OPENING}"
     (tmp_path / "more.toml").write_text(entry)
     (tmp_path / "robot.toml").write_text(entry)
-    (operation,) = load(["robot.toml", "more.toml"], tmp_path).operations
+    (operation,) = load_vocabulary(["robot.toml", "more.toml"], tmp_path).operations
     assert len(operation.patterns) == 1
 
 

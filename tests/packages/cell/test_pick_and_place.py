@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "pick_and_place"
 
@@ -40,7 +40,7 @@ def test_the_examples_own_suite_passes(project: Path) -> None:
 
 def test_the_shipped_vocabulary_of_the_cell_loads(project: Path) -> None:
     configuration = load_configuration(project)
-    vocabulary = load(configuration.vocabulary, configuration.root)
+    vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     assert configuration.vocabulary == ("cell",)
     assert len(vocabulary.operations) == 47
     assert vocabulary.clock is not None
@@ -48,7 +48,7 @@ def test_the_shipped_vocabulary_of_the_cell_loads(project: Path) -> None:
 
 
 def test_every_name_in_the_shipped_vocabulary_exists() -> None:
-    vocabulary = load(["cell"], EXAMPLE)
+    vocabulary = load_vocabulary(["cell"], EXAMPLE)
     targets = [operation.target for operation in vocabulary.operations]
     targets += [*vocabulary.refusals, *vocabulary.checks, *vocabulary.failures]
     targets += [probe.target for probe in vocabulary.probes]

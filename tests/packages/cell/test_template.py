@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError
 from mutabot_cell.template import KNOWN, project
 from mutabot_init.template import start
@@ -35,16 +35,16 @@ def run_tests(folder: Path) -> None:
 def test_a_project_for_a_known_robot_passes_its_own_tests(tmp_path: Path, name: str) -> None:
     robot_named(name)
     folder = tmp_path / "new"
-    said = start(folder, (), "cell", name)
+    said = start(folder, (), "cell", project(name))
     assert said[0] == "wrote robot.py"
     run_tests(folder)
 
 
 def test_a_project_needs_no_vocabulary_of_its_own(tmp_path: Path) -> None:
-    start(tmp_path, (), "cell", "gen3")
+    start(tmp_path, (), "cell", project("gen3"))
     configuration = load_configuration(tmp_path)
     assert not (tmp_path / "robot.toml").exists()
-    assert load(configuration.vocabulary, configuration.root).operations
+    assert load_vocabulary(configuration.vocabulary, configuration.root).operations
 
 
 @pytest.mark.usefixtures("plugins")
@@ -60,7 +60,7 @@ def test_a_project_for_a_file_passes_its_own_tests(
     tmp_path: Path, package: str, file: str, home: str
 ) -> None:
     path, _, site = file.rpartition(":")
-    start(tmp_path, (), "cell", f"{file_of(package, path)}:{site}")
+    start(tmp_path, (), "cell", project(f"{file_of(package, path)}:{site}"))
     robot = tmp_path / "robot.py"
     robot.write_text(
         robot.read_text(encoding="utf-8").replace("HOME = None", f"HOME = {home}"), encoding="utf-8"
@@ -89,17 +89,17 @@ def test_a_file_that_is_no_robot_is_refused_before_anything_is_written(
     if text is not None:
         (tmp_path / name).write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match=told):
-        start(tmp_path / "new", (), "cell", f"{tmp_path / name}:flange")
+        start(tmp_path / "new", (), "cell", project(f"{tmp_path / name}:flange"))
     assert not (tmp_path / "new").exists()
 
 
 def test_a_file_that_is_there_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text("mine", encoding="utf-8")
     with pytest.raises(UsageError, match=r"program\.py exists already"):
-        start(tmp_path, (), "cell", "gen3")
+        start(tmp_path, (), "cell", project("gen3"))
     assert [file.name for file in tmp_path.iterdir()] == ["program.py"]
 
 
 def test_a_template_brings_its_own_program(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"--cell writes a program: leave mine\.py out"):
-        start(tmp_path, [Path("mine.py")], "cell", "gen3")
+        start(tmp_path, [Path("mine.py")], "cell", project("gen3"))

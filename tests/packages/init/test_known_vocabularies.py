@@ -13,7 +13,7 @@ import pytest
 
 from mutabot.campaign.beginning import check
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot_init.propose import propose
 from tests.campaign.project import Quiet, request_for
 
@@ -99,7 +99,7 @@ def test_what_it_does_not_say_stands_beside_it(bullet: Path) -> None:
 
 def test_check_tells_in_one_line_what_of_it_no_test_reaches(bullet: Path) -> None:
     propose(bullet, [Path("program.py")])
-    described = {one.target.partition(":")[2] for one in load(("pybullet",), bullet).operations}
+    described = {one.target.partition(":")[2] for one in load_vocabulary(("pybullet",), bullet).operations}
     missing = described - {"setJointMotorControl2", "stepSimulation", "getJointState"}
     with (bullet / "pybullet.py").open("a") as file:
         file.writelines(f"def {name}(*args): ...\n" for name in sorted(missing))

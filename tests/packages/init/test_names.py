@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model.operation import Form
 from mutabot_init.messages import MessagePlace, entries, meaning
 from mutabot_init.observe import merged
@@ -39,7 +39,7 @@ def passed(kind: str, *parts: WatchedPart) -> Values:
 
 
 def uses(several: list[Use]) -> list[Use]:
-    return merged(WatchedCalls(uses=several)).uses
+    return merged([WatchedCalls(uses=several)]).uses
 
 
 def place(form: Form, name: str, *, is_written: bool = False) -> MessagePlace:
@@ -176,7 +176,7 @@ def everything() -> list[Use]:
 def test_a_vocabulary_takes_the_entries_as_they_are(tmp_path: Path) -> None:
     text = vocabulary_text(entries(uses(everything())), ["mission.py"])
     (tmp_path / "robot.toml").write_text(text, encoding="utf-8")
-    found = {one.target: one for one in load(["robot.toml"], tmp_path).operations}
+    found = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
     mains = {"publish", "receive", "call", "goal", "parameter", "tick", "sleep", "transform"}
     assert [target for target in found if target.partition(" ")[0] in mains] == [
         "publish /arm/goal",

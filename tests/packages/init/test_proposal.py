@@ -16,7 +16,7 @@ import pytest
 
 import mutabot_init.propose
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError
 from mutabot.model import Kind, Mode
 from mutabot_init.guess import NameContext, guess_argument, guess_elements, guess_reading
@@ -135,7 +135,7 @@ def write(folder: Path, files: Mapping[str, str]) -> Path:
 
 
 def operations(project: Path) -> dict[str, Any]:
-    return {one.target: one for one in load(["robot.toml"], project).operations}
+    return {one.target: one for one in load_vocabulary(["robot.toml"], project).operations}
 
 
 @pytest.fixture
@@ -762,7 +762,7 @@ def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: P
     for name, text in STAND_INS.items():
         (tmp_path / name).write_text(textwrap.dedent(text), encoding="utf-8")
     lines = propose(tmp_path)
-    operations = {one.target: one for one in load(["robot.toml"], tmp_path).operations}
+    operations = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
     assert set(operations) == {"*:*.move_by", "robot:Lamp.set_output", "*:*.rotate"}
     assert str(operations["*:*.move_by"].signature) == "(dx, speed=0.1)"
     assert [one.name for one in operations["*:*.rotate"].arguments] == ["yaw_deg"]

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.beginning import check
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model import Kind
 from mutabot_init.propose import propose
 from mutabot_init.watched import WatchedCallable
@@ -69,7 +69,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def operation(project: Path, name: str) -> Any:
-    return load(["robot.toml"], project).operation(f"fieldbus:{name}")
+    return load_vocabulary(["robot.toml"], project).operation(f"fieldbus:{name}")
 
 
 def test_the_nodes_of_an_object_are_commands_with_what_is_written_beside_them(project: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot_init.propose import propose
 
 DRIVER = """
@@ -103,7 +103,7 @@ def test_what_a_node_of_ros_1_does_is_proposed_by_name(tmp_path: Path) -> None:
     told = "\n".join(propose(tmp_path, [Path("mission.py")]))
     text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
     assert "1 passed" in told, told
-    found = {one.target: one for one in load(["robot.toml"], tmp_path).operations}
+    found = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
     assert {target: one.named.type for target, one in found.items() if one.named is not None} == {
         "parameter /mission/step": None,
         "tick Mission.on_time": None,

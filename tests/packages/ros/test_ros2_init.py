@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot_init.propose import propose
 
 pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
@@ -100,7 +100,7 @@ def test_what_a_node_of_ros_2_does_is_proposed_by_name(tmp_path: Path) -> None:
     told = "\n".join(propose(tmp_path, [Path("mission.py")]))
     text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
     assert "1 passed" in told, told
-    found = {one.target: one for one in load(["robot.toml"], tmp_path).operations}
+    found = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
     assert {target: one.named.type for target, one in found.items() if one.named is not None} == {
         "parameter step": None,
         "tick Mission.on_time": None,

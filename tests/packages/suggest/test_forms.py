@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot_suggest.checks import ProposedCheck
 from mutabot_suggest.project import OTHER, SuiteFiles, place_of
 from mutabot_suggest.readings import ORACLE, PROBE, ReadExpression, readings_at
@@ -28,7 +28,7 @@ def project(tmp_path: Path) -> SuiteFiles:
     """The project with tests in three styles."""
     folder = make(tmp_path)
     configuration = load_configuration(folder)
-    vocabulary = load(configuration.vocabulary, folder)
+    vocabulary = load_vocabulary(configuration.vocabulary, folder)
     return SuiteFiles(Request(configuration, vocabulary, rounds=1, seed=1, jobs=1))
 
 

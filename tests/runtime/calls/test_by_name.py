@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from tests.runtime.client import ClientStage
 from tests.runtime.stage import take_away
 
@@ -61,7 +61,7 @@ def run(client):
 @pytest.fixture
 def stage(tmp_path: Path) -> ClientStage:
     (tmp_path / "robot.toml").write_text(VOCABULARY)
-    return ClientStage(tmp_path, load(["robot.toml"], tmp_path).operations)
+    return ClientStage(tmp_path, load_vocabulary(["robot.toml"], tmp_path).operations)
 
 
 def program(text: str, before: str = "pass", after: str = "pass") -> str:

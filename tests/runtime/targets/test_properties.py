@@ -9,7 +9,7 @@ from unittest.mock import PropertyMock, patch
 
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.runtime.targets.callables import look_at
 from tests.runtime.stage import Make
 
@@ -26,7 +26,7 @@ def _findings(folder: Path, name: str, line: str) -> list[tuple[str, str]]:
     (folder / "robot.toml").write_text(
         f'[[operation]]\ncall = "robot:Arm.{name}"\n{line}\n', encoding="utf-8"
     )
-    (operation,) = load(["robot.toml"], folder).operations
+    (operation,) = load_vocabulary(["robot.toml"], folder).operations
     return [(one.key, one.text) for one in look_at(operation, vars(_Arm)[name])]
 
 

@@ -1,3 +1,3 @@
 """Vocabularies: the meaning of a robot API, read from TOML and checked."""
 
-from .load import load as load
+from .load import load_vocabulary as load_vocabulary

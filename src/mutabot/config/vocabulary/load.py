@@ -25,7 +25,7 @@ _OTHERS = {"clock": read_clock, "wait": read_wait, "probe": read_probe}
 _SHIPPED = Path(__file__).parent / "shipped"
 
 
-def load(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -> Vocabulary:
+def load_vocabulary(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -> Vocabulary:
     """The vocabulary in these files, put together.
 
     Each name is a file relative to ``root``, or the name of a vocabulary that mutabot ships. What a file
@@ -51,7 +51,7 @@ def load(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -
     )
 
 
-def shipped() -> tuple[str, ...]:
+def shipped_vocabularies() -> tuple[str, ...]:
     """Names of the vocabularies that mutabot and the packages beside it ship."""
     return tuple(sorted(_shipped_files()))
 
@@ -138,7 +138,7 @@ def _find(name: str, root: Path) -> tuple[Document, bool]:
 
 def _known_names(root: Path) -> Iterable[str]:
     own = (path.name for path in root.glob("*.toml") if path.name not in ("pyproject.toml", "mutabot.toml"))
-    return [*own, *shipped()]
+    return [*own, *shipped_vocabularies()]
 
 
 def _sourceless(operation: Operation) -> Operation:

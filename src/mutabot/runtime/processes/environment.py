@@ -156,7 +156,9 @@ def completed(environment: Sequence[bytes]) -> list[bytes]:
     return [name + b"=" + value for name, value in given.items()]
 
 
-def write_wake(folder: str, join: str, key: str, names: Iterable[str], files: Iterable[str]) -> None:
+def write_wake(
+    folder: str, join: str, key: str, names: Iterable[str], files: Iterable[str], own: Iterable[str] = ()
+) -> None:
     """Say what is of interest.
 
     Args:
@@ -165,10 +167,11 @@ def write_wake(folder: str, join: str, key: str, names: Iterable[str], files: It
         key: of the seals on its events.
         names: top-level names of modules.
         files: real paths of files and folders.
+        own: packages that are needed there beside those of ``extensions.packages``.
     """
     from mutabot.extensions import packages  # noqa: PLC0415  # of no use to processes below the tests
 
-    own = sorted({*packages(), join.partition(".")[0], "wrapt"})
+    own = sorted({*packages(), *own, "wrapt"})
     lines = [
         f"join {join}",
         f"key {key}",

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mutabot.config.vocabulary import load
+from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model import Operation
 from mutabot_cell import BadArgument, Cell, Limits, MotionRefused, Pose, ProtectiveStop, RobotModel, Scene
 from mutabot_cell.arm import Arm
@@ -149,7 +149,7 @@ def pick(cell: Cell) -> None:
 
 def test_the_vocabulary_describes_as_many_joints_as_the_arm_has(robot: RobotModel) -> None:
     cell = Cell(1, robot=robot, scene=EMPTY)
-    operations = {one.target: one for one in load(["cell"], Path()).operations}
+    operations = {one.target: one for one in load_vocabulary(["cell"], Path()).operations}
 
     def of(method: MethodType) -> Operation:
         return operations[f"{method.__module__}:{method.__qualname__}"]

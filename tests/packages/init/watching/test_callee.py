@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 from unittest import mock
 
 import pytest
 
-from mutabot.model import Role
-from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text.call_sites import CallSite
+from mutabot.api.processes import CallOrigin
 from mutabot_init.watched import WatchedCallable
 from mutabot_init.watching.callee import Callee, meant_by
 from mutabot_init.watching.watch import Watch
@@ -79,13 +76,12 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 def make(watch: Watch, value: Any, name: str, *args: Any) -> None:
     """Call a method or a module's function as the program does."""
-    site = CallSite("mission.py", Role.PROGRAM, name, (1, 0, 1, 1))
-    watch.called(site, getattr(value, name), value, sys._getframe())(*args)
+    watch.called(name, getattr(value, name), value, CallOrigin("mission.py", 1, is_test=False))(*args)
 
 
 def seen(value: Any, name: str, *args: Any) -> WatchedCallable:
     """What is seen of the program's call of a method or of a module's function."""
-    watch = Watch(Locator(str(Path.cwd()), ("mission.py",), ()))
+    watch = Watch((), lambda path: None)
     make(watch, value, name, *args)
     (call,) = watch.data().calls
     return call
@@ -126,7 +122,7 @@ def test_a_class_in_a_function_has_no_name_to_stand_for() -> None:
 
 
 def test_a_real_call_tells_more_than_the_mock_before_it(robot: Any) -> None:
-    watch = Watch(Locator(str(Path.cwd()), ("mission.py",), ()))
+    watch = Watch((), lambda path: None)
     with mock.patch.object(robot, "lift"):
         make(watch, robot, "lift", 0.25)
     lift.__module__, before = robot.__name__, lift.__module__

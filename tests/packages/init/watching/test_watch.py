@@ -14,6 +14,7 @@ from unittest.mock import MagicMock
 import pytest
 
 from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.observer import questions
 from mutabot.runtime.program_text import call_sites
 from mutabot.runtime.program_text.call_sites import CALLS
 from mutabot_init.watched import Values
@@ -25,13 +26,13 @@ ORDINARY = Path(__file__).parents[2] / "source" / "ordinary.py"
 
 def run(source: str, name: str, monkeypatch: pytest.MonkeyPatch) -> tuple[ModuleType, Watch]:
     """A module whose calls are watched; its own file is part of the program."""
-    watch = Watch(Locator(str(Path.cwd()), (name,), ()))
+    watch = Watch((), lambda path: False if path == str(Path.cwd() / name) else None)
     monkeypatch.setattr(builtins, CALLS, call_sites._entries, raising=False)
     module = ModuleType(Path(name).stem)
     module.__dict__["__file__"] = name
     monkeypatch.setitem(sys.modules, module.__name__, module)
     tree = ast.parse(source, name)
-    watch.sites.change(tree, b"", name)
+    questions(watch, Locator(str(Path.cwd()), (name,), ())).change(tree, b"", name)
     exec(compile(tree, name, "exec"), vars(module))
     return module, watch
 

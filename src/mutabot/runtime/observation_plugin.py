@@ -1,8 +1,4 @@
-"""Watching one plain run of the suite for ``mutabot init``: which calls the program makes, with which values.
-
-A pytest plug-in of its own: ``-p mutabot_init.watching.plugin``, told by the environment what to look at.
-What it found is written to a file as JSON, together with what processes below the tests have seen.
-"""
+"""A pytest plug-in that watches one plain run of a suite: ``-p mutabot.runtime.observation_plugin``."""
 
 from __future__ import annotations
 
@@ -12,23 +8,22 @@ from typing import Any
 
 import pytest
 
-from mutabot import extensions
 from mutabot.errors import MutabotError
-from mutabot.model.codec import to_data
+from mutabot.model.observation import TESTS, VARIABLE
+from mutabot.runtime.observer import ProcessObservation
 from mutabot.runtime.targets.target import prepare
-from mutabot_init.watched import WATCH_VARIABLE
-from mutabot_init.watching.elsewhere import read, seen_elsewhere, watch_elsewhere, write
-from mutabot_init.watching.watch import Watch
 
 #: least seconds between two writings of what was found so far
 _PAUSE = 2.0
+#: problems that are kept
+_MOST_PROBLEMS = 20
 
 
-class _Plugin:
+class _ObservationHooks:
     """Pytest's hooks: when to write down what was found, and what became of the tests."""
 
-    def __init__(self, watch: Watch, output: str, folder: str, problems: list[str]) -> None:
-        self._watch, self._output, self._folder, self._problems = watch, output, folder, problems
+    def __init__(self, observation: ProcessObservation, problems: list[str]) -> None:
+        self._observation, self._problems = observation, problems
         self._outcomes: dict[str, str] = {}
         self._written = time.monotonic()
 
@@ -56,11 +51,8 @@ class _Plugin:
     def _write(self) -> None:
         outcomes = list(self._outcomes.values())
         counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
-        found = {**to_data(self._watch.data()), "outcomes": counts, "problems": self._problems[:20]}
-        for other in seen_elsewhere(self._folder):
-            for key in ("calls", "uses"):
-                found[key] += other[key]
-        write(self._output, found)
+        problems = self._problems[:_MOST_PROBLEMS]
+        self._observation.write(TESTS, outcomes=counts, problems=problems)
         self._written = time.monotonic()
 
 
@@ -74,17 +66,15 @@ def _last_line(text: str) -> str:
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests(early_config: Any) -> None:
     """Before any of the user's code is imported."""
-    path = os.environ.pop(WATCH_VARIABLE, None)
-    if path is None:
+    folder = os.environ.pop(VARIABLE, None)
+    if folder is None:
         return
-    order = read(path)
-    extensions.use(order["extensions"])
-    watch = Watch.of(order)
-    watch.install()
-    folder = watch_elsewhere(path, order)
+    observation = ProcessObservation(folder)
+    observation.wake()
+    observation.install()
     problems = []
     try:
-        prepare(order["root"], os.path.dirname(path), None)
+        prepare(observation.job.root, os.path.dirname(folder), None)
     except MutabotError as error:  # what the tests see all the same is worth having
         problems.append(str(error))
-    early_config.pluginmanager.register(_Plugin(watch, order["output"], folder, problems), "mutabot-watch")
+    early_config.pluginmanager.register(_ObservationHooks(observation, problems), "mutabot-observation")

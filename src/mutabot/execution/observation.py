@@ -1,0 +1,132 @@
+"""Runs a suite once as it is, and watches the calls of the program and of its tests."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Generic, TypeVar
+
+from mutabot.execution.processes import command, kill_group
+from mutabot.extensions import libraries, told_to_processes
+from mutabot.model.codec import from_data, to_data
+from mutabot.model.event_file import FOLDER
+from mutabot.model.observation import JOB, SEEN, TESTS, VARIABLE, ObservationJob
+
+T = TypeVar("T")
+#: of pytest, in which every assertion stays as it is written
+_OWN = ("-p", "mutabot.runtime.observation_plugin", "--assert=plain")
+#: seconds that pytest has for an orderly end when its time is over
+_PATIENCE = 5.0
+
+
+@dataclass(frozen=True)
+class Observed(Generic[T]):
+    """What was seen of one run of a suite.
+
+    Attributes:
+        seen: what the observer of each process returned, that of the tests' process first.
+        outcomes: number of tests by outcome: ``passed``, ``failed``, ``skipped``.
+        problems: the first failures, each with its test, in pytest's words.
+        trouble: why less is known than a whole run tells; empty if nothing is missing.
+    """
+
+    seen: list[T] = field(default_factory=list)
+    outcomes: Mapping[str, int] = field(default_factory=dict)
+    problems: Sequence[str] = ()
+    trouble: str = ""
+
+
+def observe(
+    root: Path,
+    arguments: Sequence[str],
+    *,
+    program: Sequence[str],
+    tests: Sequence[str],
+    observer: str,
+    result: type[T],
+    limit: float,
+) -> Observed[T]:
+    """Run a suite once as it is, and watch the calls of the program and of its tests.
+
+    Args:
+        root: the project.
+        arguments: pytest's, such as files and folders of tests.
+        program, tests: files of either side, relative to ``root``, with ``/``.
+        observer: ``module:Name`` of the ``Observer`` that watches in each process of the run.
+        result: the dataclass that its ``data`` returns.
+        limit: seconds that the run may take; it is then ended, and what was seen by then is returned.
+
+    Raises ExtensionError for a package that cannot be used.
+    """
+    with TemporaryDirectory(ignore_cleanup_errors=True) as name:  # nodes may still write to their logs
+        home = Path(name)
+        folder, log = home / FOLDER, home / "log.txt"
+        folder.mkdir()
+        job = ObservationJob(
+            str(root), tuple(program), tuple(tests), observer, told_to_processes(), tuple(libraries())
+        )
+        (folder / JOB).write_text(json.dumps(to_data(job)), encoding="utf-8")
+        words = [*command(arguments, home), *_OWN]
+        is_overdue = _wait(words, root, {VARIABLE: str(folder)}, log, limit)
+        found = _read(folder, result)
+        if is_overdue:
+            trouble = f"the tests took longer than {limit:.0f} s: only what was seen by then is known"
+        elif found.outcomes:
+            return found
+        else:
+            trouble = "; ".join(found.problems[:3]) or _said(log.read_text("utf-8", errors="replace"))
+        return Observed(found.seen, found.outcomes, found.problems, trouble)
+
+
+def _wait(words: Sequence[str], root: Path, variables: Mapping[str, str], log: Path, limit: float) -> bool:
+    """Run pytest; whether it was ended because it took too long."""
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **variables}
+    with (
+        log.open("wb") as file,
+        subprocess.Popen(
+            words, cwd=root, env=environment, stdin=subprocess.DEVNULL, stdout=file,
+            stderr=subprocess.STDOUT, start_new_session=True,
+        ) as process,
+    ):  # fmt: skip
+        try:
+            process.wait(limit)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGINT)  # as a person would: pytest ends in an orderly way
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(_PATIENCE)
+            return True
+        finally:
+            kill_group(process.pid)
+            process.wait()
+    return False
+
+
+def _read(folder: Path, result: type[T]) -> Observed[T]:
+    own = folder / f"{TESTS}{SEEN}"
+    others = sorted(path for path in folder.glob(f"*{SEEN}") if path != own)
+    told = [_data(path) for path in (own, *others)]
+    seen = [from_data(result, one["seen"]) for one in told if one]
+    return Observed(seen, told[0].get("outcomes", {}), told[0].get("problems", ()))
+
+
+def _data(path: Path) -> dict[str, Any]:
+    try:
+        data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8", errors="surrogateescape"))
+    except (OSError, ValueError):
+        return {}
+    return data
+
+
+def _said(log: str) -> str:
+    """What pytest said last that tells something."""
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
+    telling = [line for line in lines if re.search(r"error|Error|no tests|No module", line)]
+    return (telling or lines or ["pytest said nothing"])[-1][:300]

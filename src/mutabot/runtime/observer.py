@@ -1,0 +1,238 @@
+"""The contract of what watches one plain run of a suite, and how it is put into each process of that run.
+
+``execution.observation.observe`` starts the run; ``runtime.observation_plugin`` is its way into pytest.
+Nothing that the program can see changes.
+"""
+
+from __future__ import annotations
+
+import atexit
+import inspect
+import json
+import os
+import signal
+import sys
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from functools import cache
+from importlib import import_module
+from types import FrameType
+from typing import Any
+
+from mutabot import extensions
+from mutabot.frozen import frozen
+from mutabot.model import Role
+from mutabot.model.codec import to_data
+from mutabot.model.observation import JOB, SEEN, ObservationJob
+from mutabot.model.operation import MAIN, Form
+from mutabot.runtime.interception.frames import border
+from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.processes.environment import carry, write_wake
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
+from mutabot.runtime.program_text.loading import hook_script
+from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Messages, Where
+
+#: forms of what passes under a name; all others only set something up
+_PASSING = MAIN | {Form.FEEDBACK, Form.RESULT}
+
+
+@frozen
+class CallOrigin:
+    """Where a call stands in the source.
+
+    Attributes:
+        file: relative to the project, with ``/``.
+        line: 1-based.
+        is_test: whether the file is on the tests' side.
+    """
+
+    file: str
+    line: int
+    is_test: bool
+
+
+class Observer(ABC):
+    """What watches the calls in one process of a run: those of the program and those of its tests.
+
+    An object is made in each process before it imports the program. What its methods raise, the program
+    would meet.
+
+    Attributes:
+        libraries: top-level names of client libraries of middlewares, with ``*`` for any text; what is done
+            through them comes to ``used``, under its name.
+        is_test: tells of an absolute path whether it is on the tests' side (True) or the program's (False);
+            None for files of neither.
+    """
+
+    def __init__(self, libraries: Sequence[str], is_test: Callable[[str], bool | None]) -> None:
+        self.libraries, self.is_test = libraries, is_test
+
+    @abstractmethod
+    def called(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> Any:
+        """Return what is to be called in the place of ``found``.
+
+        Args:
+            name: by which it is called, without what stands before it.
+            found: what the program is about to call.
+            receiver: the object whose attribute it is; None if it was read from a name.
+            caller: the call.
+        """
+
+    @abstractmethod
+    def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
+        """The attribute ``name`` of ``receiver`` was read, and is ``found``."""
+
+    @abstractmethod
+    def used(
+        self, form: Form, name: str, caller: CallOrigin | None, written: Sequence[Any], *, is_callback: bool
+    ) -> Callable[[Any], None] | None:
+        """Something is done under a resolved name of a middleware.
+
+        Args:
+            form: what.
+            name: under which name.
+            caller: the call, or the definition of the callback; None if it is none of the project's.
+            written: the message that is sent, if any.
+            is_callback: whether it came to a callback, rather than to a call that waited for it.
+
+        Returns what is told the answer, or the message that came; None if it is not asked for.
+        """
+
+    @abstractmethod
+    def data(self) -> Any:
+        """Return what was seen so far: a dataclass of plain values."""
+
+
+class ProcessObservation:
+    """The observer of this process, and what gives it the calls.
+
+    Args:
+        folder: where all processes of the run find their job and write what they saw.
+    """
+
+    def __init__(self, folder: str) -> None:
+        self.folder = folder
+        with open(os.path.join(folder, JOB), encoding="utf-8") as file:
+            self.job = job = ObservationJob(**json.load(file))
+        extensions.use(job.extensions)
+        self._locator = Locator(job.root, tuple(job.program), tuple(job.tests))
+        module, _, name = job.observer.partition(":")
+        self.observer: Observer = getattr(import_module(module), name)(job.libraries, self._is_test)
+
+    def install(self) -> None:
+        """Watch what is imported from now on, also in processes that are started from now on."""
+        _Uses(self.observer, self._locator)
+        questions(self.observer, self._locator).install()
+        carry(self.folder)
+
+    def wake(self) -> None:
+        """Say which processes below the tests are of interest."""
+        program, module = self.job.program, self.job.observer.partition(":")[0]
+        names = {part.removesuffix(".py") for path in program for part in path.split("/")}
+        files = [os.path.realpath(os.path.join(self.job.root, path)) for path in program]
+        write_wake(self.folder, __name__, "", names, files, [module.partition(".")[0]])
+
+    def write(self, name: str, **more: Any) -> None:
+        """Write what was seen, all of it or nothing, into the file of this name."""
+        path = os.path.join(self.folder, f"{name}{SEEN}")
+        with open(f"{path}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
+            json.dump({"seen": to_data(self.observer.data()), **more}, file, default=str)
+        os.replace(f"{path}.new", path)
+
+    def _is_test(self, path: str) -> bool | None:
+        role = self._locator.role(path)
+        return None if role is None else role is Role.ORACLE
+
+
+def questions(observer: Observer, locator: Locator) -> CallSites:
+    """What asks an observer at each call, and at each attribute that is read."""
+
+    @cache
+    def caller_of(site: CallSite) -> CallOrigin:
+        return CallOrigin(locator.relative(site.path), site.extent[0], site.role is Role.ORACLE)
+
+    def called(site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        given = None if receiver is NOTHING else receiver
+        return observer.called(site.name, found, given, caller_of(site))
+
+    def read(site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        observer.read(site.name, found, receiver, caller_of(site))
+        return found
+
+    return CallSites(_PublicNames(), locator.role, called, hands=read, are_read=True)
+
+
+class _PublicNames:
+    """All names that are not private."""
+
+    def __contains__(self, name: object) -> bool:
+        return not str(name).startswith("_")
+
+
+@border
+def _carried_out(wrapped: Callable[..., Any], args: Any, kwargs: Any) -> Any:
+    """Call what is used; calls that it makes itself do not count, as in a campaign."""
+    return wrapped(*args, **kwargs)
+
+
+class _Uses(Messages):
+    """Hands on all that is done under names."""
+
+    def __init__(self, observer: Observer, locator: Locator) -> None:
+        self._observer, self._locator = observer, locator
+        super().__init__(lambda target, finding: None)
+
+    def find(self, form: Form, name: str, node: str | None) -> Handler | None:
+        """What looks at a use; None where something is set up, which is told at once."""
+        observer, locator = self._observer, self._locator
+        if form not in _PASSING:
+            caller = _caller(locator.locate(sys._getframe(1)))
+            observer.used(form, name, caller, (), is_callback=False)
+            return None
+
+        def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where = NOWHERE) -> Any:
+            code = where.code
+            place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
+            answered = observer.used(form, name, _caller(place), args[:1], is_callback=code is not None)
+            if inspect.iscoroutinefunction(wrapped):
+                return _awaited(wrapped(*args, **kwargs), answered)
+            result = _carried_out(wrapped, args, kwargs)
+            if answered is not None:
+                answered(result)
+            return result
+
+        return handle
+
+
+async def _awaited(waiting: Any, answered: Callable[[Any], None] | None) -> Any:
+    result = await waiting
+    if answered is not None:
+        answered(result)
+    return result
+
+
+def _caller(place: CallPlace | None) -> CallOrigin | None:
+    return None if place is None else CallOrigin(place[0].file, place[0].line, place[1] is Role.ORACLE)
+
+
+def join(folder: str) -> None:
+    """Watch this process below the tests, which writes what it saw when it ends."""
+    observation = ProcessObservation(folder)
+    observation.install()
+    hook_script()
+    leave = os._exit
+
+    def write_all() -> None:
+        observation.write(str(os.getpid()))
+
+    def leave_at_once(status: int) -> None:
+        write_all()
+        leave(status)
+
+    def end(number: int, frame: FrameType | None) -> None:
+        sys.exit(128 + number)
+
+    atexit.register(write_all)
+    os._exit = leave_at_once  # type: ignore[assignment]
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, end)  # else nothing would be written
