@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import re
 import signal
 import subprocess
 from collections.abc import Mapping, Sequence
@@ -15,6 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Generic, TypeVar
 
 from mutabot.execution.processes import command, kill_group
+from mutabot.execution.task import said_in
 from mutabot.extensions import libraries, told_to_processes
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.event_file import FOLDER
@@ -82,7 +82,9 @@ def observe(
         elif found.outcomes:
             return found
         else:
-            trouble = "; ".join(found.problems[:3]) or _said(log.read_text("utf-8", errors="replace"))
+            trouble = (
+                "; ".join(found.problems[:3]) or f"no test ran{said_in(log.read_text(errors='replace'))}"
+            )
         return Observed(found.seen, found.outcomes, found.problems, trouble)
 
 
@@ -123,10 +125,3 @@ def _data(path: Path) -> dict[str, Any]:
     except (OSError, ValueError):
         return {}
     return data
-
-
-def _said(log: str) -> str:
-    """What pytest said last that tells something."""
-    lines = [line.strip() for line in log.splitlines() if line.strip()]
-    telling = [line for line in lines if re.search(r"error|Error|no tests|No module", line)]
-    return (telling or lines or ["pytest said nothing"])[-1][:300]
