@@ -10,11 +10,11 @@ import pytest
 
 from mutabot import shared_memory
 from mutabot.runtime.session_hooks import _tests_us
-from mutabot.shared_memory import KEY, SharedMemory
+from mutabot.shared_memory import SharedMemory
 
 
 def key(number: int) -> bytes:
-    return number.to_bytes(8, "little").ljust(KEY, b"k")
+    return number.to_bytes(8, "little").ljust(SharedMemory.key_size, b"k")
 
 
 def test_what_was_put_is_there() -> None:
@@ -68,17 +68,17 @@ def test_where_there_is_no_memory_nothing_is_shared(monkeypatch: pytest.MonkeyPa
     def fail(*_: object) -> None:
         raise OSError(12, "Cannot allocate memory")
 
-    monkeypatch.setattr(shared_memory, "_shared", None)
+    monkeypatch.setattr(SharedMemory, "_current", None)
     monkeypatch.setattr("mmap.mmap", fail)
-    shared_memory.share()
-    assert shared_memory.shared() is None
+    SharedMemory.share()
+    assert SharedMemory.current() is None
 
 
 def test_processes_share_what_they_put(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shared_memory, "_shared", None)
-    assert shared_memory.shared() is None
-    shared_memory.share()
-    memory = shared_memory.shared()
+    monkeypatch.setattr(SharedMemory, "_current", None)
+    assert SharedMemory.current() is None
+    SharedMemory.share()
+    memory = SharedMemory.current()
     assert memory is not None
     child = os.fork()
     if not child:

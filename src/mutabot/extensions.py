@@ -94,12 +94,12 @@ class Extension:
         templates: functions that make a starting project of an option's value: a mapping of its files' names
             (relative, with ``/``) to their texts. One named ``cell`` gives ``mutabot init`` an option
             ``--cell``. They raise ``mutabot.errors.UsageError`` for a value that they do not know.
-        tables: subclasses of ``mutabot.config.table.Table``, by the table's name in the configuration.
+        tables: subclasses of ``mutabot.api.processes.Table``, by the table's name in the configuration.
         commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.app.Commands``).
         formats: a function (``mutabot.report.format.Format``) each, by its name.
         sections: functions of ``mutabot.results.results.Results`` that make a section of the results
             document each, of plain data, by its name.
-        simulations: subclasses of ``mutabot.campaign.simulation.SimulatedMiddleware``, by their names: what
+        simulations: subclasses of ``mutabot.api.processes.SimulatedMiddleware``, by their names: what
             campaigns may run the tests over instead of the real middleware.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
         languages: objects that keep ``mutabot.languages.front_end.FrontEnd``, by the languages' names: robot

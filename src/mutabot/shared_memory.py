@@ -11,30 +11,53 @@ import mmap
 import struct
 import zlib
 from contextlib import suppress
+from typing import ClassVar
 
-KEY = 16
-"""Bytes of a key."""
-
+_KEY = 16
 _SIZE = 1 << 26
 _SLOTS = 1 << 18
 _PLACE = struct.Struct("Q")
-_HEAD = struct.Struct(f"{KEY}sII")  # key, length of the value, sum of key and value
+_HEAD = struct.Struct(f"{_KEY}sII")  # key, length of the value, sum of key and value
 _FIRST = _PLACE.size * (1 + _SLOTS)
-
-_shared: SharedMemory | None = None
 
 
 class SharedMemory:
-    """Values by keys. New values take the place of the oldest ones once it is full.
+    """Values by keys, shared by processes. New values take the place of the oldest ones once it is full.
 
     It takes up memory only as it is filled. Processes read and write without waiting for each other; a sum
     tells of a value that is incomplete.
+
+    Attributes:
+        key_size: bytes of a key.
     """
+
+    key_size: ClassVar[int] = _KEY
+    _current: ClassVar[SharedMemory | None] = None
 
     def __init__(self) -> None:
         # first the place of the next value, then a table of places by key, then the values in a ring
         self._bytes = mmap.mmap(-1, _SIZE)
         _PLACE.pack_into(self._bytes, 0, _FIRST)
+
+    @classmethod
+    def current(cls) -> SharedMemory | None:
+        """The memory that this process shares with others; None outside of campaigns."""
+        return cls._current
+
+    @classmethod
+    def share(cls) -> None:
+        """Before the first fork: what is forked from this process from now on shares a memory with it.
+
+        Where there is not enough memory, nothing is shared.
+        """
+        if cls._current is None:
+            with suppress(OSError):
+                cls._current = cls()
+
+    @classmethod
+    def forget(cls) -> None:
+        """Share nothing from now on."""
+        cls._current = None
 
     def get(self, key: bytes) -> bytes | None:
         """What was put under a key, if it is still there."""
@@ -51,7 +74,7 @@ class SharedMemory:
         """Keep a value.
 
         Args:
-            key: `KEY` bytes that tell apart all that the value depends on, such as a digest.
+            key: `key_size` bytes that tell apart all that the value depends on, such as a digest.
             value: if it is longer than the whole memory, it is not kept.
         """
         end = _HEAD.size + len(value)
@@ -68,25 +91,3 @@ class SharedMemory:
 
 def _slot(key: bytes) -> int:
     return _PLACE.size * (1 + int.from_bytes(key[:8], "little") % _SLOTS)
-
-
-def share() -> None:
-    """Before the first fork: what is forked from this process from now on shares a memory with it.
-
-    Where there is not enough memory, nothing is shared.
-    """
-    global _shared  # noqa: PLW0603
-    if _shared is None:
-        with suppress(OSError):
-            _shared = SharedMemory()
-
-
-def shared() -> SharedMemory | None:
-    """The memory that this process shares with others; None outside of campaigns."""
-    return _shared
-
-
-def forget() -> None:
-    """Share nothing from now on."""
-    global _shared  # noqa: PLW0603
-    _shared = None

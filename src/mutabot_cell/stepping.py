@@ -14,7 +14,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from mutabot import shared_memory
+from mutabot.api.processes import SharedMemory
 
 from .fingerprint import Fingerprint
 from .geometry import Array
@@ -38,7 +38,7 @@ class Stepping:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data, self._servos = model, data, data.ctrl
         # plugins and flexible bodies may have more to them than a state tells
-        self._memory = None if model.nplugin or model.nflex else shared_memory.shared()
+        self._memory = None if model.nplugin or model.nflex else SharedMemory.current()
         self._key: bytes | None = None
         self._start: Array = np.zeros(mujoco.mj_stateSize(model, _STATE))
         self._before: Array = np.zeros(mujoco.mj_stateSize(model, MOVING))
@@ -67,7 +67,7 @@ class Stepping:
             return None
         mujoco.mj_getState(self._model, self._data, self._start, _STATE)
         everything = b"".join((self._fingerprint.now(), self._start.tobytes(), inputs.tobytes()))
-        self._key = hashlib.sha256(everything).digest()[: shared_memory.KEY]
+        self._key = hashlib.sha256(everything).digest()[: SharedMemory.key_size]
         kept = self._memory.get(self._key)
         return None if kept is None else np.frombuffer(kept)
 
@@ -134,6 +134,6 @@ def _is_set(pointer: ctypes.c_void_p) -> bool:
 
 _measure_no_time()
 _is_native = _Pointers().are_original
-_OWN = (__name__, Fingerprint.__module__, shared_memory.__name__)
+_OWN = (__name__, Fingerprint.__module__, SharedMemory.__module__)
 #: what steps depend on
 _ORIGINALS = Originals(_OWN, (mujoco, np, hashlib))

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from mutabot.errors import UsageError
+from mutabot.api.reports import UsageError
 
 from . import template_texts as texts
 from .errors import BadModel

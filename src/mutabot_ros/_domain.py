@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import os
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
-from mutabot.model import Operation, Vocabulary
+from mutabot.api.values import Operation
 
 DOMAIN, RANGE, LOGS = "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOG_DIR"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
@@ -42,9 +42,9 @@ _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 _held: list[socket.socket] = []
 
 
-def is_wanted(vocabulary: Vocabulary) -> bool:
-    """Whether the vocabulary speaks of nodes, which may be those of ROS 2."""
-    return any(_is_of_nodes(operation) for operation in vocabulary.operations)
+def is_wanted(operations: Sequence[Operation]) -> bool:
+    """Whether operations are those of nodes, which may be those of ROS 2."""
+    return any(map(_is_of_nodes, operations))
 
 
 def take(home: str) -> None:

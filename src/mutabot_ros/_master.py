@@ -13,10 +13,11 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mutabot.errors import MutabotError
-from mutabot.model import Operation, Vocabulary
+from mutabot.api.reports import MutabotError
+from mutabot.api.values import Operation
 
 from ._speech import speaks_of
 
@@ -60,13 +61,13 @@ class Master:
         self.process.wait()
 
 
-def is_wanted(root: str, vocabulary: Vocabulary | None) -> bool:
-    """Whether the program uses ROS 1, as far as its vocabulary and files tell, and it is installed."""
-    if vocabulary is not None and not any(map(_is_of_nodes, vocabulary.operations)):
+def is_wanted(root: str, operations: Sequence[Operation] | None) -> bool:
+    """Whether the program uses ROS 1, as far as its operations and files tell, and it is installed."""
+    if operations is not None and not any(map(_is_of_nodes, operations)):
         return False
     if not _is_installed("rospy") or not _is_installed("rosmaster"):
         return False
-    is_other_there = vocabulary is None or _is_installed("rclpy")
+    is_other_there = operations is None or _is_installed("rclpy")
     return not is_other_there or speaks_of(root, "rospy")
 
 

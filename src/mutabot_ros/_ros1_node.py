@@ -10,7 +10,7 @@ from collections.abc import Awaitable, Callable
 from types import CodeType
 from typing import Any
 
-from mutabot.runtime.targets.target import MiddlewareControls, Where
+from mutabot.api.values import MiddlewareControls, Where
 
 from ._patches import Patches
 

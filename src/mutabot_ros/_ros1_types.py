@@ -9,7 +9,7 @@ from pathlib import Path as File
 from types import ModuleType
 from typing import Any, ClassVar
 
-from mutabot.model.operation import Form
+from mutabot.api.values import Form
 
 from ._types import Types
 

@@ -11,9 +11,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any, ClassVar
 
-from mutabot.model import Operation, Path
-from mutabot.model.operation import WRITTEN, Form, Named, Refused
-from mutabot.runtime.targets.target import Finding
+from mutabot.api.values import Finding, Form, Operation, Path
 
 #: the tables of the vocabulary in which the fields are described of what is written, and of what is read
 _TABLES: Mapping[Form, tuple[str, str]] = {
@@ -56,13 +54,13 @@ class Types(ABC):
         if type_name is not None:
             self._used[form, name] = type_name
 
-    def of(self, named: Named) -> dict[str, str]:
-        """The types of all names that are meant, by name."""
-        wanted = Form.GOAL if named.form in self.as_goal else named.form
+    def of(self, form: Form, names: str) -> dict[str, str]:
+        """The types of the names that programs use in a form, by name; ``*`` in ``names`` is any text."""
+        wanted = Form.GOAL if form in self.as_goal else form
         return {
             name: kind
-            for (form, name), kind in self._used.items()
-            if form is wanted and fnmatchcase(name, named.name)
+            for (used, name), kind in self._used.items()
+            if used is wanted and fnmatchcase(name, names)
         }
 
     def look_at(self, operation: Operation) -> Iterator[Finding]:
@@ -73,7 +71,7 @@ class Types(ABC):
         named = operation.named
         if named is None:
             return
-        used = self.of(named)
+        used = self.of(named.form, named.name)
         for kind in [named.type] if named.type is not None else sorted(set(used.values())):
             yield from self._look_at_fields(operation, named.form, kind)
         yield from self._look_at_told(operation)
@@ -117,28 +115,24 @@ class Types(ABC):
                 yield Finding("type", text, name, known)
                 return
             for quantity in quantities:
-                if quantity.path.root in (None, WRITTEN.get(form)):  # else it is no field of the message
+                if operation.is_field(quantity):
                     key = f"{_TABLES[form][side]}.{quantity.name}"
                     yield from self._look_at_steps(message, quantity.path, key)
             for refused in operation.told_as_refused if places is self.read else ():
                 if refused.topic is None:
-                    yield from self._look_at_path_of(refused, message)
+                    yield from self._look_at_steps(message, refused.parsed, "refused.path")
 
     def _look_at_told(self, operation: Operation) -> Iterator[Finding]:
         """Refusals that are told on topics whose types are known."""
         for refused in operation.told_as_refused:
-            listened = {} if refused.topic is None else self.of(Named(Form.RECEIVE, refused.topic))
+            listened = {} if refused.topic is None else self.of(Form.RECEIVE, refused.topic)
             for name, kind in listened.items():
                 try:
                     message = self._class_of(kind, *self.read[Form.RECEIVE])
                 except LookupError:  # the program has it all the same
                     continue
-                yield from self._look_at_path_of(refused, message, f"{name}: ")
-
-    def _look_at_path_of(self, refused: Refused, message: Any, which: str = "") -> Iterator[Finding]:
-        path = Path.parse(refused.path, rooted=False)
-        for one in self._look_at_steps(message, path, "refused.path"):
-            yield replace(one, text=f"{which}{one.text}")
+                for one in self._look_at_steps(message, refused.parsed, "refused.path"):
+                    yield replace(one, text=f"{name}: {one.text}")
 
     def _class_of(self, kind: str, module: str, part: str) -> Any:
         """The class of a type. Raises LookupError: a sentence, the wrong name, and those there are."""

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from mutabot.model import Vocabulary
+from collections.abc import Sequence
+
+from mutabot.api.values import Operation
 
 from . import _domain, _master
 from ._speech import speaks_of
 from .simulation.settings import configure
 
 
-def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> bool:
+def prepare(root: str, home: str, operations: Sequence[Operation] | None) -> bool:
     """Set up what nodes will find in the environment; see ``mutabot.runtime.targets.target``.
 
     Raises ``_master.MasterError`` if there is to be a master and none comes up.
     """
-    has_domain = speaks_of(root, "rclpy") if vocabulary is None else _domain.is_wanted(vocabulary)
+    has_domain = speaks_of(root, "rclpy") if operations is None else _domain.is_wanted(operations)
     if has_domain:
         configure()
         _domain.take(home)
-    has_master = _master.is_wanted(root, vocabulary)
+    has_master = _master.is_wanted(root, operations)
     if has_master:
         _master.start(home)
     return has_domain or has_master

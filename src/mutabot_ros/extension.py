@@ -1,6 +1,6 @@
 """What this package brings to mutabot: ROS 1 and ROS 2."""
 
-from mutabot.extensions import Extension
+from mutabot.api.faults import Extension
 
 EXTENSION = Extension(
     interface=2,

@@ -13,10 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from mutabot.model import Operation
-from mutabot.model.operation import Form
-from mutabot.runtime.processes.member import note_node
-from mutabot.runtime.targets.target import Finding, Names, anew, deliver, wait_for
+from mutabot.api.values import Finding, Form, Names, Operation
 
 from . import _ros1_node as node
 from ._patches import Patches, code_of
@@ -38,7 +35,7 @@ def hook(messages: Names) -> Callable[[], None]:
     _Parameters(messages).hook(patches, rospy)
     _Times(messages).hook(patches, rospy)
     for module in (rospy.client, rospy):
-        patches.put(module, "init_node", _note)
+        patches.put(module, "init_node", functools.partial(_note, messages))
     node.clock.hook(patches, rospy)
     patches.then(_types.clear)
     return patches.undo
@@ -49,10 +46,10 @@ def check(operation: Operation) -> Iterator[Finding]:
     return _types.look_at(operation)
 
 
-def _note(original: Any, *args: Any, **kwargs: Any) -> Any:
+def _note(messages: Names, original: Any, *args: Any, **kwargs: Any) -> Any:
     """A node begins: its process goes by its name."""
     original(*args, **kwargs)
-    note_node(node.name())
+    messages.note_node(node.name())
 
 
 class _Topics:
@@ -133,7 +130,7 @@ class _Topics:
         def call_back(received: Any) -> None:
             original(topic, received, callback, more)
 
-        deliver(handler, message, call_back, node.where(code_of(callback)))
+        node.where(code_of(callback)).deliver(handler, message, call_back)
 
     def _wait(self, original: Any, topic: str, topic_type: Any, timeout: Any = None) -> Any:
         name = node.resolved(topic) or topic
@@ -147,7 +144,7 @@ class _Topics:
         def wait() -> Any:
             return original(topic, topic_type, None if end is None else max(0.0, end - time.monotonic()))
 
-        return wait_for(handler, anew(wait, _is_latched, time), node.where(), time)
+        return node.where().wait_for(handler, wait, _is_latched, time)
 
 
 class _Services:
@@ -259,7 +256,7 @@ class _Times:
         handler = self._messages.find(Form.TICK, name, node.name())
         if handler is None:
             return callback(event)
-        return deliver(handler, event, callback, node.where(code_of(callback)))
+        return node.where(code_of(callback)).deliver(handler, event, callback)
 
     def _make_rate(self, original: Any, rate: Any, hz: Any, *args: Any, **kwargs: Any) -> None:
         handler = None if self._is_timers() else self._messages.find(Form.RATE, node.name(), node.name())

@@ -10,8 +10,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import Names, deliver
+from mutabot.api.values import Form, Names
 
 from . import _ros1_node as node
 from ._patches import Patches, code_of
@@ -111,7 +110,7 @@ class _Simple:
             handler = self._messages.find(Form.FEEDBACK, name, node.name())
             if handler is None:
                 return callback(feedback)
-            return deliver(handler, feedback, callback, node.where(code_of(callback)))
+            return node.where(code_of(callback)).deliver(handler, feedback, callback)
 
         return receive
 

@@ -6,8 +6,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import MiddlewareControls, Names, Where
+from mutabot.api.values import Form, MiddlewareControls, Names, Where
 
 from ._patches import Patches
 

@@ -18,7 +18,7 @@ from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 
 #: an arm that moves at 1 m/s and carries a part, and tells of both
 ROBOT = """
-    from mutabot.evidence import Feed
+    from mutabot.api.processes import Feed
 
     class Cell:
         def __init__(self):

@@ -39,7 +39,7 @@ SITE = {
                     callback(Message(**fields))
         """,
     "toybus_mutabot/__init__.py": """
-        from mutabot.extensions import Extension
+        from mutabot.api.faults import Extension
 
         EXTENSION = Extension(
             interface=2,
@@ -52,10 +52,7 @@ SITE = {
         import sys
         from functools import partial
 
-        from mutabot.runtime.targets.target import deliver
-        from mutabot.runtime.targets.target import MiddlewareControls
-        from mutabot.runtime.targets.target import Where
-        from mutabot.model.operation import Form
+        from mutabot.api.values import Form, MiddlewareControls, Where
 
         assert "toybus" in sys.modules, "hooks are imported before what they hook"
 
@@ -80,7 +77,7 @@ SITE = {
                     if handler is None:
                         return callback(message)
                     where = Where(callback.__code__, NODE, MiddlewareControls())
-                    return deliver(handler, message, callback, where)
+                    return where.deliver(handler, message, callback)
                 originals[1](topic, received)
 
             def undo():
@@ -93,7 +90,7 @@ SITE = {
         import os
         import tempfile
 
-        def prepare(root, home, vocabulary):
+        def prepare(root, home, operations):
             name = f"toybus-{os.path.basename(home)}.txt"  # forks share the home, but not the temporary files
             os.environ["TOYBUS"] = os.path.join(tempfile.gettempdir(), name)
             return True

@@ -26,7 +26,7 @@ from mutabot.model.operation import Form
 from mutabot.runtime.interception.active_mutant import ActiveMutant
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
-from mutabot.runtime.targets.target import Messages, MiddlewareControls, Where, deliver, wait_for
+from mutabot.runtime.targets.target import Messages, MiddlewareControls, Where
 from tests.runtime.stage import take_away
 
 from .stage import ListPipe
@@ -96,13 +96,13 @@ class Client:
         self.tell(name, message)
         where = Where(callback.__code__, NODE, self._means)
         handler = self._find(Form.RECEIVE, name)
-        return callback(message) if handler is None else deliver(handler, message, callback, where)
+        return callback(message) if handler is None else where.deliver(handler, message, callback)
 
     def tick(self, callback: Callable[[Any], Any]) -> None:
         """A timer's callback is called."""
         handler = self._find(Form.TICK, "/mission/check")
         where = Where(callback.__code__, NODE, self._means)
-        callback(None) if handler is None else deliver(handler, None, callback, where)
+        callback(None) if handler is None else where.deliver(handler, None, callback)
 
     def wait(self, name: str) -> Any:
         """Wait for a message."""
@@ -114,7 +114,7 @@ class Client:
 
         handler = self._find(Form.RECEIVE, name)
         where = Where(node=NODE, means=self._means)
-        return wait() if handler is None else wait_for(handler, wait, where, time)
+        return wait() if handler is None else where.wait_for(handler, wait, lambda _: False, time)
 
     def set_up(self, form: Form, **settings: Any) -> None:
         """Set something up."""

@@ -4,7 +4,7 @@ import gymnasium
 import metaworld  # noqa: F401  # registers its environments
 import pytest
 
-from mutabot.evidence import Feed
+from mutabot.api.processes import Feed
 
 
 class Told(gymnasium.Wrapper):

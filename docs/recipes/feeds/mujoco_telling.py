@@ -5,7 +5,7 @@ from functools import partial
 import mujoco
 import numpy as np
 
-from mutabot.evidence import Feed
+from mutabot.api.processes import Feed
 
 
 def tell(model, data, *, tool, things, width=480, height=360):

@@ -5,7 +5,7 @@ import pybullet as p
 import pybullet_data
 import pytest
 
-from mutabot.evidence import Feed
+from mutabot.api.processes import Feed
 
 HAND, FINGER = 11, 9
 

@@ -8,7 +8,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from sensor_msgs.msg import Image, JointState
 
-from mutabot.evidence import Feed
+from mutabot.api.processes import Feed
 
 
 class Telling(Node):

@@ -8,39 +8,49 @@ from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import ExecutorChoice, Request
+    from mutabot.campaign.simulation import SimulatedMiddleware
     from mutabot.config.table import ProjectFiles, Table
+    from mutabot.evidence import Feed
     from mutabot.execution.interruption import interruptible
     from mutabot.execution.observation import Observed, observe
     from mutabot.execution.task import Executor, Result, Task
     from mutabot.execution.workers import Workers
     from mutabot.model.job import Job
     from mutabot.runtime.observer import CallOrigin, Observer
+    from mutabot.runtime.pytest_plugin import seed_of
+    from mutabot.shared_memory import SharedMemory
 
 __all__ = [
     "CallOrigin",
     "Executor",
     "ExecutorChoice",
+    "Feed",
     "Job",
     "Observed",
     "Observer",
     "ProjectFiles",
     "Request",
     "Result",
+    "SharedMemory",
+    "SimulatedMiddleware",
     "Table",
     "Task",
     "Workers",
     "interruptible",
     "observe",
+    "seed_of",
 ]
 _HOMES = {
     "mutabot.campaign.request": (
         "ExecutorChoice",
         "Request",
     ),
+    "mutabot.campaign.simulation": ("SimulatedMiddleware",),
     "mutabot.config.table": (
         "ProjectFiles",
         "Table",
     ),
+    "mutabot.evidence": ("Feed",),
     "mutabot.execution.interruption": ("interruptible",),
     "mutabot.execution.observation": (
         "Observed",
@@ -57,5 +67,7 @@ _HOMES = {
         "CallOrigin",
         "Observer",
     ),
+    "mutabot.runtime.pytest_plugin": ("seed_of",),
+    "mutabot.shared_memory": ("SharedMemory",),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

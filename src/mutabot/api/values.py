@@ -13,14 +13,17 @@ if TYPE_CHECKING:
     from mutabot.model.path import Path
     from mutabot.model.quantity import Kind, Mode, Quantity, Value
     from mutabot.model.signature import parse_signature
-    from mutabot.runtime.targets.target import resolve
+    from mutabot.runtime.targets.target import Finding, MiddlewareControls, Names, Where, resolve
 
 __all__ = [
     "Call",
     "CallFault",
+    "Finding",
     "Form",
     "Kind",
+    "MiddlewareControls",
     "Mode",
+    "Names",
     "Operation",
     "Path",
     "Proceed",
@@ -28,6 +31,7 @@ __all__ = [
     "Reply",
     "Value",
     "Vocabulary",
+    "Where",
     "load_vocabulary",
     "parse_signature",
     "resolve",
@@ -57,6 +61,12 @@ _HOMES = {
         "Value",
     ),
     "mutabot.model.signature": ("parse_signature",),
-    "mutabot.runtime.targets.target": ("resolve",),
+    "mutabot.runtime.targets.target": (
+        "Finding",
+        "MiddlewareControls",
+        "Names",
+        "Where",
+        "resolve",
+    ),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

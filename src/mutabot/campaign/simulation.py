@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
 
+from mutabot.campaign.agreement import difference
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan import make_plan
 from mutabot.campaign.request import AUTO, Request
@@ -13,50 +16,84 @@ from mutabot.errors import MutabotError, UsageError
 from mutabot.execution.task import Result
 from mutabot.extensions import brought
 from mutabot.frozen import frozen
+from mutabot.model.operation import Clock
+
+if TYPE_CHECKING:
+    from mutabot.config.table import Table
 
 
 class SimulatedMiddleware(ABC):
-    """A simulation of a middleware that packages bring. Its name is the one in the extension.
+    """A simulation of a middleware that a package brings: a plug-in of pytest runs the tests over it.
 
     Attributes:
+        name: the one in the extension.
         title: it in a sentence, such as "a simulation of ROS 2".
         real: what it stands for, such as "real ROS 2".
+        clock: the callable ``module:qualified.name`` that advances simulated time and returns it, in s.
+            Limits and reports count by it unless the vocabulary has a clock.
     """
 
     name: str
     title: str
     real: str
+    clock: str
 
     @abstractmethod
-    def adapt(self, request: Request) -> Request | None:
-        """Make the tests of a request run over the simulation; None if the project has no use for it.
+    def arguments(
+        self, root: Path, given: Sequence[str], tables: Mapping[str, Table]
+    ) -> Sequence[str] | None:
+        """What pytest is given before a project's own arguments, so that its tests run over the simulation.
 
-        Raises MutabotError, with the reason, if the project needs the real middleware.
+        None if the project has no use for it. Raises UsageError, with the reason, if the project could use it
+        but needs the real middleware.
+
+        Args:
+            root: the project's folder.
+            given: the project's own arguments of pytest.
+            tables: what the configuration says, by the names of the tables that packages bring.
         """
 
-    @abstractmethod
-    def difference(
-        self, real: Campaign, results: Sequence[Result], simulated: Sequence[Result]
-    ) -> str | None:
-        """How the original differs over the simulation, in words; None if it ends there as over the real one.
+    def draws(self, tables: Mapping[str, Table]) -> bool:
+        """Whether each round has an order of callbacks of its own; ``tables`` as in ``arguments``.
 
-        ``results`` are those of the baseline of ``real``, ``simulated`` those over the simulation.
+        A test that fails in some rounds alone has found something then: it is no difference between
+        simulation and middleware.
         """
+        return False
 
-    def why(self, error: MutabotError) -> str:
-        """The reason why the original did not run over the simulation, in one sentence."""
-        return " ".join(line.strip() for line in str(error).splitlines()[:2])
+    def reason(self, message: str) -> str:
+        """Why the original did not run over the simulation, in one sentence, by the message of its error."""
+        return " ".join(line.strip() for line in message.splitlines()[:2])
 
 
 def with_simulation(request: Request, name: str) -> Request:
-    """Make the tests of a request run over the simulation of this name, as in an earlier campaign."""
+    """Make the tests of a request run over the simulation of this name, as in an earlier campaign.
+
+    Raises UsageError if the project does not use it now.
+    """
     part = brought("simulations").get(name)
-    changed = part.make(SimulatedMiddleware).adapt(request) if part is not None else None  # type: ignore[type-abstract]
+    changed = _over(part.make(SimulatedMiddleware), request) if part is not None else None  # type: ignore[type-abstract]
     if changed is None:
         raise UsageError(
             f"the campaign ran over the simulation {name!r}, which this project does not use now"
         )
-    return replace(changed, simulation=name)
+    return changed
+
+
+def _over(simulation: SimulatedMiddleware, request: Request) -> Request | None:
+    """The same request over a simulation; None if the project has no use for it."""
+    configuration, vocabulary = request.configuration, request.vocabulary
+    arguments = simulation.arguments(request.root, request.arguments, configuration.tables)
+    if arguments is None:
+        return None
+    changed = configuration.model_copy(update={"pytest_args": (*arguments, *configuration.pytest_args)})
+    clock = vocabulary.clock or Clock(simulation.clock, source=simulation.title)
+    return replace(
+        request,
+        configuration=changed,
+        vocabulary=replace(vocabulary, clock=clock),
+        simulation=simulation.name,
+    )
 
 
 @frozen
@@ -84,14 +121,14 @@ def try_original(request: Request, take: Callable[[Request], tuple[Campaign, lis
     """
     if request.engine != AUTO or request.executor is not None or request.simulation or request.ran_over:
         return None
-    for name, part in brought("simulations").items():
+    for part in brought("simulations").values():
         simulation = part.make(SimulatedMiddleware)  # type: ignore[type-abstract]
         try:
-            changed = simulation.adapt(request)
+            changed = _over(simulation, request)
             if changed is not None:
-                return Tried(simulation, *take(replace(changed, simulation=name)))
+                return Tried(simulation, *take(changed))
         except MutabotError as error:
-            return Tried(simulation, why=simulation.why(error))
+            return Tried(simulation, why=simulation.reason(str(error)))
     return None
 
 
@@ -101,7 +138,7 @@ def chosen(real: Campaign, results: list[Result], tried: Tried) -> tuple[Campaig
     What is chosen is told, and stands in the journal.
     """
     there, simulation = tried.campaign, tried.simulation
-    why = tried.why if there is None else simulation.difference(real, results, tried.results)
+    why = tried.why if there is None else _difference(real, results, tried)
     if there is None or why is not None:
         text = f"The tests ran over {simulation.real}, not over {simulation.title}: {why}."
         real.progress.note(text)
@@ -115,3 +152,8 @@ def chosen(real: Campaign, results: list[Result], tried: Tried) -> tuple[Campaig
     make_plan(real.baseline, real.request.project)  # outcomes are verified by it
     request = replace(there.request, ran_over=text)
     return replace(there, request=request, evidence=real.evidence, real=real), list(tried.results)
+
+
+def _difference(real: Campaign, results: Sequence[Result], tried: Tried) -> str | None:
+    draws = tried.simulation.draws(real.request.configuration.tables)
+    return difference(real, results, tried.results, draws=draws)

@@ -1,6 +1,6 @@
 """What the world did while a test ran: told by a simulator in a few lines, kept for reports.
 
-    from mutabot.evidence import Feed
+    from mutabot.api.processes import Feed
 
     feed = Feed(lambda: data.time)                                  # simulated seconds
     feed.pose("tool", lambda: (*data.site("tool").xpos, *quaternion()))

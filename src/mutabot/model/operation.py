@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from enum import StrEnum
 from fnmatch import fnmatchcase
+from functools import cache
 from typing import Any
 
 from mutabot.frozen import frozen
@@ -150,6 +151,16 @@ class Refused:
     path: str
     values: tuple[Any, ...]
     topic: str | None = None
+
+    @property
+    def parsed(self) -> Path:
+        """The path, read."""
+        return _parsed(self.path)
+
+
+@cache
+def _parsed(path: str) -> Path:
+    return Path.parse(path, rooted=False)
 
 
 #: what the target of a method begins with that counts for whatever object has it
@@ -353,6 +364,11 @@ class Operation:
         """All operations that do the opposite of any of its calls; the opposite of a text is another text."""
         of_cases = (pattern.opposite for pattern in self.patterns if pattern.notation is None)
         return tuple(dict.fromkeys(name for name in (self.opposite, *of_cases) if name is not None))
+
+    def is_field(self, quantity: Quantity) -> bool:
+        """Whether a quantity lies in the message, request, goal or answer, and is no other argument."""
+        root = quantity.path.root
+        return root is None or (self.named is not None and root == WRITTEN.get(self.named.form))
 
     @property
     def told_as_refused(self) -> tuple[Refused, ...]:

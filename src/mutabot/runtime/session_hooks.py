@@ -118,7 +118,7 @@ class SessionHooks:
 
     def _begin(self, home: str) -> None:
         job = self.job
-        has_nodes = prepare(job.root, home, job.vocabulary)
+        has_nodes = prepare(job.root, home, job.vocabulary.operations)
         members = self.tests.members = Members(home, self.session)
         watch_forks(members.folder, self.session)
         if job.mutant is not None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mutabot import shared_memory
+from mutabot.api.processes import SharedMemory
 from mutabot_cell.geometry import Array
 from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.models.robot import RobotModel
@@ -24,7 +24,7 @@ class Planner:
     def __init__(self, robot: RobotModel, kinematics: Kinematics) -> None:
         self._limits, self._tool_limits = robot.limits, robot.tool_limits
         self._kinematics = kinematics
-        self._memory = shared_memory.shared()
+        self._memory = SharedMemory.current()
         self._robot = b""
         if self._memory is not None:
             numbers = robot.limits, robot.tool_limits, robot.reach
@@ -67,7 +67,7 @@ class Planner:
         if self._memory is None or not are_original(MOTIONS, self, self._kinematics):
             return plan()
         numbers = np.concatenate([np.ravel(part) for part in given])
-        key = hashlib.sha256(self._robot + numbers.tobytes()).digest()[: shared_memory.KEY]
+        key = hashlib.sha256(self._robot + numbers.tobytes()).digest()[: SharedMemory.key_size]
         kept = self._memory.get(key)
         if kept is not None:
             return Motion(*np.frombuffer(kept).reshape(2, -1, self._kinematics.count))

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import mujoco
 import numpy as np
 
-from mutabot.evidence import Feed
+from mutabot.api.processes import Feed
 from mutabot_cell.foresight import Glance
 from mutabot_cell.robot import Robot
 from mutabot_cell.scene import Scene

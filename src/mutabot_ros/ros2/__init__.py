@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from mutabot.model import Operation
-from mutabot.runtime.targets.target import Finding, Names
+from mutabot.api.values import Finding, Names, Operation
 from mutabot_ros._patches import Patches
 
 from ._actions import hook as hook_actions

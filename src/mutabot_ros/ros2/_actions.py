@@ -8,8 +8,7 @@ from typing import Any
 
 import wrapt
 
-from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import Names, deliver
+from mutabot.api.values import Form, Names
 from mutabot_ros._patches import Patches, code_of
 
 from . import _nodes
@@ -98,12 +97,11 @@ class _Actions:
             handler = self._handler(Form.FEEDBACK, client)
             if handler is None:
                 return callback(message)
-            where = _nodes.where(_nodes.node_of(client), code)
 
             def called(feedback: Any) -> Any:
                 return callback(_with(message, "feedback", feedback))
 
-            return deliver(handler, message.feedback, called, where)
+            return _nodes.where(_nodes.node_of(client), code).deliver(handler, message.feedback, called)
 
         return as_called(callback, received)
 

@@ -13,7 +13,7 @@ from collections.abc import Awaitable, Callable
 from importlib import import_module
 from typing import Any
 
-from mutabot.runtime.targets.target import Names
+from mutabot.api.values import Names
 from mutabot_ros._patches import Patches
 
 from ._steps import Pause

@@ -5,13 +5,13 @@ from __future__ import annotations
 import threading
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from types import CodeType
 from typing import Any
 
 import ros_in_process
-from mutabot.runtime.processes.member import note_node
-from mutabot.runtime.targets.target import MiddlewareControls, Names, Where
+from mutabot.api.values import MiddlewareControls, Names, Where
 from mutabot_ros._patches import Patches
 
 from . import _clock
@@ -32,13 +32,13 @@ _now = _Now()
 
 def hook(patches: Patches, messages: Names) -> None:
     """Note nodes as they come."""
-    patches.put(import_module("rclpy.node").Node, "__init__", _made)
+    patches.put(import_module("rclpy.node").Node, "__init__", partial(_made, messages))
 
 
-def _made(original: Any, node: Any, *args: Any, **kwargs: Any) -> None:
+def _made(messages: Names, original: Any, node: Any, *args: Any, **kwargs: Any) -> None:
     with own():
         original(node, *args, **kwargs)
-    note_node(node.get_fully_qualified_name())
+    messages.note_node(node.get_fully_qualified_name())
 
 
 @contextmanager

@@ -6,8 +6,7 @@ from importlib import import_module
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import Names
+from mutabot.api.values import Form, Names
 from mutabot_ros._patches import Patches
 
 from . import _nodes

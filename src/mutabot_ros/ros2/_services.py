@@ -7,8 +7,7 @@ from collections.abc import Awaitable, Callable
 from importlib import import_module
 from typing import Any
 
-from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import Names
+from mutabot.api.values import Form, Names
 from mutabot_ros._patches import Patches
 
 from . import _nodes

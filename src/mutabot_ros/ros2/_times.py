@@ -5,8 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import Names, deliver
+from mutabot.api.values import Form, Names
 from mutabot_ros._patches import Patches, code_of
 
 from . import _nodes
@@ -50,8 +49,7 @@ class _Times:
             handler = self._messages.find(Form.TICK, name, _nodes.name_of(node))
             if handler is None:
                 return callback(*args, **kwargs)
-            where = _nodes.where(node, code)
-            return deliver(handler, None, lambda _: callback(*args, **kwargs), where)
+            return _nodes.where(node, code).deliver(handler, None, lambda _: callback(*args, **kwargs))
 
         return as_called(callback, ticked)
 

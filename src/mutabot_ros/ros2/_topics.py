@@ -11,8 +11,7 @@ from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
-from mutabot.model.operation import Form
-from mutabot.runtime.targets.target import Handler, Names, anew, deliver, wait_for
+from mutabot.api.values import Form, Names
 from mutabot_ros._patches import Patches, code_of
 from mutabot_ros.ros2 import _nodes
 
@@ -56,14 +55,13 @@ class _Topics:
     ) -> Any:
         if _nodes.is_own():
             return original(node, msg_type, topic, qos_profile, **kwargs)
-        handler = self._set_up(Form.ADVERTISE, Form.PUBLISH, node, msg_type, topic)
 
         def made(name: Any, profile: Any) -> Any:
             publisher = original(node, msg_type, name, profile, **kwargs)
             _nodes.claim(publisher, node)
             return publisher
 
-        return _made(handler, made, node, topic, qos_profile)
+        return self._set_up((Form.ADVERTISE, Form.PUBLISH), made, node, msg_type, topic, qos_profile)
 
     def subscribe(
         self,
@@ -77,21 +75,47 @@ class _Topics:
     ) -> Any:
         if _nodes.is_own():
             return original(node, msg_type, topic, callback, qos_profile, **kwargs)
-        handler = self._set_up(Form.SUBSCRIBE, Form.RECEIVE, node, msg_type, topic)
 
         def made(name: Any, profile: Any) -> Any:
             with _nodes.of(node):
                 return original(node, msg_type, name, callback, profile, **kwargs)
 
-        return _made(handler, made, node, topic, qos_profile)
+        return self._set_up((Form.SUBSCRIBE, Form.RECEIVE), made, node, msg_type, topic, qos_profile)
 
-    def _set_up(self, form: Form, use: Form, node: Any, kind: Any, topic: Any) -> Handler | None:
+    def _set_up(
+        self,
+        forms: tuple[Form, Form],
+        make: Callable[[Any, Any], Any],
+        node: Any,
+        kind: Any,
+        topic: Any,
+        qos_profile: Any,
+    ) -> Any:
+        """Make a publisher or subscription of a node.
+
+        Args:
+            forms: what sets it up, and what it is for.
+            make: makes it, with a name and a profile.
+            node, kind, topic, qos_profile: as the program gave them.
+        """
+        form, use = forms
         try:
             name = node.resolve_topic_name(topic)
         except Exception:  # rclpy says what is wrong with it, in its own way
-            return None
+            return make(topic, qos_profile)
         TYPES.note(use, name, kind)
-        return self._messages.find(form, name, _nodes.name_of(node))
+        handler = self._messages.find(form, name, _nodes.name_of(node))
+        given = qualities(qos_profile) if handler is not None else None
+        if handler is None or given is None:
+            return make(topic, qos_profile)
+
+        def set_up(name: Any, depth: Any, reliability: Any, durability: Any, deadline: Any) -> Any:
+            values = (depth, reliability, durability, deadline)
+            wanted = zip(("depth", "reliability", "durability", "deadline"), values, strict=True)
+            differing = {quality: value for quality, value in wanted if value != given[quality]}
+            return make(name, changed(qos_profile, differing))
+
+        return handler(set_up, None, (), {"name": topic, **given}, _nodes.where(node))
 
     def publish(self, original: Any, publisher: Any, msg: Any) -> Any:
         node = _nodes.node_of(publisher)
@@ -129,7 +153,7 @@ class _Topics:
             handler = self._messages.find(Form.RECEIVE, name, node_name)
             if handler is None:
                 return callback(message, *more)
-            return deliver(handler, message, lambda one: callback(one, *more), _nodes.where(node, code))
+            return _nodes.where(node, code).deliver(handler, message, lambda one: callback(one, *more))
 
         return as_called(callback, received)
 
@@ -159,8 +183,9 @@ class _Topics:
         try:
             if handler is None:
                 return True, waited()
-            another = anew(waited, lambda message: _is_kept(kwargs.get("qos_profile")), time)
-            return True, wait_for(handler, _first(another(), another), _nodes.where(node), time)
+            is_kept = _is_kept(kwargs.get("qos_profile"))
+            wait = _first(waited(), waited)  # the handler hears of no wait that brings nothing
+            return True, _nodes.where(node).wait_for(handler, wait, lambda _: is_kept, time)
         except _Nothing:
             return False, None
 
@@ -205,22 +230,6 @@ def _named_like(callback: Any, ours: Any) -> Any:
     with suppress(TypeError, ValueError):  # what is written in C may have none
         named.__signature__ = inspect.signature(callback)  # an executor asks for it at each tick
     return named
-
-
-def _made(
-    handler: Handler | None, make: Callable[[Any, Any], Any], node: Any, topic: Any, qos_profile: Any
-) -> Any:
-    given = qualities(qos_profile) if handler is not None else None
-    if handler is None or given is None:
-        return make(topic, qos_profile)
-
-    def set_up(name: Any, depth: Any, reliability: Any, durability: Any, deadline: Any) -> Any:
-        wanted = {"depth": depth, "reliability": reliability, "durability": durability, "deadline": deadline}
-        return make(
-            name, changed(qos_profile, {key: value for key, value in wanted.items() if value != given[key]})
-        )
-
-    return handler(set_up, None, (), {"name": topic, **given}, _nodes.where(node))
 
 
 _NANO = 1e9

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from types import ModuleType
 from typing import Any, ClassVar
 
-from mutabot.model.operation import Form
+from mutabot.api.values import Form
 from mutabot_ros._types import Types
 
 

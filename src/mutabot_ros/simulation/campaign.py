@@ -3,27 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
 
-from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.request import Request
-from mutabot.campaign.simulation import SimulatedMiddleware
-from mutabot.config.table import Table
-from mutabot.errors import MutabotError, UsageError
-from mutabot.execution.task import Result
-from mutabot.model.operation import Clock
+from mutabot.api.processes import SimulatedMiddleware, Table
+from mutabot.api.reports import UsageError
 from mutabot_ros._speech import speaks_of
-
-from .agreement import difference
 
 #: the plug-in of campaigns, and that of the simulation alone
 PLUGIN, PLAIN_PLUGIN = "mutabot_ros.simulation.plugin", "ros_in_process.plugin"
-#: makes simulated time the time of budgets and reports, unless the vocabulary has a clock
-CLOCK = Clock("ros_in_process.machine.scheduler:Scheduler.advanced", source="the simulation of ROS 2")
 _SETTINGS = (
     "pyproject.toml",
     "pytest.ini",
@@ -58,47 +48,44 @@ class Ros2Simulation(SimulatedMiddleware):
     name = "ros2"
     title = "a simulation of ROS 2"
     real = "real ROS 2"
-    draws = False
+    clock = "ros_in_process.machine.scheduler:Scheduler.advanced"
 
-    def adapt(self, request: Request) -> Request | None:
-        """Put the plug-in before pytest's arguments, and the clock into the vocabulary."""
-        if not self._is_of(request):
+    def arguments(
+        self, root: Path, given: Sequence[str], tables: Mapping[str, Table]
+    ) -> Sequence[str] | None:
+        """Name the plug-in, for a project over the installed rclpy that does not name it itself."""
+        if not self._is_used_by(root, given):
             return None
-        table = request.configuration.tables.get("ros", RosTable())
-        assert isinstance(table, RosTable)
+        table = _table(tables)
         if table.simulation == "never":
             raise UsageError('the configuration says simulation = "never"')
         if find_spec("greenlet") is None:
             raise UsageError("the package greenlet is not installed")
-        arguments = ["-p", PLUGIN]
-        if table.schedule != "first-in":
-            arguments += ["--ros-schedule", table.schedule]
-        self.draws = table.schedule != "first-in"
-        configuration = request.configuration
-        changed = configuration.model_copy(update={"pytest_args": (*arguments, *configuration.pytest_args)})
-        clock = request.vocabulary.clock or CLOCK
-        return replace(request, configuration=changed, vocabulary=replace(request.vocabulary, clock=clock))
+        order = [] if table.schedule == "first-in" else ["--ros-schedule", table.schedule]
+        return ["-p", PLUGIN, *order]
 
-    def difference(
-        self, real: Campaign, results: Sequence[Result], simulated: Sequence[Result]
-    ) -> str | None:
-        """See ``agreement.difference``."""
-        return difference(real, results, simulated, draws=self.draws)
+    def draws(self, tables: Mapping[str, Table]) -> bool:
+        """Whether the order of callbacks is drawn."""
+        return _table(tables).schedule != "first-in"
 
-    def why(self, error: MutabotError) -> str:
+    def reason(self, message: str) -> str:
         """The simulation's own words, if it was the simulation that failed."""
-        found = _REASON.search(str(error))
-        return found[1].strip() if found is not None else super().why(error)
+        found = _REASON.search(message)
+        return found[1].strip() if found is not None else super().reason(message)
 
     @staticmethod
-    def _is_of(request: Request) -> bool:
-        """Whether it is a project over the installed rclpy, and does not name the plug-in itself."""
-        root = request.root
+    def _is_used_by(root: Path, given: Sequence[str]) -> bool:
         is_own = (root / "rclpy").exists() or (root / "rclpy.py").exists()
         if find_spec("rclpy") is None or is_own or not speaks_of(str(root), "rclpy"):
             return False
-        named = (*request.arguments, *_settings(root))
+        named = (*given, *_settings(root))
         return not any(plugin in text for text in named for plugin in (PLUGIN, PLAIN_PLUGIN))
+
+
+def _table(tables: Mapping[str, Table]) -> RosTable:
+    found = tables.get("ros", RosTable())
+    assert isinstance(found, RosTable)
+    return found
 
 
 def _settings(root: Path) -> Iterator[str]:

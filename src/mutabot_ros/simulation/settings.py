@@ -19,6 +19,6 @@ def configure() -> None:
 
 
 def _seed_of_round(item: Any) -> int:
-    from mutabot.runtime.pytest_plugin import seed_of  # noqa: PLC0415  # pytest itself imports it first
+    from mutabot.api.processes import seed_of  # noqa: PLC0415  # pytest imports its plug-in first
 
     return seed_of(item)

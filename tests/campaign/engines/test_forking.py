@@ -421,11 +421,11 @@ def test_processes_of_a_campaign_remember_together(tmp_path: Path) -> None:
         "def run(arm):\n    arm.move_by(0.25)\n",
         """
         import mission
-        from mutabot import shared_memory
+        from mutabot.api.processes import SharedMemory
         from robot import Arm
 
         def test_once():
-            memory, key = shared_memory.shared(), b"test_once".ljust(shared_memory.KEY)
+            memory, key = SharedMemory.current(), b"test_once".ljust(SharedMemory.key_size)
             is_first = memory.get(key) is None
             memory.put(key, b"was here")
             arm = Arm()

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from mutabot import shared_memory
+from mutabot.api.processes import SharedMemory
 
 
 @contextmanager
 def remembering() -> Iterator[None]:
     """Inside, cells that are made remember together."""
-    shared_memory.share()
+    SharedMemory.share()
     try:
         yield
     finally:
-        shared_memory.forget()
+        SharedMemory.forget()

@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mutabot import shared_memory
+from mutabot.api.processes import SharedMemory
 from mutabot_cell import Box, Cell, CellError, MotionRefused, Scene, gen3, stepping
 from mutabot_cell.fingerprint import Fingerprint
 from mutabot_cell.motion.kinematics import Kinematics
@@ -247,7 +247,7 @@ def test_what_was_stepped_by_something_else_is_not_remembered(
 ) -> None:
     plain = watch(Cell(1))
     with monkeypatch.context() as patch:
-        patch.setattr(shared_memory, "_shared", None)
+        patch.setattr(SharedMemory, "_current", None)
         plain = watch(Cell(1))
         move(plain)
     with monkeypatch.context() as patch:

@@ -44,7 +44,7 @@ MISSION = """
 TESTS = """
     import pytest
     import mission
-    from mutabot.evidence import Feed
+    from mutabot.api.processes import Feed
     from robot import Arm
 
     @pytest.fixture

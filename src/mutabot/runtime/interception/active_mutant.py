@@ -6,13 +6,13 @@ import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
-from functools import cache, partial
+from functools import partial
 from random import Random
 from traceback import walk_tb
 from typing import Any
 
 from mutabot.errors import OperatorError, PathError, in_words
-from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Path, Proceed, Reply, Span
+from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Span
 from mutabot.model.answer import restore
 from mutabot.model.data import UNKNOWN, data_of, is_of_numpy
 from mutabot.model.enumeration import is_member, member_of
@@ -124,7 +124,7 @@ def _is_rejected(call: Call, result: Any) -> bool:
 
 
 def _found(refused: Refused, start: Any) -> str | None:
-    path = _parsed(refused.path)
+    path = refused.parsed
     try:
         value = path.get(start)
     except PathError:  # another kind of answer, or of message
@@ -151,11 +151,6 @@ def _same(value: Any, wanted: Any) -> bool:
         return isinstance(value, bool) is isinstance(wanted, bool) and bool(value == wanted)
     except Exception:  # a value of the user's may compare in any way
         return False
-
-
-@cache
-def _parsed(path: str) -> Path:
-    return Path.parse(path, rooted=False)
 
 
 @dataclass

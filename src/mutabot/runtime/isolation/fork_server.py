@@ -15,7 +15,6 @@ import socket
 import sys
 from dataclasses import dataclass, field
 
-from mutabot import shared_memory
 from mutabot.frozen import compile_all
 from mutabot.model.events import ForkEnded, Serving
 from mutabot.model.files import open_file
@@ -24,6 +23,7 @@ from mutabot.runtime.isolation import collector
 from mutabot.runtime.isolation.files import isolate_files, may_be_private
 from mutabot.runtime.isolation.forkable import STARTED, open_now, why_not
 from mutabot.runtime.isolation.namespaces import die_with_parent
+from mutabot.shared_memory import SharedMemory
 
 _MESSAGE_BYTES = 1 << 12
 #: what a copy is to do: its folder with the job file in it, and the writing end of the pipe by which the
@@ -67,7 +67,7 @@ class ForkServer:
         if reason is not None:
             return None
         if self.may_remember:
-            shared_memory.share()
+            SharedMemory.share()
         compile_all()
         collector.freeze()
         with socket.socket(fileno=self.descriptor) as jobs:

@@ -123,12 +123,6 @@ def is_member() -> bool:
     return _member is not None
 
 
-def note_node(name: str) -> None:
-    """A node of this resolved name was made in this process."""
-    if _member is not None:
-        _member.file.send(events.Found(nodes=(name,)))
-
-
 class Member:
     """This process, as part of a campaign. Also what a session sends its events to.
 
@@ -202,7 +196,10 @@ class Member:
         session.passing.on_end = lambda call, read: self.poll()
         session.on_noted = self.file.send
         messages = session.messages
-        if messages is not None and messages.on_heard is not None:
+        if messages is None:
+            return
+        messages.on_node = lambda name: self.file.send(events.Found(nodes=(name,)))
+        if messages.on_heard is not None:
             messages.on_heard = partial(heard, messages.on_heard)
 
     def turn(self) -> None:

@@ -23,8 +23,8 @@ What hooks keep to, so that all operators mean the same in every middleware:
   does something later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps.
   All of it by the clock of the node, so that simulated time counts.
 - What comes by itself (``Form.comes_by_itself``: messages, feedback, ticks of a timer) goes through
-  ``deliver``, which calls the program's callback, or ``wait_for``, which stands around a wait. A handler's
-  own result may be a ``Delivery`` there and nowhere else: late, several times, or not at all.
+  ``Where.deliver``, which calls the program's callback, or ``Where.wait_for``, which stands around a wait. A
+  handler's own result may be a ``Delivery`` there and nowhere else: late, several times, or not at all.
 - An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
 - What sets something up is ``wrapped(name=…, depth=…)`` with the arguments of ``SETTING_UP``, as they come
   out with the defaults of the middleware; those that it does not know are left out, and a deadline of 0 is
@@ -32,7 +32,7 @@ What hooks keep to, so that all operators mean the same in every middleware:
 - A parameter is read by ``wrapped(default=…)``, where the program or its declaration gives a default, and
   what ``wrapped`` returns is the value itself.
 - Each message that passes, as it is in truth, is told to ``names.heard``; each node that is made to
-  ``processes.member.note_node``.
+  ``names.note_node``.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ import wrapt
 from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.frozen import frozen
-from mutabot.model import Operation, Role, Span, Vocabulary
+from mutabot.model import Operation, Role, Span
 from mutabot.model.operation import Form, Named, Refused, named_of
 from mutabot.model.path import class_name
 
@@ -99,8 +99,39 @@ class MiddlewareControls:
     end: Callable[[bool], object] | None = None
 
 
+#: seconds: a topic that keeps its last message gives it at once to who asks again and again
+_PAUSE = 0.01
+#: the same as a share of the time that a wait has lasted: so late another message may be noticed
+_LATE = 0.05
 #: where a call stands, and whose text that is
 CallPlace = tuple[Span, Role]
+
+
+@frozen
+class Delivery:
+    """What the program is to receive in the place of one message.
+
+    Attributes:
+        parts: seconds by which each comes later, and the message; none if it is lost.
+    """
+
+    parts: tuple[tuple[float, Any], ...] = ()
+
+
+class TimeModule(Protocol):
+    """How time passes for the program: the module ``time``, or what stands for it in a simulation."""
+
+    def monotonic(self) -> float:
+        """Seconds since some moment."""
+
+    def sleep(self, seconds: float, /) -> None:
+        """Let so many seconds pass."""
+
+
+#: ``handler(wrapped, instance, args, kwargs, where=NOWHERE)``, as wrapt calls it, with a ``Where`` behind it
+#: if the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
+#: coroutine function. Of what comes by itself it may return a ``Delivery`` in its place
+Handler = Callable[..., Any]
 
 
 @frozen
@@ -134,14 +165,99 @@ class Where:
     signature: Signature | None = None
     stands_in: bool = False
 
+    def deliver(self, handler: Handler, message: Any, callback: Callable[[Any], Any]) -> Any:
+        """Call the program's callback with a message, or with whatever the handler makes of it.
+
+        Returns what the callback returns: a coroutine if it is a coroutine function. A message that is lost
+        calls nothing and returns None; one that is late calls it from ``means.later``.
+        """
+        received = handler(lambda: message, None, (), {}, self)
+        if not isinstance(received, Delivery):
+            return callback(received)
+        returned = []
+        for late, part in received.parts:
+            if late:
+                self._means.later(late, partial(callback, part))
+            else:
+                returned.append(callback(part))
+        if any(inspect.isawaitable(one) for one in returned):
+            return _in_turn(returned)
+        return returned[-1] if returned else None
+
+    def wait_for(
+        self,
+        handler: Handler,
+        wait: Callable[[], Any],
+        is_kept: Callable[[Any], bool],
+        time_module: TimeModule,
+    ) -> Any:
+        """Return what the program receives that waits for one message.
+
+        A message that is lost is waited past. A program that has a message waits no more, and its next wait
+        subscribes anew: a mutant can let nothing come after it (``MiddlewareControls.once``).
+
+        Args:
+            handler: stands around the wait.
+            wait: waits for the next message and returns it. It may be called again, so it keeps the time-out
+                of the whole, and raises what the program is to see when that is over.
+            is_kept: whether a message is one that its publisher keeps for late subscribers. Each wait gets
+                it once more, but a node that had lost it would not.
+            time_module: by which time passes for the program.
+        """
+        where, wait = (
+            replace(self, means=replace(self._means, once=True)),
+            _another(wait, is_kept, time_module),
+        )
+        while True:
+            received = handler(wait, None, (), {}, where)
+            if not isinstance(received, Delivery):
+                return received
+            for late, part in received.parts:
+                if late:
+                    _done(self._means.sleep(late))
+                return part
+            where = replace(where, is_again=True)
+            time_module.sleep(_PAUSE)
+
+    @property
+    def _means(self) -> MiddlewareControls:
+        return self.means if self.means is not None else MiddlewareControls()
+
 
 #: the frames above tell all
 NOWHERE = Where()
 
-#: ``handler(wrapped, instance, args, kwargs, where=NOWHERE)``, as wrapt calls it, with a ``Where`` behind it
-#: if the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
-#: coroutine function. Of what comes by itself it may return a ``Delivery`` in its place
-Handler = Callable[..., Any]
+
+def _another(
+    wait: Callable[[], Any], is_kept: Callable[[Any], bool], time_module: TimeModule
+) -> Callable[[], Any]:
+    """Wait for a message that no wait before has brought."""
+    last: list[Any] = []
+
+    def wait_for_another() -> Any:
+        began = time_module.monotonic()
+        while True:
+            message = wait()
+            if not last or not is_kept(message) or message != last[0]:
+                last[:] = [message]
+                return message
+            # a simulation goes through ten seconds at once, but not through thousands of subscriptions
+            time_module.sleep(max(_PAUSE, _LATE * (time_module.monotonic() - began)))
+
+    return wait_for_another
+
+
+def _done(awaitable: Awaitable[None]) -> None:
+    """Await what does not suspend."""
+    for _ in awaitable.__await__():
+        raise RuntimeError("the sleep of a plain call suspends; it must block")
+
+
+async def _in_turn(returned: Sequence[Any]) -> Any:
+    last = None
+    for one in returned:
+        last = await one if inspect.isawaitable(one) else one
+    return last
 
 
 @frozen
@@ -249,6 +365,9 @@ class Names(Protocol):
         Of an action: its result, or the word by which its goal ended (``model.operation.ENDINGS``).
         """
 
+    def note_node(self, name: str) -> None:
+        """A node of this resolved name was made in this process."""
+
 
 class MiddlewareModule(Protocol):
     """A module with the hooks into one client library, which is imported already."""
@@ -268,14 +387,15 @@ class TypedMiddleware(MiddlewareModule, Protocol):
 class Environment(Protocol):
     """A module that sets up what nodes find when they start, so that those of several workers do not meet."""
 
-    def prepare(self, root: str, home: str, vocabulary: Vocabulary | None) -> bool:
+    def prepare(self, root: str, home: str, operations: Sequence[Operation] | None) -> bool:
         """Set it up if the program needs it; nothing of the program's has been imported yet.
 
         Args:
             root: the project's folder.
             home: the worker's folder, which its forks share: what nodes write there meets what those of forks
                 write.
-            vocabulary: the robot API; None where it is not known yet: the program's files tell then.
+            operations: what the vocabulary describes; None where it is not known yet: the program's files
+                tell then.
 
         Returns whether it did: a fork of this process, whose nodes would meet ours, needs its own then.
 
@@ -283,10 +403,10 @@ class Environment(Protocol):
         """
 
 
-def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> bool:
+def prepare(root: str, home: str, operations: Sequence[Operation] | None) -> bool:
     """Let all packages set up what nodes will find; returns whether any did. See ``Environment``."""
     environments: list[Environment] = [part.load() for part in brought("environments").values()]
-    found = [one.prepare(root, home, vocabulary) for one in environments]  # all of them, not up to the first
+    found = [one.prepare(root, home, operations) for one in environments]  # all of them, not up to the first
     return any(found)
 
 
@@ -316,11 +436,13 @@ class Messages:
     Attributes:
         used: what was done under which names, in this process and those below the tests.
         on_heard: told of each message that passes under a name; None if nobody asks.
+        on_node: told the resolved name of each node that is made here; None if nobody asks.
     """
 
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
         self.on_heard: Callable[[str, Any], None] | None = None
+        self.on_node: Callable[[str], None] | None = None
         self._handlers: list[tuple[Named, Handler]] = []
         self._found: dict[tuple[Form, str, str | None], Handler | None] = {}
         self._undo: list[Callable[[], None]] = []
@@ -353,6 +475,11 @@ class Messages:
         """A message passed under a resolved name, as it is in truth; see ``target.Names``."""
         if self.on_heard is not None:
             self.on_heard(name, message)
+
+    def note_node(self, name: str) -> None:
+        """A node of this resolved name was made in this process."""
+        if self.on_node is not None:
+            self.on_node(name)
 
     def remove(self) -> None:
         """Take all hooks away."""
@@ -438,110 +565,3 @@ def _instead(named: Named, used: Collection[Named]) -> str:
     targets = [alike[name] for name in sorted(alike, key=lambda name: (-likeness[name], name))]
     more = f" and {len(targets) - _MOST} more" if len(targets) > _MOST else ""
     return f"seen: {', '.join(targets[:_MOST])}{more}"
-
-
-#: seconds: a topic that keeps its last message gives it at once to who asks again and again
-_PAUSE = 0.01
-#: the same as a share of the time that a wait has lasted: so late another message may be noticed
-_LATE = 0.05
-
-
-@frozen
-class Delivery:
-    """What the program is to receive in the place of one message.
-
-    Attributes:
-        parts: seconds by which each comes later, and the message; none if it is lost.
-    """
-
-    parts: tuple[tuple[float, Any], ...] = ()
-
-
-def deliver(handler: Handler, message: Any, callback: Callable[[Any], Any], where: Where) -> Any:
-    """Call the program's callback with a message, or with whatever the handler makes of it.
-
-    Returns what the callback returns: a coroutine if it is a coroutine function. A message that is lost calls
-    nothing and returns None; one that is late calls it from ``where.means.later``.
-    """
-    received = handler(lambda: message, None, (), {}, where)
-    if not isinstance(received, Delivery):
-        return callback(received)
-    returned = []
-    for late, part in received.parts:
-        if late:
-            _means(where).later(late, partial(callback, part))
-        else:
-            returned.append(callback(part))
-    if any(inspect.isawaitable(one) for one in returned):
-        return _in_turn(returned)
-    return returned[-1] if returned else None
-
-
-class TimeModule(Protocol):
-    """How time passes for the program: the module ``time``, or what stands for it in a simulation."""
-
-    def monotonic(self) -> float:
-        """Seconds since some moment."""
-
-    def sleep(self, seconds: float, /) -> None:
-        """Let so many seconds pass."""
-
-
-def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, time_module: TimeModule) -> Any:
-    """What a program receives that waits for one message; ``wait`` waits for the next and returns it.
-
-    A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
-    whole, and raises what the program is to see when that is over. Who has a message waits no more, and the
-    next wait subscribes anew: a mutant can let nothing come after it (``MiddlewareControls.once``).
-    """
-    where = replace(where, means=replace(_means(where), once=True))
-    while True:
-        received = handler(wait, None, (), {}, where)
-        if not isinstance(received, Delivery):
-            return received
-        for late, part in received.parts:
-            if late:
-                _done(_means(where).sleep(late))
-            return part
-        where = replace(where, is_again=True)
-        time_module.sleep(_PAUSE)
-
-
-def anew(
-    wait: Callable[[], Any], is_kept: Callable[[Any], bool], time_module: TimeModule
-) -> Callable[[], Any]:
-    """Wait for a message that no wait before has brought.
-
-    Each wait subscribes anew, and so gets once more what is kept for late subscribers: a node that had lost
-    it would not. ``is_kept`` says whether a message is of that kind.
-    """
-    last: list[Any] = []
-
-    def wait_for_another() -> Any:
-        began = time_module.monotonic()
-        while True:
-            message = wait()
-            if not last or not is_kept(message) or message != last[0]:
-                last[:] = [message]
-                return message
-            # a simulation goes through ten seconds at once, but not through thousands of subscriptions
-            time_module.sleep(max(_PAUSE, _LATE * (time_module.monotonic() - began)))
-
-    return wait_for_another
-
-
-def _means(where: Where) -> MiddlewareControls:
-    return where.means if where.means is not None else MiddlewareControls()
-
-
-def _done(awaitable: Awaitable[None]) -> None:
-    """Await what does not suspend."""
-    for _ in awaitable.__await__():
-        raise RuntimeError("the sleep of a plain call suspends; it must block")
-
-
-async def _in_turn(returned: Sequence[Any]) -> Any:
-    last = None
-    for one in returned:
-        last = await one if inspect.isawaitable(one) else one
-    return last

@@ -1,27 +1,39 @@
-"""Whether the original ends over the simulation as over real ROS 2: outcomes, values, calls of sites."""
+"""Whether the original ends over a simulation as over the real middleware.
+
+Compared are outcomes, values and the calls of sites.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.baseline.baseline import Sources, observation
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.comparison import Observation, compare
-from mutabot.execution.task import Result
-from mutabot.model import Vocabulary
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign
+    from mutabot.execution.task import Result
+    from mutabot.model import Vocabulary
 
 
 def difference(
     real: Campaign, results: Sequence[Result], simulated: Sequence[Result], *, draws: bool
 ) -> str | None:
-    """How the original differs over the simulation, in words; None if it ends there as over the real one.
+    """How the original differs over a simulation, in one line; None if it ends there as over the real one.
 
     What differs between two runs over the real middleware as well is no difference. With ``draws`` each round
     has another order of callbacks: a test that fails in some of them alone has found something, and is set
     aside there with what repeats it.
+
+    Args:
+        real: the campaign over the real middleware, with its baseline.
+        results: the raw results of that baseline, which has at least two runs of each round.
+        simulated: those of the baseline over the simulation.
+        draws: see ``SimulatedMiddleware.draws``.
     """
-    sources, runs = Sources(real.request.root), {result.task.key: result for result in results}
+    sources, runs = real.sources, {result.task.key: result for result in results}
     lines: dict[str, list[str | None]] = {}
     for result in simulated:
         round, repetition = result.task.key
